@@ -2,7 +2,7 @@
 
 Each room of the package is a folder or a file at its top. A room imports from the rooms before it only, and no files
 import each other in a circle, inside a room either. Imports inside functions and those for type checking count.
-ruff limits complexity, the number of arguments and late imports.
+ruff limits complexity, the number of arguments and late imports. In the rooms of `PLAIN` a line says one thing.
 """
 
 from __future__ import annotations
@@ -18,6 +18,7 @@ from trackroller.study.store.sources import ROOMS
 
 ROOT = Path(__file__).parents[1]
 PACKAGE = "trackroller"
+PLAIN = ("contact", "damage", "halfspace", "materials", "methods", "numerics", "parameters", "roller", "tables")
 ORDER = (*ROOMS, "__init__")  # the top of the package holds public names and may import all rooms
 
 
@@ -136,3 +137,75 @@ def test_the_survey_finds_what_it_looks_for(tmp_path):
     (upper / "stages").mkdir()
     (upper / "stages" / "case.py").write_text("")
     assert repeated(tmp_path) == {"case.py": ["roller/case.py", "roller/stages/case.py"]}
+
+
+def crowded(tree: ast.AST) -> list[int]:
+    """Return the lines that say several things at once.
+
+    An assignment inside an expression, except in `while` and in the filter of a comprehension; a choice inside another
+    choice; a text times a condition.
+    """
+    inside = {child: node for node in ast.walk(tree) for child in ast.iter_child_nodes(node)}
+
+    def around(node: ast.AST) -> list[ast.AST]:
+        """Return the expressions around a node, the statement last."""
+        found = [node]
+        while not isinstance(found[-1], ast.stmt) and found[-1] in inside:
+            found.append(inside[found[-1]])
+        return found[1:]
+
+    lines = []
+    for node in ast.walk(tree):
+        places = around(node)
+        if isinstance(node, ast.NamedExpr):
+            steps = zip([node, *places], places, strict=False)
+            filters = any(isinstance(place, ast.comprehension) and own in place.ifs for own, place in steps)
+            if not filters and not isinstance(places[-1], ast.While):
+                lines.append(node.lineno)
+        if isinstance(node, ast.IfExp) and isinstance(inside[node], ast.IfExp):
+            lines.append(node.lineno)
+        if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Mult):
+            sides = (node.left, node.right)
+            is_text = any(isinstance(s, ast.JoinedStr) or isinstance(getattr(s, "value", None), str) for s in sides)
+            if is_text and any(is_condition(side) for side in sides):
+                lines.append(node.lineno)
+    return sorted(lines)
+
+
+def is_condition(node: ast.expr) -> bool:
+    """Return whether an expression is true or false by its form."""
+    if isinstance(node, ast.Call):
+        return getattr(node.func, "id", "") == "bool"
+    return isinstance(node, (ast.Compare, ast.BoolOp)) or (
+        isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.Not)
+    )
+
+
+def test_a_line_of_a_plain_room_says_one_thing():
+    found = []
+    for path in sorted(path for room in PLAIN for path in (ROOT / PACKAGE / room).rglob("*.py")):
+        name = path.relative_to(ROOT).as_posix()
+        found += [f"{name}:{line}" for line in crowded(ast.parse(path.read_text(encoding="utf-8")))]
+    assert found == []
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "if (a := f()): g()",
+        "x = 1 if a else (2 if b else 3)",
+        "x = ', ' * bool(a)",
+        "x = f'{a}' * (b > 1)",
+        "f(a := 1)",
+    ],
+)
+def test_a_crowded_line_is_found(text):
+    assert crowded(ast.parse(text)) == [1]
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["while a := f(): g()", "x = [b for a in c if (b := f(a))]", "x = 1 if a else 2", "x = ' ' * n", "x = 2 * (a > b)"],
+)
+def test_a_plain_line_is_not_found(text):
+    assert crowded(ast.parse(text)) == []

@@ -51,7 +51,8 @@ def add_own() -> None:
 
 def _refuse_taken(names: Collection[str], taken: Collection[str], what: str) -> None:
     """Refuse names that a limit declares and that are taken; `what` is what they name."""
-    if clash := sorted({*names} & {*taken}):
+    clash = sorted({*names} & {*taken})
+    if clash:
         wrong = f"is {what} already, so that no limit may declare it"
         raise InputError("limits", ", ".join(clash), "", "Choose another name.", wrong)
 
@@ -90,8 +91,11 @@ def groups_of(field: str, names: Collection[str]) -> tuple[str, ...]:
     """
     known = [limit.name for limit in judged()]
     for name in names:
-        if name not in known and (how := own.hint(name)):
-            raise InputError(field, name, "limits that are loaded", how)
+        if name in known:
+            continue
+        remedy = own.hint(name)
+        if remedy:
+            raise InputError(field, name, "limits that are loaded", remedy)
     check_names(field, names, (*known, "all"))
     wanted = known if "all" in names else names
     return (*dict.fromkeys(LIMITS[name].group for name in wanted), verdict.GROUP)

@@ -236,10 +236,9 @@ def wave_angles(patch, px, py, rule, work):
     if beta > 0.0:
         low, high = min(turn, first + 2.0 * beta), max(turn, first + 2.0 * beta)
     count = np.int64(0)  # a literal would compile `spread_angles` twice
-    for piece in range(3):
-        start = first if piece == 0 else (low if piece == 1 else high)
-        end = low if piece == 0 else (high if piece == 1 else first + math.pi)
-        count = spread_angles(work, count, start, end, turn, min(a, b) / max(a, b), rule)
+    ratio = min(a, b) / max(a, b)
+    for start, end in ((first, low), (low, high), (high, first + math.pi)):
+        count = spread_angles(work, count, start, end, turn, ratio, rule)
     return count
 
 

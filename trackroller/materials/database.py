@@ -184,7 +184,10 @@ class MaterialDatabase:
             "or give the material a `family` that has a friction coefficient."
         )
         for body in names:
-            if body[-1] not in self.families() and (close := nearest(body[-1], self.families())):
+            if body[-1] in self.families():
+                continue
+            close = nearest(body[-1], self.families())
+            if close:
                 remedy += f" Did you mean the family '{close}'?"
         allowed, wrong = f"the pairs {known}", f"has no {level} value in the friction table"
         return InputError("friction_coefficient of the pair", "-".join(label), allowed, remedy, wrong)
@@ -197,9 +200,9 @@ def _worn(own: Material, records: int, known: Value, partner: str) -> Material:
     Equal materials may have different sources. The identity of their `records` tells them apart; the cache keeps the
     material, so that no other one takes this identity.
     """
-    records_of_pair = {
-        **own.records,
-        "wear_coefficient": replace(known, note=f"on {partner}" + f", {known.note}" * bool(known.note)),
-    }
+    note = f"on {partner}"
+    if known.note:
+        note += f", {known.note}"
+    records_of_pair = {**own.records, "wear_coefficient": replace(known, note=note)}
     changed: dict[str, Any] = {"wear_coefficient": known.value, "records": records_of_pair}
     return replace(own, **changed)

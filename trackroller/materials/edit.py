@@ -90,7 +90,8 @@ def _entry(values: Mapping[str, Any]) -> dict[str, Any]:
         if key not in values:
             continue
         given = values[key] if isinstance(values[key], Mapping) else {"value": values[key]}
-        if parts := split_quantity(given.get("value")):
+        parts = split_quantity(given.get("value"))
+        if parts:
             given = {**given, "value": _plain(key, read_number(parts[0])), "unit": parts[1]}
         record = {"unit": prop.unit} | common | note | dict(given)
         known = [part for part in VALUE_KEYS if part in record]

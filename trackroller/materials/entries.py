@@ -252,7 +252,8 @@ class EntryParser:
             if entry.get(key) is not None and not isinstance(entry[key], str):
                 wrong.errors.append(InputError(f"{where}.{key}", entry[key], "a text", "Put it in quotes."))
         with wrong.part():
-            if isinstance(like := entry.get("like"), str) and like not in known:
+            like = entry.get("like")
+            if isinstance(like, str) and like not in known:
                 if like in self.wrong:
                     raise InputError(f"{where}.like", like, "a material without errors", f"Mend '{like}' first.")
                 raise unknown_name(f"{where}.like", like, known)

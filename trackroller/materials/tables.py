@@ -50,7 +50,8 @@ def material_details(database: MaterialDatabase, name: str) -> list[dict[str, st
         rows.append(_row("sn_points", "sigma_a, N", record) | {"value": shown})
     limit = Value(material.fatigue_limit, "MPa", of_limit, origin="derived")
     exponent = Value(material.woehler_exponent, "-", of_exponent, origin="derived")
-    if (table := material.temperature_dependence) is not None:
+    table = material.temperature_dependence
+    if table is not None:
         over = ", ".join(f"{value:g}" for value in table.temperature)
         for key, column in table.columns.items():
             record = Value(column[0], PROPERTIES[key].unit, table.source, table.placeholder, f"at {over} degC")

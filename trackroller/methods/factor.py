@@ -183,7 +183,9 @@ def label(value: Any) -> str:
         return " / ".join(label(v) for v in value)
     if isinstance(value, Mapping):
         return str(value.get("name", "inline"))
-    return f"{value:g}" if _is_number(value) else "not given" if value is None else str(value)
+    if _is_number(value):
+        return f"{value:g}"
+    return "not given" if value is None else str(value)
 
 
 def readable(values: np.ndarray) -> np.ndarray:

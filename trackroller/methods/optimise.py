@@ -238,7 +238,8 @@ def _new(drawn: np.ndarray, known: np.ndarray, count: int) -> np.ndarray:
     seen = {row.tobytes() for row in known}
     rows: list[np.ndarray] = []
     for row in drawn:
-        if len(rows) < count and (key := row.tobytes()) not in seen:
+        key = row.tobytes()
+        if len(rows) < count and key not in seen:
             seen.add(key)
             rows.append(row)
     return np.array(rows).reshape(len(rows), drawn.shape[1])

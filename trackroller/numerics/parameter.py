@@ -98,9 +98,11 @@ class Parameter:
         if isinstance(written, str):
             if self.allow_infinite and nearest(written, ("straight",)):
                 return "Write inf for a straight one."
-            if close := nearest(written, self.words):
+            close = nearest(written, self.words)
+            if close:
                 return f"Did you mean '{close}'?"
-            if plain := plain_quantity(written):
+            plain = plain_quantity(written)
+            if plain:
                 return f"Write {plain}."
         example = "" if math.isnan(self.default) else f", such as {self.default:g}"
         left_out = "" if not self.allow_missing else ", or leave it out"

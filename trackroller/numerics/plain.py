@@ -122,10 +122,12 @@ def rows_of(frame: Any, field: str) -> list[dict[Any, Any]]:
     if any(name is not None for name in getattr(getattr(frame, "index", None), "names", ())):
         frame = frame.reset_index()  # an index with a name holds values as columns do
     heads = list(frame.columns)
-    if several := next((head for head in heads if isinstance(head, tuple)), None):
+    several = next((head for head in heads if isinstance(head, tuple)), None)
+    if several:
         allowed = "heads of columns that are texts"
         raise InputError(field, str(several), allowed, "Write frame.columns = [...] with one text a column.")
-    if doubled := next((head for head in heads if heads.count(head) > 1), None):
+    doubled = next((head for head in heads if heads.count(head) > 1), None)
+    if doubled:
         raise InputError(field, str(doubled), "each column once; it stands twice", "Rename or drop one of the two.")
     return frame.to_dicts() if hasattr(frame, "to_dicts") else frame.to_dict("records")
 

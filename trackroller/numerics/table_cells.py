@@ -264,7 +264,8 @@ def split_head(head: str) -> tuple[str, str]:
     (('radial_force', 'kN'), ('velocity', 'm/min'), ('friction_coefficient', '-'))
     """
     for pattern in _HEADS:
-        if parts := pattern.fullmatch(head.strip()):
+        parts = pattern.fullmatch(head.strip())
+        if parts:
             return parts[1].strip(" /,"), unbracketed(parts[2])
     return head.strip(), ""
 
@@ -287,7 +288,7 @@ def _parts(text: str) -> _Parts | None:
     if found is None:
         return None
     sign, mantissa, rest = found[1], found[2].rstrip(" "), found[3]
-    blank = " " * (len(found[2]) > len(mantissa))
+    blank = " " if len(found[2]) > len(mantissa) else ""
     exponent = None if blank else _EXPONENT.match(rest)
     if not exponent and not blank and ("." in mantissa or "," in mantissa):  # Fortran's 1.5D3; 5d3 is no number
         exponent = re.match(r"[dD](\d+)()", rest, re.ASCII)
@@ -298,7 +299,8 @@ def _parts(text: str) -> _Parts | None:
     rest = blank + rest
     if mantissa.isdigit():
         return _Parts(sign, mantissa, "", "", True, rest)
-    if grouped := _GROUPED.fullmatch(mantissa):
+    grouped = _GROUPED.fullmatch(mantissa)
+    if grouped:
         mark, decimal, decimals = grouped[1], grouped[2], grouped[3]
         digits = mantissa[: grouped.start(2)] if decimal else mantissa
         if mark in ".," and not decimal and digits.count(mark) == 1:  # thousands or three decimals

@@ -59,7 +59,8 @@ def without_units(text: str, unit_of: Callable[[str], str | None], field: str) -
 
     def plain(found: re.Match[str]) -> str:
         name, sign, number, unit = found.groups()
-        end = ")" * (unit.endswith(")") and "(" not in unit)  # of the comparison, not of the unit
+        closes = unit.endswith(")") and "(" not in unit  # the bracket is one of the comparison, not of the unit
+        end = ")" if closes else ""
         unit = unit.removesuffix(end)
         wanted = unit_of(name)
         if wanted is None:  # whoever reads the text refuses the name

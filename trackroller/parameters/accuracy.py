@@ -120,7 +120,8 @@ class Tolerance:
                 best = ", ".join(f"{key}: {max(SMALLEST[key], number):g}" for key, number in asked.items())
                 allowed = f"{SMALLEST[name]:g} or more for {name}, which the finest rung keeps in most cases"
                 raise InputError("accuracy", value, allowed, f"Write accuracy: {{{best}}}, or take 'reference'.")
-        if not peaks and (extra := [name for name in ("peak", "life") if name in asked]):
+        extra = [name for name in ("peak", "life") if name in asked]
+        if extra and not peaks:
             remedy = f"Leave {extra[0]} out, or add peak_stress or life to outputs."
             raise InputError("accuracy", extra[0], "a tolerance of a quantity that is computed", remedy)
         return cls(**asked)

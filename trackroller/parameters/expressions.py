@@ -309,8 +309,9 @@ class _Evaluation:
             number = math.inf
         written = ast.get_source_segment(self.text.strip(), node) or ""
         if math.isinf(number) or (number == 0 and re.search("[1-9]", re.split("[eE]", written)[0])):
-            size = "large" if number else "small"
-            raise self.refused(node, f"a number too {size} for the computer", "Write inf for infinity." * bool(number))
+            if number:
+                raise self.refused(node, "a number too large for the computer", "Write inf for infinity.")
+            raise self.refused(node, "a number too small for the computer", "")
         return number
 
     def logic(self, node: ast.AST) -> _Truth:
@@ -325,8 +326,10 @@ class _Evaluation:
                 sides = [self.value(part) for part in (left, *rest)]
                 held = [self.compared(*part, node) for part in zip(ops, sides, sides[1:], strict=False)]
                 return self.joined(np.logical_and, held)  # a part of constants has another shape
-            case ast.Call() if error := unknown_function(node, FUNCTIONS, self.field):
-                raise error
+            case ast.Call():
+                error = unknown_function(node, FUNCTIONS, self.field)
+                if error:
+                    raise error
         raise self.refused(node, *not_allowed(node))
 
     def joined(self, join: Any, parts: list[_Truth]) -> _Truth:

@@ -137,8 +137,9 @@ class Option:
 
     def _word(self, value: Any, where: str) -> str:
         if not isinstance(value, str) or value not in self.values:
-            if self.name == "outputs" and (how := hint(value)):
-                raise InputError(where, value, self.allowed(), how)
+            remedy = hint(value) if self.name == "outputs" else ""
+            if remedy:
+                raise InputError(where, value, self.allowed(), remedy)
             number = ("a relative tolerance such as 0.01",) * (self.kind == "accuracy")
             raise unknown_name(where, value, (*self.values, *number))
         return value

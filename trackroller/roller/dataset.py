@@ -317,7 +317,8 @@ def joined(blocks: Iterable[xr.Dataset]) -> xr.Dataset:
     dims = {dim for block in blocks for dim in block.dims} - {"case"}
     sizes = {dim: max(block.sizes.get(dim, 0) for block in blocks) for dim in dims}
     for i, block in enumerate(blocks):
-        if short := {dim: (0, n - block.sizes[dim]) for dim, n in sizes.items() if block.sizes.get(dim, n) < n}:
+        short = {dim: (0, n - block.sizes[dim]) for dim, n in sizes.items() if block.sizes.get(dim, n) < n}
+        if short:
             blocks[i] = block.pad(short)
     import xarray as xr  # heavy, and modules that only read `VARIABLES` do not need it
 

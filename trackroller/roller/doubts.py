@@ -213,12 +213,14 @@ def _of_points(name: str, profile: Mapping[str, Any], guide_radius: float) -> li
 def _gaps_and_waves(points: np.ndarray, found: Findings) -> list[str]:
     """Return sentences about a length without points, and about waves that count as shape."""
     sentences, (x, z) = [], points.T
-    if (place := gap(x)) is not None:
+    place = gap(x)
+    if place is not None:
         sentences.append(
             f"no points lie between x = {x[place]:.4g} and {x[place + 1]:.4g} mm, and their usual distance is "
             f"{found.spacing:.2g} mm; the curve there is only guessed. Measure this part if the bodies touch there."
         )
-    if (wave := waves(x, z, found.scatter)) is not None and not found.runs:
+    wave = waves(x, z, found.scatter)
+    if wave is not None and not found.runs:
         height = f"{1e3 * wave.height:.2g}"
         sentences.append(
             f"its curvature goes to and fro {wave.turns} times, as waves of ± {height} µm and {wave.length:.2g} mm "

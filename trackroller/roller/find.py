@@ -94,7 +94,8 @@ class Found:
             return " ".join([f"No {words} between {tried} meets '{self.condition}': {self.below}", *self.notes])
         inside = self.low <= self.start <= self.high
         said = f"'{self.condition}' is met from {self.low:.6g} to {self.high:.6g}{unit} of {words}"
-        said += f" (now {self.start:g}{unit}{', where it is not met' * (not inside)})."
+        outside = "" if inside else ", where it is not met"
+        said += f" (now {self.start:g}{unit}{outside})."
         for end, why in ((f"Below {self.low:.6g}", self.below), (f"Above {self.high:.6g}", self.above)):
             said += f" {end}{unit}: {why}" if why else ""
         if not (self.below and self.above):
@@ -273,7 +274,8 @@ class _Search:
         if lacking:
             raise InputError("find", self.condition, f"results of this roller; it has no {', '.join(lacking)}")
         for one in self.results:
-            if (low := PARTS.get(f"{one}_low")) is not None and low.variable.name in ds:
+            low = PARTS.get(f"{one}_low")
+            if low is not None and low.variable.name in ds:
                 self.ranged |= {one} if (low.values(ds).values < columns[one] * (1.0 - ROUNDING)).any() else set()
         regime = ds["regime"].values
         columns["regime"] = np.array(REGIMES, dtype=object)[regime]

@@ -138,7 +138,8 @@ def placeholders_of(ds: xr.Dataset) -> list[Placeholder]:
     """Return the placeholders of materials on which the limits of a result rest."""
     out = []
     for note in notes_of(ds):
-        if (found := _PLACEHOLDERS.fullmatch(note)) is not None:
+        found = _PLACEHOLDERS.fullmatch(note)
+        if found is not None:
             for one in _VALUE.finditer(found["values"]):
                 low, high = (float(one[end]) if one[end] else np.nan for end in ("low", "high"))
                 texts = found["limit"], found["material"], one["name"], one["note"] or ""

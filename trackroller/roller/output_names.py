@@ -94,7 +94,9 @@ def parts_of(variable: Variable, limits: Iterable[Limit] = tuple(LIMITS.values()
     """
     if not set(variable.dims) <= set(PLACES):
         return
-    contacts = (("",) if variable.joined else ()) + CONTACTS if "contact" in variable.dims else ("",)
+    contacts: tuple[str, ...] = ("",)
+    if "contact" in variable.dims:
+        contacts = ("", *CONTACTS) if variable.joined else CONTACTS
     bodies = BODIES if "body" in variable.dims else ("",)
     places = itertools.product(bodies, contacts)
     for body, contact in sorted(places, key=lambda place: bool(place[1])):
@@ -143,4 +145,6 @@ def unit_of(name: str) -> str | None:
     """Return the unit of a result, of its variable, or of a parameter; None for any other name."""
     if name in PARTS:
         return PARTS[name].variable.units
-    return VARIABLES[name].units if name in VARIABLES else PARAMETERS[name].unit if name in PARAMETERS else None
+    if name in VARIABLES:
+        return VARIABLES[name].units
+    return PARAMETERS[name].unit if name in PARAMETERS else None

@@ -154,7 +154,8 @@ def _end(name: str, given: Any, where: str, duty: Mapping[str, float] | None) ->
             raise InputError(where, given, "years beside a duty, or hours of travel", EXAMPLE, "needs a duty")
         number = in_years / float(years(1.0, duty))
     else:
-        if parts := split_quantity(given):
+        parts = split_quantity(given)
+        if parts:
             check_hours(given, parts[1], unit or "", where)
         number = number_or_nan(given, unit, where)
     if not math.isfinite(number):

@@ -157,7 +157,8 @@ class _Record:
                     self._add(at, at, results, np.nan)
                 return self._joined(reason)
             turned = self.wearing.turned(at, results)
-            if before is not None and (goal := self._goal(before, turned)):
+            goal = None if before is None else self._goal(before, turned)
+            if goal:
                 end, place = goal
                 self._add(place, place, self.wearing.solve(place), np.nan)
                 return self._joined(end)

@@ -265,7 +265,8 @@ class Wearing:
         """Return the state after a step, its error over the allowed one, and why there is none."""
         full, half = (self._advanced(at, patches, part * step) for part in (1.0, 0.5))
         middle = self.solve(half)
-        if reason := self.end(middle):
+        reason = self.end(middle)
+        if reason:
             return None, np.inf, reason
         two = self._advanced(self.turned(half, middle), self._patches(middle, self.worn_table(half)), 0.5 * step)
         apart = np.abs(two.depth - full.depth).sum(axis=1)

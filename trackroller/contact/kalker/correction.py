@@ -129,18 +129,27 @@ class Correction:
 
     def _share(self, patch: Ellipse, slip: Slip, friction: np.ndarray, rows: np.ndarray) -> np.ndarray:
         """Return the share of the elements in the forces of patches inside the table, (m,), see `TABLE_SERVES`."""
+        unloading = self._unloading_shear(patch, slip, rows)
         with np.errstate(divide="ignore", invalid="ignore"):
-            error = table.stored().force_error("p99") * friction * patch.normal_force / self._turned(patch, slip, rows)
+            error = table.stored().force_error("p99") * friction * patch.normal_force / unloading
         return rise(np.nan_to_num(error), TABLE_SERVES)
 
-    def _turned(self, patch: Ellipse, slip: Slip, rows: np.ndarray) -> np.ndarray:
-        """Return the change of F_T in patches that changes F_N of the other contact by all of it, (m,) [N]."""
-        side, sign = _side(slip), np.sign(slip.sine)
+    def _unloading_shear(self, patch: Ellipse, slip: Slip, rows: np.ndarray) -> np.ndarray:
+        """Return the change of F_T in patches that changes F_N of the other contact by all of it, (m,) [N].
+
+        The normal forces of the patches are kept, because the other contact asks for them.
+        """
+        side = _side(slip)
+        other_side = 1 - side
         self.normal[rows, side] = patch.normal_force
-        other, own = self.normal[rows, 1 - side], self.ratio[rows, side]
-        beside = np.where(np.isnan(other), -own, self.ratio[rows, 1 - side])  # of mirror images only one is given
-        sine, normal = np.abs(slip.sine), np.where(np.isnan(other), patch.normal_force, other)
-        return np.abs(determinant(sine, slip.cosine, sign * own, sign * beside)) * normal
+        other_load = self.normal[rows, other_side]
+        is_alone = np.isnan(other_load)  # of two mirror images only one is given
+        own_ratio = self.ratio[rows, side]
+        other_ratio = np.where(is_alone, -own_ratio, self.ratio[rows, other_side])
+        other_load = np.where(is_alone, patch.normal_force, other_load)
+        sign = np.sign(slip.sine)
+        per_load = determinant(np.abs(slip.sine), slip.cosine, sign * own_ratio, sign * other_ratio)
+        return np.abs(per_load) * other_load
 
     def _learn(self, offset: np.ndarray, place: np.ndarray, rows: np.ndarray, side: np.ndarray) -> None:
         """Store the differences `offset` (m, 3) at the places of the slip, and their derivatives if known."""
@@ -193,7 +202,8 @@ class Correction:
         balance an error of F_T in one contact changes F_N of the other, see `stages.mechanics.force_error`.
         """
         value, force_error = solution.resultants.columns, solution.force_error.copy()
-        other, creep = self._turned(patch, slip, rows), Creepage.of_slip(slip, self.settings.profile_slip)
+        other = self._unloading_shear(patch, slip, rows)
+        creep = Creepage.of_slip(slip, self.settings.profile_slip)
 
         def solve_again(pick: np.ndarray, elements: int, start: np.ndarray | None = None) -> None:
             settings = dataclasses.replace(self.settings, elements=elements, tolerance=self.traction_tolerance)

@@ -72,7 +72,11 @@ class Rolling(NamedTuple):
 @compiled
 def _limited(value, low, high):
     """Return `value` between its limits; NaN stays NaN."""
-    return low if value < low else (high if value > high else value)
+    if value < low:
+        return low
+    if value > high:
+        return high
+    return value
 
 
 @compiled

@@ -220,8 +220,11 @@ def _look_up(first, last, patches, linear, forces, poisson, out):
     X/(3 + r), and `held` (n,) whether the patch is in the range. `out` are these three arrays.
     """
     unit, place, held = out
-    at, basis, more = np.empty(4), np.empty((4, 4)), np.empty(2 * len(FIELDS))
-    line, wide = np.empty(4 * len(FIELDS)), np.empty(8 * len(FIELDS))
+    at = np.empty(4)  # coordinates of the table
+    basis = np.empty((4, 4))
+    by_poisson = np.empty(2 * len(FIELDS))  # first and second change of each field with Poisson's ratio
+    line = np.empty(4 * len(FIELDS))
+    wide = np.empty(8 * len(FIELDS))
     for i in range(first, last):
         held[i] = in_range(patches.rolling[i] / patches.lateral[i])
         g, x, y, z = coordinates(patches, i, linear)
@@ -231,17 +234,23 @@ def _look_up(first, last, patches, linear, forces, poisson, out):
             unit[i] = np.nan
             continue
         # If both creepages and K change their signs, the tractions do so as well.
-        turned = -1.0 if z < 0.0 or (z == 0.0 and x < 0.0) else 1.0
+        sign = 1.0
+        if z < 0.0 or (z == 0.0 and x < 0.0):
+            sign = -1.0
         rho = r / (r + HALF_WAY)
-        at[0], at[1] = rho, math.atan2(abs(z), math.sqrt(x * x + y * y))
-        at[2], at[3] = math.atan2(turned * x, abs(y)), math.log(g)
+        at[0] = rho
+        at[1] = math.atan2(abs(z), math.sqrt(x * x + y * y))
+        at[2] = math.atan2(sign * x, abs(y))
+        at[3] = math.log(g)
         evaluate(forces, at, basis, line, unit[i])
-        evaluate(poisson, at, basis, wide, more)
+        evaluate(poisson, at, basis, wide, by_poisson)
         change = patches.poisson_ratio[i] - POISSON
         for k in range(4):
-            unit[i, k] += change * (more[k] + change * more[4 + k])
+            unit[i, k] += change * (by_poisson[k] + change * by_poisson[4 + k])
         # A reflection of x changes the signs of the spin, of F_T and of M_R, and keeps F_A.
-        across = rho * (y / r if r > 0.0 else 0.0)
+        across = 0.0
+        if r > 0.0:
+            across = rho * (y / r)
         unit[i, 0] *= across
-        unit[i, 1] *= rho * turned
+        unit[i, 1] *= rho * sign
         unit[i, 2] *= across
