@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 import trackroller as tr
-from trackroller.fit.bench import check_same, solved_rollers, travels_to_depths
+from trackroller.fit.bench import travels_to_depths
+from trackroller.fit.solved_rollers import check_same, solved_rollers
 from trackroller.roller.case import Case
 
 RIG = {"motor_force": 0, "friction_coefficient": 0.1, "axial_force": 20, "contact_model": "sliding"}

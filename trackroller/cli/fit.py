@@ -51,7 +51,7 @@ def _finish(made: Fit, file: Path, replace: bool, page: Path | None) -> None:
     """Print what was fitted, and write material, posterior and page."""
     from trackroller.cli.case import writable_page
     from trackroller.materials.file import slug
-    from trackroller.report.pages.fit import sentences
+    from trackroller.report.pages.fit import sentences, write_fit
 
     target = writable_page(page or Path(f"fit-{slug(made.name)}.html"))
     for text in [*sentences(made), *made.not_given]:
@@ -60,7 +60,7 @@ def _finish(made: Fit, file: Path, replace: bool, page: Path | None) -> None:
         file.parent.mkdir(parents=True, exist_ok=True)
         made.write(file, replace=replace)
         print(f"material '{made.name}' is in {file}")
-    made.report(target)
+    write_fit(made, target)
     print(f"page: {target}")
 
 

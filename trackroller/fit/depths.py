@@ -9,8 +9,9 @@ from typing import Any
 import numpy as np
 
 from trackroller.errors import InputError, check_names
-from trackroller.fit.bench import DEFAULTS, not_given_notes, wear_group, worn_alone
+from trackroller.fit.bench import not_given_notes, wear_group, worn_alone
 from trackroller.fit.fitted import Fit
+from trackroller.fit.solved_rollers import DEFAULTS
 from trackroller.fit.table import LEAST, read_tests
 from trackroller.parameters import BODIES
 from trackroller.roller.settings import checked_case

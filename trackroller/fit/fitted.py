@@ -15,8 +15,10 @@ from scipy.special import ndtri
 
 from trackroller.errors import InputError, check_names, listing
 from trackroller.files import write_whole
+from trackroller.fit import SHOWN
 from trackroller.fit.line import Interval, Line
 from trackroller.fit.posterior import Normal, Posterior, ln_range, log_strength, posterior
+from trackroller.fit.solved_rollers import worst_stress
 from trackroller.fit.table import TestTable
 from trackroller.materials import Material, add_material
 from trackroller.materials.file import posterior_path
@@ -150,6 +152,8 @@ class Group:
 @dataclass(frozen=True)
 class Fit:
     """Values of a material from tests; `trackroller.fit_sn` and `trackroller.fit_bench` make it.
+
+    `trackroller.report(fit, path)` writes its page; `fit.report(path)` is the same.
 
     Parameters
     ----------
@@ -364,8 +368,6 @@ class Fit:
         InputError
             If the design does not roll, or has another contact model, life criterion or accuracy than the fit.
         """
-        from trackroller.fit.bench import worst_stress
-
         stress, per_hour = worst_stress(design, self.given, self.name)
         found = self.group("fatigue").line.interval_of_life(math.log(stress), failure_probability, confidence)
         return Interval(*(float(np.exp(end)) / per_hour for end in found))
@@ -436,23 +438,9 @@ class Fit:
         """Return whether the fit has a group of this kind."""
         return any(own.kind == kind for own in self.groups)
 
-    def report(self, path: Path | str) -> Path:
-        """Write the page of the fit as one HTML file that stands alone, or as PDF by the name of the file.
 
-        Parameters
-        ----------
-        path : Path or str
-            The file to write.
-
-        Returns
-        -------
-        Path
-            The file.
-        """
-        from trackroller.report.pages.fit import write_fit
-
-        return write_fit(self, path)
-
+for _name, _method in SHOWN.items():
+    setattr(Fit, _name, _method)
 
 ENTRY = ("fatigue_limit", "woehler_exponent", "scatter_in_cycles", "scatter_in_stress", "wear_coefficient")
 

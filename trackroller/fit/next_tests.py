@@ -19,10 +19,10 @@ import xarray as xr
 from scipy.special import log_ndtr
 
 from trackroller.errors import InputError
-from trackroller.fit.bench import check_same, solved_rollers
 from trackroller.fit.fitted import Fit, Group
 from trackroller.fit.line import Line, Tests, Values
 from trackroller.fit.posterior import Posterior
+from trackroller.fit.solved_rollers import check_same, solved_rollers
 from trackroller.numerics.numbers import number_or_nan
 from trackroller.parameters import BODIES, PARAMETERS
 from trackroller.roller.case import Case, to_table

@@ -11,9 +11,9 @@ from typing import Any
 
 from trackroller.errors import Collector, InputError, unknown_name
 from trackroller.files import noted_reads
-from trackroller.numerics.cells import split_head
 from trackroller.numerics.numbers import number_or_nan
 from trackroller.numerics.plain import rows_of
+from trackroller.numerics.table_cells import split_head
 from trackroller.numerics.units import PLAIN, in_unit
 from trackroller.study.file.user_columns import UNITS, read_table
 

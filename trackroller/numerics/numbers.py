@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from trackroller.errors import InputError
-from trackroller.numerics.cells import plain_quantity
+from trackroller.numerics.table_cells import plain_quantity
 from trackroller.numerics.units import in_unit, split_quantity
 
 _TEXT = re.compile(r"[-+]?(?:(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?|\.?(?:inf|Inf|INF)|infinity)", re.ASCII)

@@ -17,8 +17,8 @@ import numpy as np
 from trackroller.contact.profiles import PointRows
 from trackroller.errors import Collector, InputError
 from trackroller.files import find_beside, read_bytes, text_of
-from trackroller.numerics.cells import Refused
 from trackroller.numerics.numbers import number_or_nan
+from trackroller.numerics.table_cells import Refused
 from trackroller.roller.simpack_profile import is_simpack, simpack_points
 from trackroller.tables.kind import TableKind
 from trackroller.tables.user_table import UserTable, read_user_table

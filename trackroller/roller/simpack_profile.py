@@ -10,8 +10,8 @@ import numpy as np
 
 from trackroller.contact.profiles import PointRows
 from trackroller.errors import InputError
-from trackroller.numerics.cells import plain_cell
 from trackroller.numerics.numbers import number_or_nan
+from trackroller.numerics.table_cells import plain_cell
 
 _SECTION = re.compile(r"\s*(header|spline|point)\.(begin|end)\s*", re.IGNORECASE)
 _EXPORT = "Export the points as two columns of text, such as `x [mm]; z [mm]`."

@@ -13,7 +13,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from trackroller.errors import InputError
-from trackroller.numerics.cells import SEPARATORS, Refused, is_number, stated_separator
+from trackroller.numerics.table_cells import SEPARATORS, Refused, is_number, stated_separator
 
 BLANK = " "
 _QUOTED = re.compile(r'"[^"]*"')

@@ -26,7 +26,8 @@ from pathlib import Path
 
 from trackroller.errors import Collector, InputError, listing
 from trackroller.files import read_bytes, text_of
-from trackroller.numerics.cells import (
+from trackroller.numerics.numbers import number_or_nan
+from trackroller.numerics.table_cells import (
     Refused,
     Stored,
     decimal_signs,
@@ -35,7 +36,6 @@ from trackroller.numerics.cells import (
     plain_labels,
     unbracketed,
 )
-from trackroller.numerics.numbers import number_or_nan
 from trackroller.numerics.units import PLAIN, in_unit, split_quantity
 from trackroller.tables.csv import csv_lines
 from trackroller.tables.heads import (

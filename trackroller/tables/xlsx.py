@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from trackroller.errors import InputError, raise_all
-from trackroller.numerics.cells import Refused, Stored
+from trackroller.numerics.table_cells import Refused, Stored
 
 MAX_UNPACKED = 25_000_000  # bytes of all parts: openpyxl needs some twenty times as much memory
 MAX_CELLS = 500_000  # also empty ones between others

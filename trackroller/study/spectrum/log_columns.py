@@ -14,8 +14,8 @@ import pandas as pd
 
 from trackroller.errors import Collector, InputError
 from trackroller.files import opened
-from trackroller.numerics.cells import Refused, decimal_signs, plain_column
 from trackroller.numerics.numbers import number_or_nan
+from trackroller.numerics.table_cells import Refused, decimal_signs, plain_column
 from trackroller.numerics.units import in_unit, split_quantity
 from trackroller.roller.log_answers import LogAnswers
 from trackroller.study.file.user_columns import read_table
