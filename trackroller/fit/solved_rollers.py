@@ -98,6 +98,16 @@ def solved_rollers(cases: Sequence[Case], options: Mapping[str, Any]) -> Solved:
     return Solved(stresses, np.broadcast_to(per_km, shape), np.broadcast_to(per_hour, shape), regime, flags)
 
 
+def fields_of(design: Any, field: str = "design") -> dict[str, Any]:
+    """Return the fields of a case, or of a mapping of fields and options; refuse other values."""
+    if isinstance(design, Case):
+        return {name: getattr(design, name) for name in FIELDS}
+    if not isinstance(design, Mapping):
+        remedy = "Write tr.Case(...), or a mapping such as {'radial_force': -150}."
+        raise InputError(field, design, "a case, or a mapping with fields of a case and options", remedy)
+    return dict(design)
+
+
 def worst_stress(design: Any, given: Mapping[str, str], name: str) -> tuple[float, float]:
     """Return the stress of a design that decides its life [MPa], and its overrollings per hour [1/h].
 
@@ -110,8 +120,7 @@ def worst_stress(design: Any, given: Mapping[str, str], name: str) -> tuple[floa
     name : str
         Name of the fit, for messages.
     """
-    values = {n: getattr(design, n) for n in FIELDS} if isinstance(design, Case) else dict(design)
-    case, options, _ = checked_case(values)
+    case, options, _ = checked_case(fields_of(design))
     check_same(given, options, name)
     solved = solved_rollers([case], {key: value for key, value in options.items() if key != "outputs"})
     body = BODIES.index(given.get("body", "roller"))

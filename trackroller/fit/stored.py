@@ -143,7 +143,13 @@ def _read(path: Path, name: str, changed: int) -> tuple[StoredFit, tuple[float, 
         return None
     held = {key: ds.attrs.get(f"fatigue_held_{key}") for key in ("slope", "scatter")}
     tests = Tests(*(ds[f"fatigue_test_{part}"].values for part in ("stress", "low", "high")))
-    line = Line(tests, slope=held["slope"], scatter=held["scatter"], knee=bool(ds.attrs["fatigue_knee"]))
+    line = Line(
+        tests,
+        slope=held["slope"],
+        scatter=held["scatter"],
+        knee=bool(ds.attrs["fatigue_knee"]),
+        specimens=int(ds.attrs["fatigue_tests"]),
+    )
     names = {n: n.removeprefix("fatigue_") for n in map(str, ds.data_vars) if n.startswith("fatigue_")}
     own = Posterior.from_dataset(ds[list(names)].rename(names))
     given = {key.removeprefix(HOLDS): str(value) for key, value in ds.attrs.items() if key.startswith(HOLDS)}

@@ -5,10 +5,13 @@ The module itself can be called: `trackroller.report` is both the room of the re
 
 from __future__ import annotations
 
+import os
 import sys
 from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING
+
+from trackroller.errors import InputError
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -39,7 +42,8 @@ def write(result: xr.Dataset | Results | Fit, path: Path | str) -> Path:
     Raises
     ------
     InputError
-        If `result` is none of these, such as the data set of several cases that belong to no study.
+        If `result` is none of these, such as the data set of several cases that belong to no study, or if `path` is no
+        path.
 
     Examples
     --------
@@ -50,6 +54,8 @@ def write(result: xr.Dataset | Results | Fit, path: Path | str) -> Path:
     """
     import xarray as xr
 
+    if not isinstance(path, (str, os.PathLike)):
+        raise InputError("report", path, "the path of a page", "Write a name such as sheet.html.")
     if isinstance(result, xr.Dataset) and "study" not in result.attrs:
         return _write_without_study(result, path)
 

@@ -170,12 +170,12 @@ def _named_columns_of(lines: Iterable[Row], separator: str, used: Collection[str
     return table
 
 
-def head_names(content: bytes, path: Path, kind: TableKind) -> list[str]:
-    """Return the names of the columns of a table; [] for an empty one."""
+def head_names(content: bytes, path: Path, kind: TableKind) -> tuple[int, list[str]]:
+    """Return the number of the line of names in a table, and the names; [] for an empty one."""
     lines, _ = _file_lines(content, path, kind, HEAD_ROWS)
     number, heads, _ = split_lines(until_names(lines), kind)
     with Source(path, kind, Collector()).in_line(number):
-        return head_names_and_units([head for head in heads if head], (), kind)[0]
+        return number, head_names_and_units([head for head in heads if head], (), kind)[0]
 
 
 def is_workbook(path: Path) -> bool:
@@ -470,7 +470,7 @@ def _check_cells(table: UserTable, source: Source) -> None:
         if name not in optional and table.lines and not any(table.column(j)):
             optional.add(name)
             allowed = "a value in each line; all cells are empty"
-            source.refuse(table.head, name, None, allowed, "Remove the column.")
+            source.refuse(table.head, name, None, allowed, "Fill the cells, or remove the column.")
     for number, name, cell in table.cells():
         if not cell and name not in optional:
             remedy = "Fill the cell, or remove the line."

@@ -65,5 +65,10 @@ def read_table(
 
 def column_names(path: Path, field: str) -> list[str]:
     """Return the names of the columns of a table; [] for an empty one."""
+    return line_of_names(path, field)[1]
+
+
+def line_of_names(path: Path, field: str) -> tuple[int, list[str]]:
+    """Return the number of the line of names in a table, and the names; [] for an empty one."""
     kind = TableKind(field, "case", UNITS, WORDS, ALIASES)
     return head_names(read_bytes(path, field, math.inf), path, kind)
