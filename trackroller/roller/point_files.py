@@ -20,7 +20,7 @@ from trackroller.files import find_beside, read_bytes, text_of
 from trackroller.numerics.numbers import number_or_nan
 from trackroller.numerics.table_cells import Refused
 from trackroller.roller.simpack_profile import is_simpack, simpack_points
-from trackroller.tables.kind import TableKind
+from trackroller.tables.table_kind import TableKind
 from trackroller.tables.user_table import UserTable, read_user_table
 
 AXES = {"x": "mm", "y": "mm", "z": "mm"}

@@ -37,8 +37,7 @@ from trackroller.numerics.table_cells import (
     unbracketed,
 )
 from trackroller.numerics.units import PLAIN, in_unit, split_quantity
-from trackroller.tables.csv import csv_lines
-from trackroller.tables.heads import (
+from trackroller.tables.column_heads import (
     check_head,
     check_unit,
     head_names_and_units,
@@ -48,7 +47,8 @@ from trackroller.tables.heads import (
     split_lines,
     until_names,
 )
-from trackroller.tables.kind import Row, Source, TableKind
+from trackroller.tables.csv import csv_lines
+from trackroller.tables.table_kind import Row, Source, TableKind
 from trackroller.tables.totals import total_lines, value_of
 from trackroller.tables.xlsx import sheet_lines
 

@@ -11,7 +11,7 @@ from trackroller.errors import Collector
 from trackroller.files import read_bytes
 from trackroller.parameters import MATERIAL_FIELDS, PARAMETERS
 from trackroller.roller.aliases import ALIASES
-from trackroller.tables.kind import TableKind
+from trackroller.tables.table_kind import TableKind
 from trackroller.tables.user_table import UserTable, head_names, read_user_table
 
 # numbers of tables of tests, beside the parameters

@@ -12,7 +12,7 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from trackroller.errors import Collector, InputError, listing
 from trackroller.numerics.table_cells import Refused, is_number, plain_quantity, split_head
 from trackroller.numerics.units import PLAIN, in_unit, split_quantity
-from trackroller.tables.kind import Row, Source, TableKind
+from trackroller.tables.table_kind import Row, Source, TableKind
 from trackroller.tables.totals import value_of
 from trackroller.tables.xlsx import MAX_COLUMNS
 
