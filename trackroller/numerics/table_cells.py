@@ -13,6 +13,7 @@ Examples
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Collection, Iterable, Sequence
 from typing import NamedTuple
@@ -241,6 +242,8 @@ def _reads_back(text: str) -> bool:
     try:
         number = float(text)
     except ValueError:
+        return False
+    if not math.isfinite(number):
         return False
     return text == repr(number) or (number.is_integer() and text == str(int(number)))
 
