@@ -21,7 +21,7 @@ Keys of `Answer.headline`; a key that is missing, None, NaN or empty is left out
 `not_judged`       {count, of, where}: the same for conditions that the model cannot judge
 `elsewhere`        whether the leader holds all other conditions, so that the headline says "elsewhere"
 `exceeded`         {limit, body, use [1], hours}: the worst check of the leader above 100 %
-`second`           {limit, verdict}: second model ("the rating") that turns the leader's verdict; a state of `STATES`
+`second`           {limit, verdict}: second model ("rating") that turns the leader's verdict; a state of `STATES`
 `measure`          {what, of, on, turn, units, low, high}: placeholder, its body, the other one, where the leader turns
 `give`             {what}: load that was not given, in words: "the motor force"
 `nearest`          {name (as one of `names`), holds, of, meets, low, fails}: `fails` says where it fails, in words
@@ -639,7 +639,7 @@ def _other_rules(head: Mapping[str, Any]) -> list[str]:
     second = head.get("second")
     if second:
         verb = {"met": "meets", "open": "leaves it open", "missed": "misses", "none": "does not judge"}
-        clauses.append(f"{second['limit']} {verb[second['verdict']]}")
+        clauses.append(f"the {second['limit']} {verb[second['verdict']]}")
     exceeded = head.get("exceeded")
     if exceeded:
         clauses.append(f"{exceeded['limit']} exceeded ({percent(exceeded['use'])})")

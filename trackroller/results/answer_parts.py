@@ -12,7 +12,7 @@ from trackroller.damage import LIMITS
 from trackroller.parameters import BODIES, PARAMETERS
 from trackroller.parameters.of_carriage import long_name_of
 from trackroller.results.answer import Caution
-from trackroller.results.candidate_table import title_of
+from trackroller.results.candidate_table import word_of
 from trackroller.results.candidates import slip_margin
 from trackroller.results.case_ranges import CaseRanges
 from trackroller.results.columns import codes
@@ -82,9 +82,9 @@ def checks_left_out(results: Results) -> dict[str, tuple[str, ...]]:
                 continue
             hit = known.get(name, np.zeros((len(rows), len(BODIES)), dtype=bool))[rows, place]
             if not hit.any():
-                found[body].append(limit.title)
+                found[body].append(limit.word)
             elif not hit.all():
-                found[body].append(f"{limit.title} ({int((~hit).sum()):,} of {len(hit):,} cases)")
+                found[body].append(f"{limit.word} ({int((~hit).sum()):,} of {len(hit):,} cases)")
     return {body: tuple(names) for body, names in found.items()}
 
 
@@ -121,7 +121,7 @@ def given_for_nothing(results: Results) -> dict[str, str]:
     unknown = names_not_given(results.data.attrs)
     idle = given_in_vain(results.config.base, unchecked_names(results))
     return {
-        name: "needed by " + " and ".join(title_of(one) for one in limits)
+        name: "needed by " + " and ".join(word_of(one) for one in limits)
         for name, limits in idle.items()
         if name not in unknown
     }
@@ -217,7 +217,7 @@ def case_cautions(results: Results, ranges: CaseRanges, rows: np.ndarray) -> lis
     unknown = rows & ~ranges.judged
     for code, hit in (("not_held", lost), ("not_judged", unknown)):
         if hit.any():
-            reasons = pd.Series(ranges.reason[hit]).map(lambda word: title_of(str(word).removeprefix("limit ")))
+            reasons = pd.Series(ranges.reason[hit]).map(lambda word: word_of(str(word).removeprefix("limit ")))
             counts = ", ".join(f"{word} {count:,}" for word, count in reasons.value_counts().items())
             where = where_text(results, hit, rows)
             found.append(Caution(code, int(hit.sum()), total, f"{counts}: {where}" if where else counts))

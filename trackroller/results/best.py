@@ -24,7 +24,7 @@ from trackroller.results.answer_parts import (
     given_for_nothing,
     not_given_words,
 )
-from trackroller.results.candidate_table import title_of
+from trackroller.results.candidate_table import word_of
 from trackroller.results.case_ranges import CaseRanges
 from trackroller.results.comparison import wilson
 from trackroller.results.judging import (
@@ -476,7 +476,7 @@ def _missed(found: _Found, number: int) -> str:
     if not causes:
         return ""
     cause = causes.most_common(1)[0][0]
-    return REASONS.get(cause, title_of(cause.removeprefix("limit ")))
+    return REASONS.get(cause, word_of(cause.removeprefix("limit ")))
 
 
 def _at_ends(found: _Found, number: int) -> list[str]:

@@ -14,6 +14,7 @@ from typing import Any
 
 from markupsafe import Markup
 
+from trackroller.damage import judged
 from trackroller.report.headlines import WARNING_HEADS, headline_of, warning_rows
 from trackroller.report.numbers import count, long_name, on_duty, plain
 from trackroller.report.pictures import curves
@@ -75,7 +76,7 @@ def screen_of(answer: Answer) -> dict[str, Any]:
     dict
         `title`, `description`, `facts`, `headline`, `table`, `others` (columns that do not fit), `transposed`,
         `shared`, `picture`, `effects`, `effects_first`, `effects_caption`, `map`, `not_checked`, `not_used`,
-        `not_given`, `warnings`, `ends`, `definitions`, `download`.
+        `not_given`, `warnings`, `ends`, `definitions`, `limits` (their words and what they mean), `download`.
     """
     with on_duty(answer.facts.get("duty")):
         picture = picture_of(answer)
@@ -103,6 +104,7 @@ def screen_of(answer: Answer) -> dict[str, Any]:
             "warnings": warnings_of(answer),
             "ends": ends_table(answer),
             "definitions": list(definitions(answer)),
+            "limits": [(limit.word, limit.title) for limit in judged() if limit.word != limit.title],
             "download": download_of(answer),
         }
 
