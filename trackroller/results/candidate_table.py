@@ -396,7 +396,7 @@ def _exceeded(own: Comparison) -> dict[str, Any]:
             continue
         limit, body = divmod(int(place[row]), len(BODIES))
         out["exceeded"].append(f"{word_of(names[limit])} of the {BODIES[body]} {100 * worst[row]:.3g} %")
-        out["exceeded_by"].append(names[limit])
+        out["exceeded_by"].append(word_of(names[limit]))
         out["exceeded_body"].append(BODIES[body])
         out["use"].append(float(worst[row]))
         out["use_hours"].append(np.nan if hours is None else float(hours[row, limit, body]))
