@@ -6,13 +6,12 @@ import shutil
 
 import numpy as np
 import pytest
+from limit_rows import limit_row, part_of
 
 import trackroller as tr
 from trackroller.fit.stored import stored_fit
 from trackroller.materials import load_database
-from trackroller.report.numbers import rounded
-from trackroller.report.pages.sheet import collect
-from trackroller.report.words.by_tests import by_tests
+from trackroller.results.roller_answer import answer_of_roller, beyond_tests
 from trackroller.study.file.load import parse_study
 from trackroller.study.run import run_study
 from trackroller.study.store.folder import StudyFolder
@@ -40,28 +39,29 @@ def test_the_sheet_states_the_band_beside_the_life_and_the_extrapolation(rig):
         tr.solve(case | {"radial_force": force}, contact_model="sliding", outputs=("forces", "life", "limits"))
         for force in (-160, -60)
     )
-    assert by_tests(near) == []
-    (said,) = by_tests(far)
-    assert "is an extrapolation" in said
+    assert beyond_tests(near) == []
+    (said,) = beyond_tests(far)
+    assert said.startswith("life of the roller: ") and "tests from" in said
     for ds, force, beyond in ((near, -160, False), (far, -60, True)):
-        facts = collect(ds)
-        rows = {row.words: row.value for row in facts.lives if "by the 6 tests of rig steel" in row.words}
-        assert len(rows) == 2
+        answer = answer_of_roller(ds)
+        lives = part_of(answer, "lives")
+        rows = lives[lives["basis"] == "90 % by the 6 tests of rig steel"]
+        assert rows["probability"].tolist() == [0.1, 0.5]
         stress = float(tr.solve(case | {"radial_force": force}, contact_model="sliding").peak_stress[:, 0].max())
         per_hour = float((ds["life_cycles"] / ds["life_hours"]).sel(body="roller").max())
-        for probability, text in zip((0.1, 0.5), rows.values(), strict=True):
-            ends = rig.interval("cycles", amplitude=stress, failure_probability=probability)
+        for row in rows.itertuples():
+            ends = rig.interval("cycles", amplitude=stress, failure_probability=row.probability)
             low, high = (end / per_hour for end in ends)
-            assert text.startswith(f"{rounded(low, 2)} to {rounded(high, 2)} h")
-            assert ("beyond the S-N data" in text) == beyond
-        fatigue = next(margin for margin in facts.margins if "fatigue" in margin.title and margin.body == "roller")
-        assert (fatigue.low, fatigue.high) == pytest.approx((low, high))  # of the median
-        assert f"{rounded(low)} to {rounded(high)} h" in facts.verdict
-        assert ("beyond the S-N data" in facts.verdict) == beyond
+            assert (row.low, row.high) == pytest.approx((low, high))
+            assert (row.extrapolated == "yes") == beyond
+        fatigue = limit_row(answer, "fatigue", "roller")
+        assert (fatigue["low"], fatigue["high"]) == pytest.approx((low, high))  # of the median
+        assert (answer.headline["low"], answer.headline["high"]) == pytest.approx((low, high))
+        assert answer.headline["extrapolated"] == beyond
 
 
 def test_the_sheet_refuses_values_of_another_contact_model(rig):
-    said = by_tests(tr.solve(RIG | {"roller_material": "rig steel"}, contact_model="kalker_table"))
+    said = beyond_tests(tr.solve(RIG | {"roller_material": "rig steel"}, contact_model="kalker_table"))
     assert said == [
         "The values of rig steel hold for contact_model sliding alone: solve with it, or fit the tests anew."
     ]

@@ -16,13 +16,17 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from trackroller.app.tables import limits_on_page, part_on_page
 from trackroller.damage import LIMITS
 from trackroller.errors import InputError
 from trackroller.report.figures.contact_outline import Patch, patches_of
 from trackroller.report.figures.roller_section import drawing
+from trackroller.report.headlines import headline_of
 from trackroller.report.numbers import head_unit, lives_in_years, on_duty
-from trackroller.report.pages.sheet import collect, render, write_sheet
+from trackroller.report.pages.blocks import warnings_of
+from trackroller.report.pages.sheet import render, sheet_inputs, write_sheet
 from trackroller.report.workbook import write_roller
+from trackroller.results.roller_answer import answer_of_roller
 from trackroller.roller.case import Case
 from trackroller.roller.find import find
 from trackroller.roller.record import given_inputs, solve_command
@@ -37,7 +41,6 @@ POINTS = 21  # cases of a curve
 LIVE = ("forces", "contact", "friction_work", "peak_stress", "life", "tractions")
 _JUDGED = tuple(dict.fromkeys(limit.group for limit in LIMITS.values() if limit.verdict is not None))
 _UNKNOWN = Limits((math.nan, math.nan), (math.nan, math.nan), math.nan)  # not searched, which takes up to 1 s
-DERIVED = ("share", "factor", "life", "when")  # properties of a margin that the page shows
 STILL = 0.01  # of the largest local creepage: elements that creep less count as adhering
 
 
@@ -87,14 +90,18 @@ def picture(values: Values, accuracy: str = "preview", complete: bool = False, i
 
 @lives_in_years
 def _facts(ds: xr.Dataset, ranges: Limits | None) -> dict[str, Any]:
-    facts = vars(collect(ds, ranges))
-    words = ("verdict", "reason", "not_checked", "guesses", "doubts")
-    rows = ("inputs", "whole", "lives", "flags")
+    """Return the record of a roller, and what the page shows of it: headline, table of limits, warnings, inputs."""
+    answer = answer_of_roller(ds, ranges)
+    said = headline_of(answer)
     return {
-        **{name: facts[name] for name in words},
-        **{name: [asdict(row) for row in facts[name]] for name in rows},
-        "lines": facts["lines"],
-        "margins": [asdict(m) | {name: getattr(m, name) for name in DERIVED} for m in facts["margins"]],
+        "answer": answer.to_dict(),
+        "headline": {"lead": said.lead, "rest": said.rest},
+        "limits": limits_on_page(answer),
+        "parts": {part.name: part_on_page(answer, part) for part in answer.parts},
+        "not_checked": {body: list(limits) for body, limits in answer.not_checked.items() if limits},
+        "not_used": dict(answer.not_used),
+        "warnings": [[head, where] for head, _, where in warnings_of(answer)],
+        "inputs": [asdict(row) for row in sheet_inputs(ds)],
     }
 
 

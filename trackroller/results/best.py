@@ -561,7 +561,12 @@ def _exceeded(found: _Found, number: int) -> dict[str, Any] | None:
         return None
     case, limit, body = np.unravel_index(np.nanargmax(known), known.shape)
     after = float(hours[case, limit, body])
-    return {"limit": word_of(limits[limit]), "body": BODIES[body], "use": float(known[case, limit, body]), "hours": after}
+    return {
+        "limit": word_of(limits[limit]),
+        "body": BODIES[body],
+        "use": float(known[case, limit, body]),
+        "hours": after,
+    }
 
 
 def _picture(found: _Found) -> dict[str, Any]:

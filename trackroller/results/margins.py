@@ -1,7 +1,7 @@
-"""The margins of one solved roller: each limit with its value, what is permitted, its use, and its life with both ends.
+"""The margins of one solved roller: each limit with its value, what is permitted, its use and its range of lives.
 
-Beside the limits of the room `damage` stand the pressure at which a body yields, and what lifts a contact off, makes the
-roller skid or locks it.
+Beside the limits of the room `damage` stand the pressure at which a body yields, and what lifts a contact off, makes
+the roller skid or locks it.
 """
 
 from __future__ import annotations
@@ -187,10 +187,10 @@ def margins(
 
 def _of_limits(ds: xr.Dataset, inputs: Mapping[str, Any], materials: Mapping[str, Material]) -> list[Margin]:
     """Return the margins of the limits of a result, for the bodies that they concern."""
-    if "utilisation" not in ds:
-        return []
-    out = []
     lifeless = lifeless_bodies(ds, materials)
+    if "utilisation" not in ds:
+        return _of_fatigue_alone(ds, inputs, materials, lifeless)
+    out = []
     tested, _ = fits_of_case(ds)
     listed = ds["limit"].values.tolist()
     places = {dim: ds[dim].values.tolist() for dim in ("limit", "body")}
@@ -214,6 +214,31 @@ def _of_limits(ds: xr.Dataset, inputs: Mapping[str, Any], materials: Mapping[str
                     guessed=_is_guessed(ds, name, materials[body].name),
                 )
             )
+    return out
+
+
+def _of_fatigue_alone(
+    ds: xr.Dataset, inputs: Mapping[str, Any], materials: Mapping[str, Material], lifeless: Mapping[str, str]
+) -> list[Margin]:
+    """Return the margins of fatigue, and of a body that breaks, of a result with lives and without limits."""
+    if "pair_life_hours" not in ds:
+        return []
+    limit = LIMITS["fatigue"]
+    tested, _ = fits_of_case(ds)
+    out = []
+    for body, material in materials.items():
+        hours = float(ds[f"{body}_life_hours"])
+        breaks = lifeless[body] == BROKEN
+        margin = Margin(limit.name, limit.word, limit.title, body, hours=hours, low=hours, high=hours, timed=True)
+        margin = replace(margin, state="exceeded" if breaks else "unknown" if math.isnan(hours) else "kept")
+        if lifeless[body]:
+            margin = replace(margin, timed=False, breaks=breaks, lifeless=not breaks)
+        elif body in tested and math.isfinite(hours):
+            margin = _by_tests(ds, margin, tested[body], overrollings(inputs, body))
+        else:
+            cycles = float(ds["life_cycles"].sel(body=body).min())
+            margin = replace(margin, beyond=bool(past_data(cycles, material.cycles_at_fatigue_limit)))
+        out.append(margin)
     return out
 
 
@@ -331,7 +356,7 @@ def _of_loads(ranges: Limits, inputs: Mapping[str, Any]) -> list[Margin]:
     now = float(inputs["friction_coefficient"])
     for name, word, title, bound in (
         ("self_locking", "self-locking", "self-locking by friction", ranges.self_locking_friction),
-        ("lift_off_friction", "lift-off", "lift-off of a contact by friction", ranges.lift_off_friction),
+        ("lift_off_friction", "lift-off by friction", "lift-off of a contact by friction", ranges.lift_off_friction),
     ):
         if math.isnan(bound):
             continue
@@ -388,8 +413,3 @@ class First:
     def beyond(self) -> bool:
         """Return whether one of the lives lies beyond the S-N data."""
         return any(margin.beyond for margin in self.margins)
-
-
-def word_of_margin(margin: Margin) -> str:
-    """Return the word of a limit with the body that it concerns; the pair is not named."""
-    return margin.word if margin.body == "pair" else f"{margin.word} of the {margin.body}"

@@ -10,7 +10,7 @@ import xarray as xr
 from trackroller.report.figures import style
 from trackroller.report.figures.panels import legend
 from trackroller.report.numbers import rounded
-from trackroller.report.words.carriage import worst_place
+from trackroller.results.carriage_answer import worst_place
 
 LONGEST = 0.3  # of the size of the carriage: the arrow of the largest force
 APART = 0.45  # of the smallest distance between rollers, so that the arrows of a pair do not meet

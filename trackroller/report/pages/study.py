@@ -27,7 +27,7 @@ from trackroller.results.looks import UNTIL
 from trackroller.results.results import Results
 from trackroller.roller.dataset import solved_by
 from trackroller.roller.doubts import doubts
-from trackroller.roller.record import NOT_GIVEN
+from trackroller.roller.record import NOT_GIVEN, as_material
 from trackroller.study.store.seal import put_text, sealing
 
 OPTIONS = tuple(option.name for option in parameters.OPTIONS.values() if option.recorded)
@@ -107,7 +107,7 @@ def tables_of(results: Results) -> list[Table]:
 def _doubts(results: Results) -> list[str]:
     """Return a sentence for each unusual value of the cases."""
     varied = {name: results.table[name].to_numpy() for name in results.table if name in parameters.PARAMETERS}
-    materials = map(inputs.as_material, inputs.stored_materials(results.data.attrs).values())
+    materials = map(as_material, inputs.stored_materials(results.data.attrs).values())
     return doubts({**results.base, **varied}, materials)
 
 

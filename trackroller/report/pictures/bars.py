@@ -18,7 +18,8 @@ from trackroller.results.answer import Answer, Column
 LENGTH = 190.0  # smallest width of the bars of a table [px]
 ROW = 24  # height of a bar [px]
 DIFFERENT = 0.6  # of the axis [%]: ends that differ by less are one dot
-COLOURS = {"met": "cm", "open": "co", "missed": "cx", "none": "cx"}
+COLOURS = {"met": "cm", "open": "co", "missed": "cx", "none": "cx"}  # classes by the verdict
+COLOURS |= {"kept": "cm", "finite": "cm", "exceeded": "cx", "unknown": "cg"}
 
 
 @dataclass(frozen=True)
