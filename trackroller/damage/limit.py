@@ -152,8 +152,6 @@ class Limit:
     ----------
     name, title : str
         Name in data sets, and its words where it is defined: in the proof of a page and in the documentation.
-    short : str
-        Word for it in headlines and tables; the title without its remark in brackets if it is not given.
     group : str
         Group of `outputs` that brings the results.
     evaluate : callable
@@ -198,6 +196,8 @@ class Limit:
         The standard that the limit follows, or an empty text.
     assumes : tuple of str
         Assumptions as sentences, for the sheet.
+    short : str
+        Word for it in headlines and tables; the title without its remark in brackets if it is not given.
     """
 
     name: str
