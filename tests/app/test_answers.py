@@ -5,7 +5,9 @@ from __future__ import annotations
 import base64
 import io
 import json
+import re
 import threading
+from dataclasses import replace
 from itertools import pairwise
 
 import fake_solver
@@ -303,3 +305,24 @@ def test_a_curve_of_a_life_says_how_many_hours_are_a_year():
     assert curve(values, "axial_force", [0, 30])["columns"]["roller_life_hours"]["unit"] == "h; 4000 h = 1 year"
     del values["duty"]
     assert curve(values, "axial_force", [0, 30])["columns"]["roller_life_hours"]["unit"] == "h"
+
+
+def test_how_far_a_force_may_go_takes_years_and_shows_the_band_of_the_life():
+    """A year of the duty is 4,000 h; the band at the end of the range is that of the case there."""
+    wears = {"like": "1.7225-quenched-tempered"}
+    values = {"motor_force": 0, "friction_coefficient": 0.1, "contact_model": "sliding", "permissible_wear_depth": 0.1}
+    values |= {"roller_material": wears, "guide_material": wears, "guide_overrollings_per_hour": 60}
+    values |= {"roller_profile_radius": -6.4, "duty": {"hours_per_day": 16, "days_per_year": 250}}
+    life = "pair_life_to_first_limit_hours"
+    told = range_of(values, "axial_force", f"{life} >= 0.05 years")
+    plain = range_of(values, "axial_force", f"{life} >= 200")
+    assert told["ends"] == plain["ends"] and told["text"].startswith("0.05 years are 200 h. ")
+    band = re.search(rf"Above .*?: {life} \S+ \(([\d.e+]+) to ([\d.e+]+)\)", plain["text"])
+    end = plain["ends"][1] * 1.0001
+    case = tr.Case.from_dict({name: value for name, value in values.items() if name not in ("duty", "contact_model")})
+    ds = tr.solve(replace(case, axial_force=end), contact_model="sliding")
+    ends = [float(ds[f"{life}_{end}"]) for end in ("low", "high")]
+    assert [float(one) for one in band.groups()] == pytest.approx(ends, rel=1e-2) and ends[0] < ends[1]
+    del values["duty"]
+    with pytest.raises(InputError, match="needs a duty"):
+        range_of(values, "axial_force", f"{life} >= 0.05 years")

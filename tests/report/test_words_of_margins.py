@@ -72,3 +72,11 @@ def test_a_required_life_and_a_required_stress_are_judged():
         assert row["used_low"] == pytest.approx(factor, rel=1e-12) and row["state"] == (
             "kept" if factor < 1 else "exceeded"
         )
+
+
+def test_full_slip_and_lift_off_are_told_as_causes_and_not_as_missing_inputs():
+    for values, words in (({"motor_force": -300}, "the roller skids"), ({"axial_force": 300}, "a contact lifts off")):
+        answer = answer_of_roller(tr.solve(tr.Case(**values), contact_model="sliding", accuracy="preview"))
+        told = [text for body in ("roller", "guide") for text in answer.not_checked[body]]
+        assert any(words in text for text in told)
+        assert not any("guide_overrollings_per_hour" in text for text in told)

@@ -22,15 +22,17 @@ from trackroller.errors import InputError
 from trackroller.report.figures.contact_outline import Patch, patches_of
 from trackroller.report.figures.roller_section import drawing
 from trackroller.report.headlines import headline_of
-from trackroller.report.numbers import head_unit, lives_in_years, on_duty
+from trackroller.report.numbers import head_unit, lives_in_years, on_duty, rounded
 from trackroller.report.pages.blocks import warnings_of
 from trackroller.report.pages.sheet import render, sheet_inputs, write_sheet
 from trackroller.report.workbook import write_roller
 from trackroller.results.roller_answer import answer_of_roller
 from trackroller.roller.case import Case
+from trackroller.roller.duty import EXAMPLE, years
 from trackroller.roller.find import find
 from trackroller.roller.record import given_inputs, solve_command
 from trackroller.roller.regime_limits import Limits
+from trackroller.roller.requirement import YEARS
 from trackroller.roller.settings import checked_case, with_beside
 from trackroller.roller.solver import solve
 from trackroller.study.outputs import every_name, outputs
@@ -221,16 +223,30 @@ def found(values: Values, over: str, condition: str) -> dict[str, Any]:
     over : str
         The parameter.
     condition : str
-        A comparison of a result with a number, such as "pair_life_to_first_limit_hours >= 10500".
+        A comparison of a result with a number, such as "pair_life_to_first_limit_hours >= 10500", or, beside a duty,
+        "pair_life_to_first_limit_hours >= 3 years".
 
     Returns
     -------
     dict
         The answer in words, and the ends of the range; they are NaN if no value meets the condition.
     """
-    case, options, _ = read(values)
-    range_ = find(case, over, condition, **{name: value for name, value in options.items() if name != "outputs"})
-    return {"text": range_.text, "ends": [range_.low, range_.high]}
+    case, options, beside = read(values)
+    asked, said = _in_hours(condition, beside.get("duty"))
+    range_ = find(case, over, asked, **{name: value for name, value in options.items() if name != "outputs"})
+    return {"text": f"{said}{range_.text}", "ends": [range_.low, range_.high]}
+
+
+def _in_hours(condition: str, duty: Any) -> tuple[str, str]:
+    """Return a condition whose last number is in years with hours in their place, and a sentence on them."""
+    head, relation, number = condition.rpartition("=")
+    found = YEARS.fullmatch(number)
+    if found is None:
+        return condition, ""
+    if duty is None:
+        raise InputError("find", number.strip(), "hours, or years beside a duty", EXAMPLE, "needs a duty")
+    hours = float(found[1]) / float(years(1.0, duty))
+    return f"{head}{relation} {hours!r}", f"{number.strip()} are {rounded(hours, 4)} h. "
 
 
 def texts(values: Values) -> dict[str, str]:

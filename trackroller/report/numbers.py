@@ -124,6 +124,19 @@ def hour_unit(hours: float) -> str:
     return f"h ({_year_words(rounded(lasts, 2))})"
 
 
+def year_text(lasts: float) -> str:
+    """Write years as a person says them: two figures, from one year on; a shorter life is said in hours alone.
+
+    Examples
+    --------
+    >>> year_text(1.263), year_text(131.0), year_text(7e-4), year_text(2e5)
+    ('1.3', '130', '–', '> 1,000')
+    """
+    if not lasts >= LEAST_YEARS:
+        return "–"
+    return f"> {count(MOST_YEARS)}" if lasts > MOST_YEARS else rounded(lasts, 2)
+
+
 def _year_words(*ends: str) -> str:
     """Write years, or a range of them: '1 year', '1 to 4.2 years'."""
     return f"{' to '.join(dict.fromkeys(ends))} year{'s' * (set(ends) != {'1'})}"

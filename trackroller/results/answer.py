@@ -44,7 +44,8 @@ class Column:
     units : unit of its numbers; '' for texts and plain numbers
     meaning : its definition in one sentence
     kind : `level` of a factor, `number`, `count`, `share` [1], `ratio`, `error` [1], `state`, `text`, `whole` for a
-        number that is said with four figures, `life` for hours of which a very long life is said as a bound, or
+        number that is said with four figures, `life` for hours of which a very long life is said as a bound,
+        `years`, or
         `bounded` for a value of a permitted one, in the unit that the column `units` states
     until : column with the upper end of the same range, or with the permitted value; '' without one
     role : `name` for the choices that name a row, `bar` for those that the picture of a decision draws (`low`, `median`

@@ -34,7 +34,7 @@ COLUMNS = (
     Column("low", "Life", "h", "hours of travel to the first limit of the roller or its rail", "life", "high", "bar"),
     Column("hours", "Life at the values", "h", "the same at the values of the placeholders", "life", role="file"),
     Column("km", "Travel", "km", "the same life as travel of the carriage"),
-    Column("years", "Years", "", "the same life in years of the duty"),
+    Column("years", "Years", "", "the same life in years of the duty, from one year on", "years"),
     Column("case", "Load case", "", "load case with the largest part of the damage, or the largest force", "text"),
     Column("part", "Its part", "1", "part of the damage that this load case does", "share"),
     Column("force", "Largest radial force", "N", "that presses the roller on its rail", "whole"),

@@ -153,7 +153,9 @@ def lifeless_bodies(ds: xr.Dataset, materials: Mapping[str, Material]) -> dict[s
 def margins(
     ds: xr.Dataset, ranges: Limits, inputs: Mapping[str, Any], materials: Mapping[str, Material]
 ) -> list[Margin]:
-    """Return the margins of a solved case in the order in which their limits are reached; exceeded ones come first.
+    """Return the margins of a solved case in the order in which their limits may be reached; exceeded ones come first.
+
+    The limit that the headline names leads those that are kept.
 
     Parameters
     ----------
@@ -172,17 +174,15 @@ def margins(
             out[-1] = replace(margin, body=BOTH)
         else:
             out.append(margin)
-    # the limit that the headline names leads; a second model of an end, such as a standard rating, stands behind it
-    first = min((m.reached for m in out if m.ends), default=0.0)
-    return sorted(
-        out,
-        key=lambda m: (
-            m.state != "exceeded",
-            max(m.reached, first) if m.beside else m.reached,
-            m.beside,
-            0.0 if math.isnan(m.used) else -m.used,
-        ),
-    )
+    first = First.of(out)
+    leader = first.margins[0] if first is not None else None
+    return sorted(out, key=lambda margin: (margin.state != "exceeded", margin is not leader, *_order(margin)))
+
+
+def _order(margin: Margin) -> tuple[float, bool, float]:
+    """Return by what margins are ordered: the low end of the life, a second model behind others, and the use."""
+    low = 0.0 if margin.breaks else math.inf if math.isnan(margin.low) else margin.low
+    return low, margin.beside, 0.0 if math.isnan(margin.used) else -margin.used
 
 
 def _of_limits(ds: xr.Dataset, inputs: Mapping[str, Any], materials: Mapping[str, Material]) -> list[Margin]:

@@ -57,6 +57,7 @@ CODES = {  # code of the warning of a validity flag; of the others `flagged`
     "deep_life": "extrapolated",
     "worn": "worn",
 }
+STOPPED = {"full_slip": "the roller skids", "lift_off": "a contact lifts off"}  # why a limit is not known
 COLUMNS = (
     Column("limit", "Limit", "", "limit of the roller, of the guide or of the pair", "text", role="name"),
     Column("body", "Body", "", "body that the limit concerns", "text", role="name"),
@@ -427,16 +428,18 @@ def _missing(ds: xr.Dataset, name: str, body: str) -> list[str]:
     asked = str(ds.attrs.get("limits", "")).split()
     if "limit_state" in ds and asked and name not in asked:
         return ["left out"]
-    own = [lack for lack in lacks_of(ds) if lack.limit == name]
-    of_guide = [lack for lack in own if not lack.material and lack.name in OF_GUIDE]
     material = material_name(ds, body)
+    regime = REGIMES[int(ds["regime"])] if ds["regime"].ndim == 0 else ""
     found = []
-    for lack in own:
-        if lack in of_guide and body != "guide":
+    for lack in (lack for lack in lacks_of(ds) if lack.limit == name):
+        of_guide = not lack.material and lack.name in OF_GUIDE
+        if of_guide and (body != "guide" or regime in STOPPED):
             continue
         if lack.material and material and lack.material != material:
             continue
         found.append(lack.words if lack.material else f"give {lack.name}")
+    if not found and regime in STOPPED:
+        return [STOPPED[regime]]
     return found
 
 

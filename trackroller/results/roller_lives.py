@@ -14,7 +14,7 @@ from trackroller.damage.sn_curve import PROBABILITIES, SNCurve
 from trackroller.damage.wear import KM_PER_HOUR
 from trackroller.fit.stored import StoredFit, fits_of_case
 from trackroller.materials import Material
-from trackroller.parameters import BODIES, FIRST_TO_FAIL
+from trackroller.parameters import BODIES, FIRST_TO_FAIL, REGIMES
 from trackroller.results.answer import Column, Part
 from trackroller.results.lives import past_data
 from trackroller.results.margins import BROKEN, SKIDS, overrollings, worst_contact
@@ -94,7 +94,9 @@ def _of_body(
 ) -> Iterator[dict[str, Any]]:
     """Yield the lives of a body by its S-N line."""
     unknown = math.isnan(float(ds[f"{body}_life_hours"]))
-    why = WHY[lifeless or (f"unknown {body}" if unknown else "")]
+    rolls = int(ds["regime"]) == REGIMES.index("rolling")
+    cause = f"unknown {body}" if rolls else "unknown roller"
+    why = WHY[lifeless or (cause if unknown else "")]
     if why:
         yield _row(body, inputs, math.nan, math.nan, probability=MEDIAN, why=why)
         return

@@ -15,6 +15,7 @@ from trackroller.report.numbers import (
     level_text,
     lowered,
     unit_text,
+    year_text,
     year_words,
 )
 from trackroller.report.pictures.axis import tick_text
@@ -186,6 +187,8 @@ def _range_text(answer: Answer, column: Column, row: Mapping[Any, Any], ends: tu
         return " to ".join(dict.fromkeys(ratio_text(end) for end in ends))
     if column.kind == "life" and ends[0] >= LONG_LIFE:
         return f"> {tick_text(LONG_LIFE)}"
+    if column.kind == "years":
+        return year_text(ends[0])
     return carried_range(*ends, _error_of(row, column), _bounds(answer, column))
 
 

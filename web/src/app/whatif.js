@@ -171,9 +171,10 @@ export function whatIf(state, offered, { rows }) {
   const bound = el("input", { type: "text", inputmode: "decimal", size: 8, "aria-label": "Value that the result has to meet" });
   const far = el("p", { class: "soft", role: "status" }, "Say what the result of the curve has to be, such as 10500.");
   const search = el("button", { type: "button", onclick: () => findRange() }, "How far may it go?");
+  const inYears = () => /= 1 year/.test(found?.columns[result.field.value]?.unit ?? "");
   async function findRange() {
     const typed = bound.value.trim().replace(",", ".");
-    if (!typed || !Number.isFinite(Number(typed))) return (far.textContent = "Write a number that the result of the curve has to meet, such as 10500.");
+    if (!/^[-+]?[\d.]+(e[-+]?\d+)?(\s*(a|yrs?|years?))?$/i.test(typed)) return (far.textContent = `Write a number that the result of the curve has to meet, such as 10500${inYears() ? " or 3 years" : ""}.`);
     far.textContent = "Searching …";
     try {
       far.textContent = (await ask("found", { values: state.values, over: over.field.value, condition: `${result.field.value} ${relation.field.value} ${typed}` })).text;
