@@ -165,7 +165,7 @@ def lost_by_missing_input(own: Comparison) -> str:
 def where_text(results: Results, hit: np.ndarray, among: np.ndarray) -> str:
     """Return the levels of factors that hold some rows and no others; '' if no levels do."""
     places = places_of(results.table, results.factors, hit, among)
-    return places_text([place for place in places if len(place) <= 3]) if places else ""
+    return places_text([place for place in places if len(place) <= 3], results.table) if places else ""
 
 
 def cautions(own: Comparison, shown: pd.DataFrame, named: int = 1) -> tuple[Caution, ...]:

@@ -44,6 +44,8 @@ class Judged:
     short : how far a design is from the requirement of the study, see `shortfall`; shape (n,),
         0 everywhere without one
     life : shortest life over the conditions, of a range its low end; shape (n,), 0 everywhere without lives
+    share : smallest share of the conditions that surely meets a requirement [1], shape (n,); NaN without one
+    required : output of each requirement at its worst condition, of a range its worse end; shape (n, requirements)
     """
 
     genes: np.ndarray
@@ -52,6 +54,8 @@ class Judged:
     violation: np.ndarray
     short: np.ndarray
     life: np.ndarray
+    share: np.ndarray
+    required: np.ndarray
     reasons: Mapping[str, int] = field(default_factory=dict)
     goals: Mapping[str, str] = field(default_factory=dict)
 
@@ -77,7 +81,7 @@ class Judged:
         return replace(self, **both, reasons=counts)
 
 
-_BY_DESIGN = ("genes", "values", "costs", "violation", "short", "life")
+_BY_DESIGN = ("genes", "values", "costs", "violation", "short", "life", "share", "required")
 
 
 def goals_of_search(results: Results) -> dict[str, str]:
@@ -106,8 +110,18 @@ def judge(results: Results, genes: np.ndarray | None = None) -> Judged:
         violation = np.isnan(table).any(axis=1).astype(float)
     else:
         violation = _beyond_spare(results, 1.0 - known.mean(axis=1))
-    reasons = _reasons(results, known.ravel())
-    return Judged(genes, table, costs, violation, shortfall(results), _shortest(results), reasons, goals)
+    return Judged(
+        genes=genes,
+        values=table,
+        costs=costs,
+        violation=violation,
+        short=shortfall(results),
+        life=_shortest(results),
+        share=_smallest_share(results),
+        required=_required_values(results),
+        reasons=_reasons(results, known.ravel()),
+        goals=goals,
+    )
 
 
 def _beyond_spare(results: Results, lost: np.ndarray) -> np.ndarray:
@@ -126,6 +140,23 @@ def _shortest(results: Results) -> np.ndarray:
     if life is None:
         return np.zeros(shape[0])
     return np.asarray(life.low.reshape(shape).min(axis=1))
+
+
+def _smallest_share(results: Results) -> np.ndarray:
+    """Return the smallest share of the conditions in which each design surely meets a requirement; NaN without one."""
+    nothing = np.full(results.design.meta["design_points"], np.nan)
+    return np.asarray(np.fmin.reduce([nothing, *(own.sure for own in shares_of(results))]))
+
+
+def _required_values(results: Results) -> np.ndarray:
+    """Return the output of each requirement at its worst condition, shape (designs, requirements)."""
+    shape = results.design.meta["design_points"], results.design.meta["inner_samples"]
+    columns = [np.zeros((shape[0], 0))]
+    for _, own in judges_of(results):
+        worse = own.worse.reshape(shape)
+        worst = worse.min(axis=1) if own.rises else worse.max(axis=1)
+        columns.append(worst[:, None])
+    return np.concatenate(columns, axis=1)
 
 
 def _values(results: Results) -> tuple[np.ndarray, np.ndarray]:

@@ -9,7 +9,7 @@ import pandas as pd
 
 from trackroller.results.answer import Column
 from trackroller.results.case_ranges import CaseRanges
-from trackroller.results.places import levels_of, place_text
+from trackroller.results.places import case_text
 from trackroller.results.results import Results
 from trackroller.roller.output_names import is_life
 from trackroller.study.outputs import default_names
@@ -59,14 +59,9 @@ def _row(results: Results, ranges: CaseRanges) -> dict[str, Any]:
         "smallest": float(values.min()),
         "median": float(np.quantile(values, 0.5, method="inverted_cdf")),
         "largest": float(values.max()),
-        "at_smallest": _levels_text(results, names, least),
-        "at_largest": _levels_text(results, names, most),
+        "at_smallest": case_text(results.table, names, least),
+        "at_largest": case_text(results.table, names, most),
         "row_smallest": least,
         "row_largest": most,
         "error": float(np.median(ranges.error[rows])),
     }
-
-
-def _levels_text(results: Results, names: list[str], row: int) -> str:
-    levels = levels_of(results.table, names, row)
-    return place_text({name: (level,) for name, level in levels.items()})

@@ -44,7 +44,7 @@ def question_of(results: Results) -> str:
         return "best"
     required = required_of(results)
     if compared_output(results, required) is None:
-        return "how it behaves"
+        return "what matters" if method.name in SENSITIVITY else "how it behaves"
     own = Comparison.of(results)
     if own is None:
         return "how it behaves"

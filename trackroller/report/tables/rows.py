@@ -40,6 +40,7 @@ LETTER = 7.3  # mean width of a letter of a table [px]
 WRAPPED = 24  # letters of a line of a text in a table
 LINES = 2  # of a text in a table
 WIDEST = 40  # letters of such a line; longer texts stand in the proof
+OF_RANGE = ("smallest", "median", "largest")  # columns of a row that has an output of its own
 NARROW_KINDS = ("ratio", "error")  # that a card of a narrow screen leaves out
 NARROW_NAMES = ("median", "best")
 WORDS = ("factor", "output")  # columns of words that name a row
@@ -243,7 +244,8 @@ def _percent(value: float) -> str:
 def _error_of(row: Mapping[Any, Any], column: Column) -> float:
     """Return the told error of the numbers of a row; it belongs to the output alone."""
     error = row.get("error")
-    return float(error) if error is not None and column.role == "bar" else math.nan
+    is_output = column.role == "bar" or column.name in OF_RANGE
+    return float(error) if error is not None and is_output else math.nan
 
 
 def _bounds(answer: Answer, column: Column) -> list[float]:
