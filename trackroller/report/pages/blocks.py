@@ -20,7 +20,9 @@ from trackroller.report.headlines import WARNING_HEADS, headline_of, warning_row
 from trackroller.report.numbers import count, long_name, on_duty, plain, rounded, unit_text
 from trackroller.report.pictures import curves
 from trackroller.report.pictures.bars import Bars
-from trackroller.report.pictures.first_screen import map_of, picture_of, row_names
+from trackroller.report.pictures.first_screen import picture_of
+from trackroller.report.pictures.pairs_map import map_of
+from trackroller.report.pictures.picture import row_names
 from trackroller.report.pictures.uses import UseBars
 from trackroller.report.tables.rows import (
     MOST_SHOWN,
