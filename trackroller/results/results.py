@@ -84,6 +84,12 @@ class Results:
         if self.config.own:
             object.__setattr__(self, "data", with_own_outputs(self.study, self.data))
 
+    def __repr__(self) -> str:
+        """Return ten lines on the study: cases, factors, regimes, the life that counts, and what to take next."""
+        from trackroller.results.summary import summary_of
+
+        return summary_of(self)
+
     @property
     def config(self) -> StudyFile:
         """Return what the study file says."""
