@@ -6,11 +6,14 @@ import shutil
 
 import numpy as np
 import pytest
+import xarray as xr
 from limit_rows import limit_row, part_of
 
 import trackroller as tr
+from trackroller.errors import InputError
 from trackroller.fit.stored import stored_fit
 from trackroller.materials import load_database
+from trackroller.materials.file import find_user_file, posterior_path
 from trackroller.results.roller_answer import answer_of_roller, beyond_tests
 from trackroller.study.file.load import parse_study
 from trackroller.study.run import run_study
@@ -25,6 +28,18 @@ def test_the_stored_fit_gives_the_intervals_of_the_fit(rig):
     assert tuple(found.cycles(430.0, 0.1)) == pytest.approx(
         tuple(rig.interval("cycles", amplitude=430.0, failure_probability=0.1)), rel=1e-6
     )
+
+
+def test_a_fit_of_another_version_is_refused_in_one_sentence(rig):
+    values = vars(load_database().material("rig steel"))
+    path = posterior_path(find_user_file(), "rig steel")
+    with xr.open_dataset(path) as opened:
+        stored = opened.load()
+    del stored.attrs["fatigue_knee"]
+    path.unlink()
+    stored.to_netcdf(path)
+    with pytest.raises(InputError, match=r"is that of another version.*Fit the tests again\.$"):
+        stored_fit("rig steel", values)
 
 
 def test_a_material_that_was_changed_by_hand_has_no_fit(rig):
