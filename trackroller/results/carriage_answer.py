@@ -108,6 +108,7 @@ def answer_of_carriage(ds: xr.Dataset) -> Answer:
             "description": str(ds.attrs.get("description", "")),
             "date": "",
             "cases": ds.sizes["load_case"],
+            "counted": "load cases",
             "candidates": None,
             "conditions": None,
             "drawn": False,

@@ -77,5 +77,8 @@ def guess_cautions(part: Part, what: str = "") -> Iterator[Caution]:
     """Yield one warning for each material with values that nobody has measured."""
     for material, rows in part.table.groupby("material", sort=False):
         limits = listing(list(dict.fromkeys(limit for limit in rows["limit"] if limit)))
-        notes = "; ".join(dict.fromkeys(f"{row.value}: {row.note}" for row in rows.itertuples() if not row.limit))
+        by_note: dict[str, list[str]] = {}
+        for row in rows[rows["limit"] == ""].to_dict("records"):
+            by_note.setdefault(row["note"], []).append(row["value"].replace("_", " "))
+        notes = "; ".join(f"{listing(values)}: {note}" for note, values in by_note.items())
         yield Caution("guessed", 1, 1, f"{material}: {'; '.join(text for text in (limits, notes) if text)}", what)

@@ -95,6 +95,7 @@ def answer_of_spectrum(ds: xr.Dataset) -> Answer:
             "description": str(ds.attrs.get("description", "")),
             "date": "",
             "cases": ds.sizes["block"],
+            "counted": "blocks",
             "candidates": None,
             "conditions": None,
             "drawn": False,

@@ -164,7 +164,8 @@ def facts_line(answer: Answer) -> str:
     if conditions:
         drawn = "drawn " if facts.get("drawn") else ""
         sizes.append(f"{conditions} {drawn}conditions")
-    cases = f"{count(facts['cases'])} cases" if facts.get("cases", 0) > 1 else ""
+    counted = facts.get("counted", "cases")
+    cases = f"{count(facts['cases'])} {counted}" if facts.get("cases", 0) > 1 else ""
     size = f"{cases}: {', '.join(sizes)}" if cases and sizes else cases
     models = facts.get("models", "")
     models = models if isinstance(models, str) else ", ".join(map(str, models))

@@ -28,6 +28,7 @@ FIELDS: dict[str, Any] = {  # of the template; a page states those that it has
     "figures": (),
     "figures_title": "",
     "aside": "",
+    "small": (),
     "numbers": "Numbers",
     "given": (),
     "not_given": (),

@@ -93,6 +93,7 @@ def render(ds: xr.Dataset, name: str = "") -> str:
         figures=[drawn[one] for one in SHOWN if one in drawn],
         figures_title="Shear and stress",
         aside=_less_stressed(ds),
+        small=("wear_depth",),
         materials=body_materials(materials_of(ds)),
         options=options_text(ds),
         notes=notes_of_sheet(ds),
