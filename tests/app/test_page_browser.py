@@ -373,7 +373,7 @@ def test_no_width_scrolls_sideways(page, width):
     page.resize(width, 800)
     steel = dict.fromkeys(("roller_material", "guide_material"), "1.7225-quenched-tempered")
     page.run(f"trackroller.state.replace({json.dumps(steel | {'motor_force': 0, 'friction_coefficient': 0.1})})")
-    page.until("document.querySelector('.margins').textContent.includes('†')")
+    page.until("document.querySelector('.margins').textContent.includes('kept')")
     for tab in ("roller", "whatif", "study", "results", "carriage"):
         show(page, tab)
         if tab == "carriage":
@@ -391,7 +391,7 @@ def test_margins_with_years_fit_a_phone_and_name_their_body(browser, live):
         assert shown.run("document.querySelector('.margins').getBoundingClientRect().right <= innerWidth")
         wear = [row for row in rows if row[0].startswith("wear")]
         assert {row[1] for row in wear} == {"roller", "guide"}
-        assert all(row[2] == "at most 0.1 mm" for row in wear)
+        assert all(" to " in row[-1] for row in wear)  # a life with both ends
 
 
 def test_everything_is_reached_by_the_keyboard(page):

@@ -30,11 +30,11 @@ from trackroller.results.roller_answer import answer_of_roller
 from trackroller.roller.case import Case
 from trackroller.roller.duty import EXAMPLE, years
 from trackroller.roller.find import find
-from trackroller.roller.record import given_inputs, solve_command
 from trackroller.roller.regime_limits import Limits
 from trackroller.roller.requirement import YEARS
 from trackroller.roller.settings import checked_case, with_beside
 from trackroller.roller.solver import solve
+from trackroller.roller.stored_inputs import given_inputs, solve_command
 from trackroller.study.outputs import every_name, outputs
 from trackroller.yaml_file import parse_yaml, write_yaml
 

@@ -13,8 +13,8 @@ from trackroller.errors import InputError
 from trackroller.report.headlines import headline_of, warning_line
 from trackroller.report.numbers import lives_in_years
 from trackroller.results.spectrum_answer import answer_of_spectrum
-from trackroller.roller.record import given_inputs
 from trackroller.roller.settings import LOADS, parts_for_spectrum
+from trackroller.roller.stored_inputs import given_inputs
 from trackroller.study.spectrum.file import TRAVEL, Spectrum
 from trackroller.study.spectrum.solve import solve_spectrum
 from trackroller.yaml_file import write_yaml

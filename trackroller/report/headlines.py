@@ -63,7 +63,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from trackroller.errors import listing
-from trackroller.parameters.of_carriage import parameter_of
+from trackroller.parameters.carriage_fields import parameter_of
 from trackroller.report.bounds import bounds_of_output
 from trackroller.report.numbers import (
     as_required,

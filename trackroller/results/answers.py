@@ -11,7 +11,7 @@ from trackroller.results.carriage_answer import answer_of_carriage
 from trackroller.results.roller_answer import answer_of_roller
 from trackroller.results.spectrum_answer import answer_of_spectrum
 from trackroller.results.wear_answer import answer_of_wear
-from trackroller.roller.record import CASE
+from trackroller.roller.stored_inputs import CASE
 
 
 def answer_of(ds: xr.Dataset) -> Answer | None:

@@ -15,7 +15,7 @@ from trackroller.damage import LIMITS
 from trackroller.errors import InputError, listing
 from trackroller.methods.optimise import nondominated_ranks
 from trackroller.parameters import BODIES, REGIMES
-from trackroller.parameters.of_carriage import long_name_of, parameter_of
+from trackroller.parameters.carriage_fields import long_name_of, parameter_of
 from trackroller.results.answer import Answer, Caution, Column, Required
 from trackroller.results.answer_parts import (
     case_cautions,
@@ -44,7 +44,7 @@ from trackroller.results.judging import (
 )
 from trackroller.results.lives import OF_PAIR
 from trackroller.results.requirement import required_of
-from trackroller.results.results import SAME_ENDS, Results
+from trackroller.results.solved_cases import SAME_ENDS, SolvedCases
 from trackroller.roller.output_names import is_life
 from trackroller.study.design.levels import in_words
 from trackroller.study.file.search import judged_by
@@ -73,7 +73,7 @@ class _Found:
     search : what it found, see `optimum_of`
     """
 
-    results: Results
+    results: SolvedCases
     search: Mapping[str, Any]
 
     @cached_property
@@ -179,12 +179,12 @@ class _Found:
         return list(dict.fromkeys([*self.named, *self.corners, *order])) if self.usable else []
 
 
-def answer_of_search(results: Results) -> Answer:
+def answer_of_search(results: SolvedCases) -> Answer:
     """Return the answer of a search.
 
     Parameters
     ----------
-    results : Results
+    results : SolvedCases
         A solved study with `method: optimise`.
 
     Returns

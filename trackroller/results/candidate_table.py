@@ -9,7 +9,7 @@ import pandas as pd
 
 from trackroller.damage import LIMITS
 from trackroller.parameters import BODIES
-from trackroller.parameters.of_carriage import long_name_of, parameter_of
+from trackroller.parameters.carriage_fields import long_name_of, parameter_of
 from trackroller.results.answer import STATES, Column
 from trackroller.results.comparison import Comparison, wilson
 from trackroller.results.lives import BESIDE, OF_PAIR

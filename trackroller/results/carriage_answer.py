@@ -24,7 +24,7 @@ from trackroller.results.lives import FIRST_LIMIT
 from trackroller.results.roller_answer import CODES
 from trackroller.roller.dataset import validity_bit
 from trackroller.roller.duty import duty_of
-from trackroller.roller.record import doubts_of
+from trackroller.roller.stored_inputs import doubts_of
 
 LOADS = {"payload": "payload", "loads": "all loads"}  # parts of the loads that a margin multiplies
 ENDS = {"one_contact": "one contact", "lift_off": "lift-off", "tipping": "tipping"}

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from trackroller.parameters.of_carriage import long_name_of
+from trackroller.parameters.carriage_fields import long_name_of
 from trackroller.results.answer import Answer
 from trackroller.results.answer_parts import (
     cautions,
@@ -26,7 +26,7 @@ from trackroller.results.effect_curves import Effects
 from trackroller.results.first_ends import ends_by_factor
 from trackroller.results.lives import OF_PAIR
 from trackroller.results.places import places_of, places_text, plain
-from trackroller.results.results import Results
+from trackroller.results.solved_cases import SolvedCases
 from trackroller.results.turning import Turning
 from trackroller.roller.output_names import is_life
 
@@ -210,12 +210,12 @@ class Decider:
         return bool(inside.all() and ratios.size)
 
 
-def answer_decide(results: Results) -> Answer:
+def answer_decide(results: SolvedCases) -> Answer:
     """Return which candidate of a study to build.
 
     Parameters
     ----------
-    results : Results
+    results : SolvedCases
         A solved study with a life, a stress or a requirement.
     """
     own = Comparison.of(results)

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from trackroller.parameters.of_carriage import long_name_of, parameter_of
+from trackroller.parameters.carriage_fields import long_name_of, parameter_of
 from trackroller.results.groups import MOST_LEVELS, confined, levels
 from trackroller.study.design.levels import in_words
 

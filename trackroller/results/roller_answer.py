@@ -25,8 +25,8 @@ from trackroller.errors import listing
 from trackroller.fit.stored import StoredFit, fits_of_case
 from trackroller.materials import Material
 from trackroller.parameters import BODIES, PARAMETERS, REGIMES
+from trackroller.parameters.carriage_fields import long_name_of
 from trackroller.parameters.example import drive_question
-from trackroller.parameters.of_carriage import long_name_of
 from trackroller.results.answer import Answer, Caution, Column, Part, Required
 from trackroller.results.candidate_table import word_of
 from trackroller.results.columns import at_surface
@@ -36,7 +36,7 @@ from trackroller.results.margins import First, Margin, lifeless_bodies, margins,
 from trackroller.results.placeholders import guess_cautions, placeholders_part
 from trackroller.results.places import level_text
 from trackroller.results.roller_lives import lives_part
-from trackroller.roller import record
+from trackroller.roller import stored_inputs as record
 from trackroller.roller.dataset import VARIABLES, shown, solved_by
 from trackroller.roller.duty import duty_of, years
 from trackroller.roller.limit_notes import given_in_vain, lacks_of, notes_of

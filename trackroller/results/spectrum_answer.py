@@ -21,8 +21,8 @@ import xarray as xr
 from trackroller.damage import LIMITS
 from trackroller.damage.verdict import STATES
 from trackroller.parameters import BODIES, PARAMETERS, REGIME_LABELS, REGIMES
+from trackroller.parameters.carriage_fields import long_name_of
 from trackroller.parameters.example import drive_question
-from trackroller.parameters.of_carriage import long_name_of
 from trackroller.results.answer import Answer, Caution, Column, Part
 from trackroller.results.flags import flags_of, not_judged
 from trackroller.results.lives import FIRST_LIMIT, past_data
@@ -33,7 +33,7 @@ from trackroller.results.roller_answer import CODES, checks_left_out
 from trackroller.roller.dataset import validity_bit
 from trackroller.roller.duty import duty_of
 from trackroller.roller.limit_notes import notes_of, placeholders_of
-from trackroller.roller.record import NOT_GIVEN, doubts_of
+from trackroller.roller.stored_inputs import NOT_GIVEN, doubts_of
 from trackroller.roller.temperature import HEAD as OF_TEMPERATURE
 from trackroller.study.spectrum.file import LOAD_FIELDS
 

@@ -7,24 +7,24 @@ from collections.abc import Iterator
 import numpy as np
 
 from trackroller.parameters import REGIMES
-from trackroller.results.results import Results
+from trackroller.results.solved_cases import SolvedCases
 
 MOST_NAMED = 3  # factors or outputs of a line; of further ones their number is said
 NEXT = "next: .answer, .best(), .to_table(), .report(path), .explore(path), .indices(), .pareto(), .data (xarray)"
 
 
-def summary_of(results: Results) -> str:
+def summary_of(results: SolvedCases) -> str:
     """Return what a user wants to see first of the results of a study, in at most ten lines.
 
     Parameters
     ----------
-    results : Results
+    results : SolvedCases
         The solved study; nothing is analysed for it.
     """
     return "\n".join(_lines(results))
 
 
-def _lines(results: Results) -> Iterator[str]:
+def _lines(results: SolvedCases) -> Iterator[str]:
     config = results.config
     described = f": {config.description}" if config.description else ""
     yield f"Study '{config.name}'{described}"
@@ -42,28 +42,28 @@ def _lines(results: Results) -> Iterator[str]:
     yield NEXT
 
 
-def _factors(results: Results) -> str:
+def _factors(results: SolvedCases) -> str:
     """Return the first factors with their numbers of levels."""
     named = [f"{name} ({len(results.levels(name))})" for name in results.factors[:MOST_NAMED]]
     left = len(results.factors) - len(named)
     return ", ".join(named) + (f" and {left} more" if left > 0 else "")
 
 
-def _regimes(results: Results) -> str:
+def _regimes(results: SolvedCases) -> str:
     """Return how many cases roll, skid, lift off or failed."""
     counts = np.bincount(results.regime.astype(int), minlength=len(REGIMES))
     found = [f"{count:,} {name.replace('_', ' ')}" for name, count in zip(REGIMES, counts, strict=True) if count]
     return ", ".join(found)
 
 
-def _outputs(results: Results) -> list[str]:
+def _outputs(results: SolvedCases) -> list[str]:
     """Return the outputs of the summary: the life that counts, and the outputs that the study asks for."""
     found = [results.life[0]] if results.life is not None else []
     found += [name for name in results.config.requirement if name not in found]
     return found[:MOST_NAMED]
 
 
-def _range(results: Results, name: str) -> str:
+def _range(results: SolvedCases, name: str) -> str:
     """Return the range of an output over the cases that roll."""
     values, units, words = results.quantity(name)
     own = values[results.rolling & ~np.isnan(values)]

@@ -17,14 +17,14 @@ import xarray as xr
 
 from trackroller.damage.wear import KM_PER_HOUR
 from trackroller.parameters import BODIES
-from trackroller.parameters.of_carriage import long_name_of
+from trackroller.parameters.carriage_fields import long_name_of
 from trackroller.results.answer import Answer, Caution, Column, Part
 from trackroller.results.flags import flags_of
 from trackroller.results.placeholders import guess_cautions, placeholders_part
 from trackroller.results.roller_answer import CODES, not_given_words
 from trackroller.roller.duty import duty_of
 from trackroller.roller.limit_notes import placeholders_of
-from trackroller.roller.record import NOT_GIVEN, inputs_of
+from trackroller.roller.stored_inputs import NOT_GIVEN, inputs_of
 from trackroller.roller.wearing import ENDS
 
 SOLVED = 1e-6  # residual of a solved balance, over the normal force times the distance of the axes

@@ -16,7 +16,7 @@ from trackroller.report.pages.blocks import screen_of
 from trackroller.report.printed import print_answer, print_part
 from trackroller.report.tables.inputs import Row, material_rows, material_source
 from trackroller.results.answer import Answer
-from trackroller.roller import record
+from trackroller.roller import stored_inputs as record
 from trackroller.roller.dataset import solved_by
 from trackroller.roller.duty import duty_of
 from trackroller.study.store.provenance import versions

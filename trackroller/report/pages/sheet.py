@@ -35,13 +35,13 @@ from trackroller.results.answer import Answer
 from trackroller.results.answers import answer_of
 from trackroller.results.flags import flags_of
 from trackroller.results.roller_answer import answer_of_roller, materials_of_case
-from trackroller.roller import record
+from trackroller.roller import stored_inputs as record
 from trackroller.roller.dataset import solved_by
 from trackroller.roller.duty import FIELD as DUTY
 from trackroller.roller.duty import duty_of, years
 from trackroller.roller.output_names import is_life
-from trackroller.roller.record import doubts_of, friction_records, inputs_of, is_default, materials_of
 from trackroller.roller.settings import SHEET_FIELDS, sheet_of
+from trackroller.roller.stored_inputs import doubts_of, friction_records, inputs_of, is_default, materials_of
 from trackroller.study.store.provenance import versions
 
 SHOWN = ("contact_shear", "contact_1_stress", "contact_2_stress", "wear_depth")  # figures of the sheet, if drawn

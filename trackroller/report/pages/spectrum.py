@@ -14,7 +14,7 @@ from trackroller.report.numbers import lives_in_years
 from trackroller.report.pages.record import body_materials, inputs_apart, pictures, print_record, record_text
 from trackroller.report.tables.inputs import input_rows
 from trackroller.results.spectrum_answer import answer_of_spectrum
-from trackroller.roller.record import NOT_GIVEN
+from trackroller.roller.stored_inputs import NOT_GIVEN
 
 KIND = "load spectrum of a track roller"
 

@@ -18,7 +18,7 @@ from trackroller.report.pages.record import (
 )
 from trackroller.report.tables.inputs import input_rows
 from trackroller.results.wear_answer import answer_of_wear
-from trackroller.roller.record import inputs_of, materials_of
+from trackroller.roller.stored_inputs import inputs_of, materials_of
 
 KIND = "wear over the travel"
 

@@ -264,14 +264,14 @@ def _shared_text(answer: Answer, column: Column, row: Mapping[Any, Any]) -> str:
 
 
 @dataclass(frozen=True)
-class Fit:
+class ColumnSplit:
     """Which columns of a table stand on the first screen, and which ones in the proof."""
 
     shown: tuple[Column, ...]
     others: tuple[Column, ...]
 
 
-def fit_columns(answer: Answer, bars: int, width: float = PAGE) -> Fit:
+def fit_columns(answer: Answer, bars: int, width: float = PAGE) -> ColumnSplit:
     """Return the columns that fit a width, from the first one on; columns that name a row or are drawn stay."""
     shared = answer.shared
     left = width - bars * (BARS if bars == 1 else HALF_BARS)
@@ -289,7 +289,7 @@ def fit_columns(answer: Answer, bars: int, width: float = PAGE) -> Fit:
     order = {column.name: place for place, column in enumerate(answer.columns)}
     shown.sort(key=lambda one: order[one.name])
     others.sort(key=lambda one: order[one.name])
-    return Fit(tuple(shown), tuple(others))
+    return ColumnSplit(tuple(shown), tuple(others))
 
 
 def _width(answer: Answer, column: Column) -> float:

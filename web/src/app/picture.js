@@ -1,7 +1,7 @@
 // What is seen of one case: headline, drawing, maps, tables, margins, lives and warnings.
 import { el, replace, select } from "../dom.js";
 import { maps } from "./patch.js";
-import { drawn, headlineOf, limitTable, part } from "./tables.js";
+import { columnsOf, drawn, headlineOf, limitTable, part } from "./tables.js";
 
 const KINDS = [
   ["pressure", "pressure"],
@@ -9,6 +9,7 @@ const KINDS = [
   ["roller", "von Mises below, roller"],
   ["guide", "von Mises below, guide"],
 ];
+const LIFE = ["body", "probability", "low", "km_low", "cycles_low", "extrapolated", "why"]; // columns beside the fields; the sheet has the others
 const FEW = 4; // warnings that stand on one screen, in one line each until they are asked for in full
 const SHOWN = { preview: "preview while it moves", standard: "standard" };
 
@@ -78,7 +79,7 @@ export function pictureView({ again }) {
       const { contacts, whole: quantities, lives: told, placeholders } = picture.parts;
       replace(tables, contacts ? part(contacts) : el("p", {}, picture.answer.facts.reason || "No values: a contact has lifted off."));
       replace(limits, limitTable(picture.limits, picture.complete));
-      replace(lives, told ? part(told) : null);
+      replace(lives, told ? part(columnsOf(told, LIFE)) : null);
       replace(whole, whole.firstChild, quantities ? part(quantities) : null);
       const missing = Object.entries(picture.not_checked).map(([body, names]) => `${body}: ${names.join(", ")}`);
       const unused = Object.entries(picture.not_used).map(([name, why]) => `given, but not used: ${name}, ${why}`);

@@ -33,5 +33,11 @@ export function limitTable({ heads, rows, bars, axis }, complete = true) {
   return [el("table", { class: "margins" }, el("thead", {}, el("tr", {}, head)), el("tbody", {}, body)), complete ? null : el("p", { class: "soft" }, "The distances to slip and lift-off follow when it rests.")];
 }
 
+// Some columns of a further table, by name.
+export function columnsOf(table, names) {
+  const kept = table.heads.map((_, i) => i).filter((i) => names.includes(table.heads[i].name));
+  return { ...table, heads: kept.map((i) => table.heads[i]), rows: table.rows.map((row) => kept.map((i) => row[i])) };
+}
+
 // A headline: the answer itself in bold, and what follows it.
 export const headlineOf = ({ lead, rest }) => [el("b", {}, lead), rest];
