@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import base64
 import io
+import json
+import re
 import threading
+from dataclasses import replace
 from itertools import pairwise
 
 import fake_solver
@@ -24,9 +27,8 @@ from trackroller.app.studies import checked, file_of_study, headlines, listing, 
 from trackroller.errors import InputError, WorkError
 from trackroller.materials import load_database
 from trackroller.parameters import MATERIAL_FIELDS, OPTIONS, PARAMETERS
-from trackroller.report.numbers import on_duty
-from trackroller.report.pages.sheet import collect
-from trackroller.report.words.spectrum import sentences
+from trackroller.results.roller_answer import answer_of_roller
+from trackroller.results.spectrum_answer import answer_of_spectrum
 from trackroller.study.file.load import load_study
 from trackroller.study.run import run_study
 from trackroller.study.spectrum.file import Spectrum
@@ -53,7 +55,8 @@ def test_a_slider_holds_its_example_within_the_bounds():
 
 def numbers(picture):
     """Return the numbers of both contacts by their words."""
-    lines = {words: [v.replace("−", "-") for v in values] for words, *values, _ in picture["lines"]}
+    rows = [[cell["text"] for cell in row] for row in picture["parts"]["contacts"]["rows"]]
+    lines = {words: [v.replace("−", "-").replace(",", "") for v in values] for words, *values, _ in rows}
     return {words: tuple(map(float, values)) for words, values in lines.items() if "·" not in "".join(values)}
 
 
@@ -71,7 +74,11 @@ def test_the_tables_hold_the_numbers_of_solve(shown):
     np.testing.assert_allclose(
         lines["peak stress of the roller (von Mises)"], ds.peak_stress.sel(body="roller"), rtol=1e-2
     )
-    assert "Rolls." in shown["verdict"] and shown["drawing"].lstrip().startswith("<svg")
+    assert (
+        shown["answer"]["kind"] == "lasts"
+        and " h" in shown["headline"]["lead"]
+        and shown["drawing"].lstrip().startswith("<svg")
+    )
 
 
 def test_the_maps_carry_the_load(shown):
@@ -97,17 +104,21 @@ def test_the_stress_below_is_that_of_the_peak(shown):
 def test_margins_are_those_of_the_sheet(shown):
     groups = ("forces", "contact", "friction_work", "peak_stress", "life", "limits")
     ds = tr.solve(tr.Case(axial_force=20, guide_curve_radius=float("inf")), groups)
-    told = {(m.title, m.body): m.used for m in collect(ds).margins}
-    found = {(m["title"], m["body"]): m["used"] for m in shown["margins"]}
+    told = {(row["name"], row["body"]): row["used_low"] for row in answer_of_roller(ds).table.to_dict("records")}
+    rows = shown["answer"]["rows"]
+    found = {(row["name"], row["body"]): row["used_low"] for row in rows}
     common = set(told) & set(found)
-    assert {"lift-off of a contact (axial force)", "full slip (motor force)"} <= {title for title, _ in common}
+    assert {"lift_off", "full_slip"} <= {name for name, _ in common}
     for key in common:
-        assert found[key] == pytest.approx(told[key], rel=1e-6, nan_ok=True)
+        assert (found[key] is None and np.isnan(told[key])) or found[key] == pytest.approx(told[key], rel=1e-6)
+    assert len(shown["limits"]["rows"]) == len(shown["limits"]["bars"]) == len(rows)
+    assert "low" in [head["name"] for head in shown["limits"]["heads"]]
 
 
 def test_lift_off_and_wrong_values_are_words():
-    assert picture({"axial_force": 130}, complete=True)["verdict"].startswith("A contact lifts off.")
-    assert picture({"axial_force": 130})["verdict"] == "A contact lifts off."
+    said = picture({"axial_force": 130}, complete=True)["headline"]
+    assert said["lead"] == "A contact lifts off" and said["rest"].startswith(": both contacts carry at")
+    assert picture({"axial_force": 130})["headline"] == {"lead": "A contact lifts off", "rest": "."}
     with pytest.raises(tr.InputError, match="conform"):
         picture({"roller_profile_radius": -5})
     with pytest.raises(tr.InputError, match="axial_force"):
@@ -143,8 +154,9 @@ def test_no_label_of_a_curve_names_an_equation():
 
 
 def test_the_page_asks_about_a_drive_that_nobody_gave():
-    asked = [picture(values)["doubts"] for values in ({"axial_force": 40}, {"axial_force": 40, "motor_force": 0})]
-    assert "Is the roller driven? motor_force is not given, so -30 N is used" in asked[0][0] and asked[1] == []
+    told = [picture(values)["warnings"] for values in ({"axial_force": 40}, {"axial_force": 40, "motor_force": 0})]
+    asked = [[text for head, text in listed if text.startswith("Is the roller driven?")] for listed in told]
+    assert "motor_force is not given, so -30 N is used" in asked[0][0] and asked[1] == []
 
 
 def test_sheet_and_workbook_of_roller_and_study_are_saved(tmp_path, monkeypatch):
@@ -247,7 +259,7 @@ def test_a_material_of_ones_own_is_written_and_solved(tmp_path, monkeypatch):
     own = load_database().material("our steel")
     assert (own.tensile_strength, own.youngs_modulus) == (820.0, 206e3)
     values = {"roller_material": "our steel", "guide_material": "our steel"}
-    assert "Rolls." in picture(values, "preview", complete=False, inside=False)["verdict"]
+    assert picture(values, "preview", complete=False, inside=False)["answer"]["kind"] == "lasts"
 
 
 @pytest.mark.parametrize(
@@ -281,9 +293,9 @@ def test_the_page_sums_a_spectrum_by_share_and_finds_how_far_a_force_may_go():
     blocks = [dict(zip(("name", "amount", "radial_force", "axial_force"), load, strict=True)) for load in loads]
     found = spectrum(values, "share", blocks)
     again = solve_spectrum(Spectrum.from_dict(yaml.safe_load(found["text"])))
-    with on_duty(values["duty"]):
-        assert found["said"] == [one.text for one in sentences(again)]
-    assert "years" not in found["said"][0] and not any("shift" in text for text in found["said"])  # below a year
+    assert found["answer"] == json.loads(json.dumps(answer_of_spectrum(again).to_dict()))
+    assert "years" not in found["headline"]["lead"]  # below a year
+    assert not any("shift" in head["name"] for table in found["tables"] for head in table["heads"])
     with pytest.raises(InputError, match="add up to 1"):
         spectrum(values, "share", blocks[:1])
     condition = "max_pressure <= 700"
@@ -304,3 +316,24 @@ def test_outputs_of_a_case_file_are_computed_beside_those_of_the_page():
     shown = picture(values)
     assert numbers(shown) == numbers(picture({key: value for key, value in values.items() if key != "outputs"}))
     assert curve(values, "motor_force", [0, 10])["along"] == pytest.approx(np.linspace(0, 10, 21))
+
+
+def test_how_far_a_force_may_go_takes_years_and_shows_the_band_of_the_life():
+    """A year of the duty is 4,000 h; the band at the end of the range is that of the case there."""
+    wears = {"like": "1.7225-quenched-tempered"}
+    values = {"motor_force": 0, "friction_coefficient": 0.1, "contact_model": "sliding", "permissible_wear_depth": 0.1}
+    values |= {"roller_material": wears, "guide_material": wears, "guide_overrollings_per_hour": 60}
+    values |= {"roller_profile_radius": -6.4, "duty": {"hours_per_day": 16, "days_per_year": 250}}
+    life = "pair_life_to_first_limit_hours"
+    told = range_of(values, "axial_force", f"{life} >= 0.05 years")
+    plain = range_of(values, "axial_force", f"{life} >= 200")
+    assert told["ends"] == plain["ends"] and told["text"].startswith("0.05 years are 200 h. ")
+    band = re.search(rf"Above .*?: {life} \S+ \(([\d.e+]+) to ([\d.e+]+)\)", plain["text"])
+    end = plain["ends"][1] * 1.0001
+    case = tr.Case.from_dict({name: value for name, value in values.items() if name not in ("duty", "contact_model")})
+    ds = tr.solve(replace(case, axial_force=end), contact_model="sliding")
+    ends = [float(ds[f"{life}_{end}"]) for end in ("low", "high")]
+    assert [float(one) for one in band.groups()] == pytest.approx(ends, rel=1e-2) and ends[0] < ends[1]
+    del values["duty"]
+    with pytest.raises(InputError, match="needs a duty"):
+        range_of(values, "axial_force", f"{life} >= 0.05 years")

@@ -101,8 +101,14 @@ def test_texts_that_are_no_carriage_are_named(text):
 def test_lives_are_those_of_the_command():
     shown, ds = carriage_lives(EXAMPLE), tr.carriage(parse_mapping(EXAMPLE, "file"))
     assert shown["worst"] == ds.attrs["worst_roller"]
-    assert "years" in shown["said"][0]
-    assert [one["title"] for one in shown["tables"]] == ["Lives", "Loads of the rollers", "Load cases and margins"]
+    assert "years" in shown["headline"]["lead"]
+    assert [one["title"] for one in shown["tables"]] == [
+        "Limits",
+        "Loads of the rollers",
+        "Load cases and margins",
+        "Masses",
+        "Places and directions",
+    ]
 
 
 def test_the_page_writes_over_its_own_files_only(folder):

@@ -61,7 +61,7 @@ def test_a_slider_moves_the_picture_first_in_preview_then_in_standard(page):
         return seen; })()""")
     assert stages == ["preview", "standard", "complete"]
     assert page.run("location.hash") == "#axial_force=70"
-    assert "lifts off with" in verdict(page)
+    assert "then fatigue of the" in verdict(page)
     page.run("[...document.querySelectorAll('header button')].find((b) => b.textContent === 'Undo').click()")
     page.until("!location.hash.includes('axial_force')")  # one movement is one step
     page.until(SETTLED)
@@ -76,7 +76,7 @@ def test_the_page_begins_with_the_roller_of_the_readme(browser, live):
         assert given["roller_material"] in readme and given["guide_material"] in readme
         call = readme.partition("tr.solve(tr.Case(")[2].partition(", **")[0]
         assert call == ", ".join(f"{name}={value}" for name, value in given.items() if not name.endswith("material"))
-        assert float(verdict(shown).partition("after ")[2].split()[0]) > 8.0
+        assert float(verdict(shown).split()[0]) > 8.0
         shown.run("document.querySelector('[data-field=axial_force]').focus()")
         type_into(shown, "axial_force", "70")
         shown.until(SETTLED)
@@ -373,7 +373,7 @@ def test_no_width_scrolls_sideways(page, width):
     page.resize(width, 800)
     steel = dict.fromkeys(("roller_material", "guide_material"), "1.7225-quenched-tempered")
     page.run(f"trackroller.state.replace({json.dumps(steel | {'motor_force': 0, 'friction_coefficient': 0.1})})")
-    page.until("document.querySelector('.margins').textContent.includes('†')")
+    page.until("document.querySelector('.margins').textContent.includes('kept')")
     for tab in ("roller", "whatif", "study", "results", "carriage"):
         show(page, tab)
         if tab == "carriage":
@@ -391,7 +391,7 @@ def test_margins_with_years_fit_a_phone_and_name_their_body(browser, live):
         assert shown.run("document.querySelector('.margins').getBoundingClientRect().right <= innerWidth")
         wear = [row for row in rows if row[0].startswith("wear")]
         assert {row[1] for row in wear} == {"roller", "guide"}
-        assert all(row[2] == "at most 0.1 mm" for row in wear)
+        assert all(" to " in row[-1] for row in wear)  # a life with both ends
 
 
 def test_everything_is_reached_by_the_keyboard(page):

@@ -10,7 +10,7 @@ from scipy.optimize import minimize_scalar
 import trackroller as tr
 from trackroller.carriage.loads import GRAVITY
 from trackroller.errors import InputError
-from trackroller.report.words.carriage import sentences
+from trackroller.results.carriage_answer import answer_of_carriage
 
 G, MASS = GRAVITY, 40.0
 
@@ -90,13 +90,13 @@ def test_rollers_with_and_without_stiffness_agree():
 def test_the_pendulum_is_said_and_margins_of_a_payload_that_swings_it_are_not_given():
     values = leaf(payloads=[{"value": 5, "at": [0, 100, -400]}])
     ds = solved(values)
-    said = " ".join(one.text for one in sentences(ds))
-    assert "is a pendulum: it is free to roll and stable, and swings by" in said
+    said = " ".join(one.where for one in answer_of_carriage(ds).warnings)
+    assert "a pendulum: the rollers stand in one line" in said and "it swings by" in said
     assert "margins of the payload are not known" in said
     assert np.isnan(ds.payload_to_tipping.values).all() and np.isinf(ds.loads_to_tipping.values).all()
     below = solved(leaf(payloads=[{"value": 5, "at": [0, 0, -400]}]))
     assert np.isinf(below.payload_to_tipping.values).all()
-    assert "margins of the payload" not in " ".join(one.text for one in sentences(below))
+    assert "margins of the payload" not in " ".join(one.where for one in answer_of_carriage(below).warnings)
 
 
 @pytest.mark.parametrize(

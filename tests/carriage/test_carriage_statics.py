@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pytest
 from carts import SIDES, cart, rollers_below, rollers_between, shuttle
+from limit_rows import headline, part_of
 from scipy.optimize import lsq_linear, minimize
 
 from trackroller.carriage import statics
@@ -16,8 +17,7 @@ from trackroller.carriage.loads import GRAVITY, loads_of
 from trackroller.carriage.solve import forces_of, solve_carriage, springs_of
 from trackroller.carriage.statics import equilibrium
 from trackroller.errors import InputError
-from trackroller.report.pages.carriage import margin_table
-from trackroller.report.words.carriage import sentences
+from trackroller.results.carriage_answer import answer_of_carriage
 
 G = GRAVITY
 
@@ -294,9 +294,10 @@ def test_forces_that_do_not_settle_are_told(monkeypatch):
     ds = solve_carriage(sharing(900.0), lives=False)
     assert ds.radial_force.isnull().all() and ds.axial_force.isnull().all()
     assert ds.converged.values.tolist() == [False]
-    assert "carriage_unsettled" in [one.kind for one in sentences(ds)]
-    assert margin_table(ds).rows[0][0] == "push (not settled)"
-    assert math.isnan(ds.loads_to_lift_off[0]) and "not known" in margin_table(ds).rows[0]
+    answer = answer_of_carriage(ds)
+    assert answer.kind == "unsettled" and "push are not known" in headline(answer)
+    assert part_of(answer, "cases")["settled"].tolist() == ["no"]
+    assert math.isnan(ds.loads_to_lift_off[0]) and part_of(answer, "cases")["loads_lift_off"].isna().all()
 
 
 def test_margins_of_a_cart():
@@ -315,8 +316,9 @@ def test_margin_to_one_contact():
     assert float(ds.loads_to_one_contact[0]) == pytest.approx(bears / (100 * G * (0.25 + 24 / 300)), rel=1e-6)
     payload = G * (0.25 + 40 / 300)  # N per kg of payload, 80 mm in front
     assert float(ds.payload_to_one_contact[0]) == pytest.approx((bears - 10 * G) / (60 * payload), rel=1e-6)
-    texts = " ".join(one.text for one in sentences(ds))
-    assert "leaves a roller on one contact in the load case run, because its axial force lifts the other one" in texts
+    first, second = answer_of_carriage(ds).headline["margins"]
+    assert (first["of"], first["end"], first["case"]) == ("payload", "one contact", "run")
+    assert (first["times"], second["times"]) == (float(ds.payload_to_one_contact[0]), float(ds.loads_to_one_contact[0]))
 
 
 def test_preload_lifts_off_at_its_own_multiplier():
@@ -349,15 +351,15 @@ def test_a_roller_without_load_is_told_with_its_cause():
         rollers=rollers_between(stiffness=1e4) | {"D" + n: r for n, r in rollers_below(stiffness=1e4).items()}
     )
     values["preload"] = [{"pair": ["FL", "FR"], "play": 0.5}]
-    texts = [one.text for one in sentences(solve_carriage(values, lives=False))]
-    (of_pair,) = [text for text in texts if text.startswith("Roller FL carries no load")]
-    assert "its play is larger than the deflection" in of_pair
+    texts = [caution.where for caution in answer_of_carriage(solve_carriage(values, lives=False)).warnings]
+    (of_pair,) = [text for text in texts if "without load in any case: FL" in text]
+    assert "the play is larger than the deflection" in of_pair
     rollers = {"FL": [200, 50, 0], "FR": [200, -50, 0], "RL": [-200, 50, 0], "up": [0, 0, -40]}
     made = {n: {"at": at, "pushes": [0, 0, -1], "x_R": [0, 1, 0], "stiffness": 1e4} for n, at in rollers.items()}
     made["up"]["pushes"] = [0, 0, 1]
     values = cart(rollers=made, mass={"value": 40, "at": [60, 10, 60]})
-    texts = [one.text for one in sentences(solve_carriage(values, lives=False))]
-    assert any(text.startswith("Roller up carries no load in any case: the others") for text in texts)
+    texts = [caution.where for caution in answer_of_carriage(solve_carriage(values, lives=False)).warnings]
+    assert "without load in any case: up; a preload presses them on" in texts
 
 
 def test_a_maker_s_example_of_the_load_factor():
@@ -389,9 +391,11 @@ def test_margins_beyond_one_contact_are_not_stated():
     """The model of a roller on both contacts ends where an axial force lifts one of them."""
     ds = solve_carriage(shuttle(cases=[{"name": "run"}]), lives=False)
     assert float(ds.payload_to_one_contact[0]) < float(ds.payload_to_lift_off[0])
-    kinds = [one.kind for one in sentences(ds)]
-    assert "carriage_contact" in kinds and "carriage_margin" not in kinds
-    assert margin_table(ds).rows[0].count("beyond one contact") == 4
+    answer = answer_of_carriage(ds)
+    assert [one["end"] for one in answer.headline["margins"]] == ["one contact", "one contact"]
+    row = part_of(answer, "cases").iloc[0]
+    later = [f"{part}_{end}" for part in ("payload", "loads") for end in ("lift_off", "tipping")]
+    assert row[later].isna().all() and row["payload_one_contact"] == float(ds.payload_to_one_contact[0])
 
 
 def vehicle(rng):
@@ -496,8 +500,9 @@ def test_a_vehicle_without_a_consistent_set_has_no_forces_and_no_lives():
     ds = solve_carriage(values)
     assert not ds.converged.any() and ds.radial_force.isnull().all() and ds.life_km.isnull().all()
     assert ds.attrs["worst_roller"] == ""
-    texts = " ".join(one.text for one in sentences(ds))
-    assert "not known" in texts and "More preload helps" in texts
+    answer = answer_of_carriage(ds)
+    assert "not known" in headline(answer) and "more preload helps" in headline(answer)
+    assert any("More preload helps" in caution.where for caution in answer.warnings)
     whole = load_carriage(values)
     assert not carrying_sets(springs_of(whole), reduced(whole, springs_of(whole)))
     preload = [{"pair": [f"g{end}L", f"g{end}R"], "force": 600} for end in "FR"]

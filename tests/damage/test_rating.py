@@ -8,7 +8,7 @@ import pytest
 import trackroller as tr
 from trackroller.damage.rating import contacts_to_limit, static_pressure
 from trackroller.errors import InputError
-from trackroller.report.tables.limits import placeholders
+from trackroller.results.placeholders import guess_cautions, placeholders_part
 
 STEEL = {"like": "1.7225-normalised", "hardness": 220.0, "yield_strength": 480.0}
 
@@ -96,9 +96,14 @@ def test_a_hardened_surface_needs_its_yield_strength_instead_of_a_hardness():
         tr.solve(tr.Case(**case, roller_material=STEEL | {"surface_hardened": 0.5}), outputs="rating")
 
 
-def test_placeholders_are_one_sentence_for_a_material():
+def test_placeholders_are_one_warning_for_a_material_and_a_row_for_each_value():
     ds = tr.solve(tr.Case(motor_force=0), outputs=("rating", "shakedown", "limits"), contact_model="sliding")
-    assert placeholders(ds) == [
-        "Placeholders of material '1.7225-normalised': rating with hardness (expected from 200 to 240 HB); "
-        "shakedown with yield_strength (expected from 400 to 550 MPa)."
+    part = placeholders_part(ds)
+    rows = part.table[part.table["limit"] != ""]
+    found = [(row.material, row.limit, row.value, row.low, row.high, row.units) for row in rows.itertuples()]
+    assert found == [
+        ("1.7225-normalised", "rating", "hardness", 200.0, 240.0, "HB"),
+        ("1.7225-normalised", "shakedown", "yield_strength", 400.0, 550.0, "MPa"),
     ]
+    (caution,) = guess_cautions(part)
+    assert caution.where.startswith("1.7225-normalised: rating and shakedown")

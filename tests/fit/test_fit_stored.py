@@ -7,14 +7,14 @@ import shutil
 import numpy as np
 import pytest
 import xarray as xr
+from limit_rows import limit_row, part_of
 
 import trackroller as tr
+from trackroller.errors import InputError
 from trackroller.fit.stored import stored_fit
 from trackroller.materials import load_database
 from trackroller.materials.file import find_user_file, posterior_path
-from trackroller.report.numbers import rounded
-from trackroller.report.pages.sheet import collect
-from trackroller.report.words.by_tests import by_tests
+from trackroller.results.roller_answer import answer_of_roller, beyond_tests
 from trackroller.study.file.load import parse_study
 from trackroller.study.run import run_study
 from trackroller.study.store.folder import StudyFolder
@@ -30,6 +30,18 @@ def test_the_stored_fit_gives_the_intervals_of_the_fit(rig):
     )
 
 
+def test_a_fit_of_another_version_is_refused_in_one_sentence(rig):
+    values = vars(load_database().material("rig steel"))
+    path = posterior_path(find_user_file(), "rig steel")
+    with xr.open_dataset(path) as opened:
+        stored = opened.load()
+    del stored.attrs["fatigue_knee"]
+    path.unlink()
+    stored.to_netcdf(path)
+    with pytest.raises(InputError, match=r"is that of another version.*Fit the tests again\.$"):
+        stored_fit("rig steel", values)
+
+
 def test_a_material_that_was_changed_by_hand_has_no_fit(rig):
     values = load_database().material("rig steel").as_dict()
     assert stored_fit("rig steel", values | {"fatigue_strength_ratio": 0.3}) is None
@@ -42,28 +54,29 @@ def test_the_sheet_states_the_band_beside_the_life_and_the_extrapolation(rig):
         tr.solve(case | {"radial_force": force}, contact_model="sliding", outputs=("forces", "life", "limits"))
         for force in (-160, -60)
     )
-    assert by_tests(near) == []
-    (said,) = by_tests(far)
-    assert "is an extrapolation" in said
+    assert beyond_tests(near) == []
+    (said,) = beyond_tests(far)
+    assert said.startswith("life of the roller: ") and "tests from" in said
     for ds, force, beyond in ((near, -160, False), (far, -60, True)):
-        facts = collect(ds)
-        rows = {row.words: row.value for row in facts.lives if "by the 6 tests of rig steel" in row.words}
-        assert len(rows) == 2
+        answer = answer_of_roller(ds)
+        lives = part_of(answer, "lives")
+        rows = lives[lives["basis"] == "90 % by the 6 tests of rig steel"]
+        assert rows["probability"].tolist() == [0.1, 0.5]
         stress = float(tr.solve(case | {"radial_force": force}, contact_model="sliding").peak_stress[:, 0].max())
         per_hour = float((ds["life_cycles"] / ds["life_hours"]).sel(body="roller").max())
-        for probability, text in zip((0.1, 0.5), rows.values(), strict=True):
-            ends = rig.interval("cycles", amplitude=stress, failure_probability=probability)
+        for row in rows.itertuples():
+            ends = rig.interval("cycles", amplitude=stress, failure_probability=row.probability)
             low, high = (end / per_hour for end in ends)
-            assert text.startswith(f"{rounded(low, 2)} to {rounded(high, 2)} h")
-            assert ("beyond the S-N data" in text) == beyond
-        fatigue = next(margin for margin in facts.margins if "fatigue" in margin.title and margin.body == "roller")
-        assert (fatigue.low, fatigue.high) == pytest.approx((low, high))  # of the median
-        assert f"{rounded(low)} to {rounded(high)} h" in facts.verdict
-        assert ("beyond the S-N data" in facts.verdict) == beyond
+            assert (row.low, row.high) == pytest.approx((low, high))
+            assert (row.extrapolated == "yes") == beyond
+        fatigue = limit_row(answer, "fatigue", "roller")
+        assert (fatigue["low"], fatigue["high"]) == pytest.approx((low, high))  # of the median
+        assert (answer.headline["low"], answer.headline["high"]) == pytest.approx((low, high))
+        assert answer.headline["extrapolated"] == beyond
 
 
 def test_the_sheet_refuses_values_of_another_contact_model(rig):
-    said = by_tests(tr.solve(RIG | {"roller_material": "rig steel"}, contact_model="kalker_table"))
+    said = beyond_tests(tr.solve(RIG | {"roller_material": "rig steel"}, contact_model="kalker_table"))
     assert said == [
         "The values of rig steel hold for contact_model sliding alone: solve with it, or fit the tests anew."
     ]
@@ -141,5 +154,5 @@ def test_a_stored_fit_with_other_values_is_refused(rig):
         data = opened.load()
     del data.attrs["tested_cycles"]
     data.to_netcdf(path)
-    with pytest.raises(tr.InputError, match=r"lacks 'tested_cycles'.*Fit the tests again"):
+    with pytest.raises(tr.InputError, match=r"it has no tested_cycles.*Fit the tests again"):
         stored_fit("rig steel", values)

@@ -155,7 +155,7 @@ def long_names() -> Answer:
     names = [{name: table[name].iloc[0] for name in choices}]
     lost = {"count": 20, "of": 54, "where": "all 12 driven at friction 0.05"}
     exceeded = {"limit": "the catalogue load", "body": "roller", "use": 2.62, "hours": 3.0}
-    second = {"limit": "the rating", "verdict": "missed"}
+    second = {"limit": "rating", "verdict": "missed"}
     head = {"names": names, "low": math.inf, "high": math.inf, "not_held": lost, "elsewhere": True}
     head |= {"exceeded": exceeded, "second": second, "ends": "wear", "ends_high": "fatigue", "error": math.nan}
     columns = (VERDICT, *choices.values(), LOW, MEDIAN, BEST, WORST, ENDS, HOLDS, MEETS, RATIO, RATING, RATED, ERROR)

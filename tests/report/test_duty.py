@@ -13,13 +13,11 @@ from command_line import trackroller
 
 import trackroller as tr
 from trackroller.app.picture import texts
-from trackroller.damage import LIMITS
 from trackroller.report.explorer.rows import collect, solve_inputs
 from trackroller.report.numbers import hour_unit, lasting, on_duty, quantity, rounded
 from trackroller.roller.duty import checked_duty, duty_of, years
 from trackroller.study.repeat import Repeat
 
-FATIGUE = LIMITS["fatigue"].title
 DUTY = {"hours_per_day": 8, "days_per_year": 220}
 
 
@@ -67,16 +65,18 @@ def test_the_workbook_of_one_roller_has_inputs_results_and_limits(tmp_path):
     words = ("--set", "contact_model=sliding", "--set", "accuracy=preview")
     assert trackroller("solve", "case.yaml", *words, "-o", "roller.xlsx", cwd=tmp_path).stdout == ""
     book = openpyxl.load_workbook(tmp_path / "roller.xlsx")
-    inputs, results, limits = (list(sheet.values) for sheet in book)
-    assert book.sheetnames == ["inputs", "results", "limits"] and all(sheet.freeze_panes == "A2" for sheet in book)
+    inputs, results, limits = (list(book[name].values) for name in ("inputs", "results", "limits"))
+    further = ["headline", "columns", "contacts", "whole", "lives", "placeholders", "warnings"]
+    assert book.sheetnames == ["inputs", "results", "limits", *further]
+    assert all(sheet.freeze_panes == "A2" for sheet in book)
     assert ("axial_force", "axial force", 40, "N", "given") in inputs
     assert ("radial_force", "radial force", -200, "N", "example") in inputs
     ds = tr.solve(tr.Case(axial_force=40), contact_model="sliding", accuracy="preview")
     found = {name: (value, unit) for name, _, value, unit in results}
     assert found["normal_force_2"] == (float(ds.normal_force.sel(contact=2)), "N")
-    hours = next(dict(zip(limits[0], row, strict=True)) for row in limits if row[:2] == (FATIGUE, "roller"))
-    assert hours["hours"] == pytest.approx(float(ds.roller_life_hours)) and hours["state"] == "kept"
-    assert hours["years"] == pytest.approx(hours["hours"] / 1760)
+    hours = next(dict(zip(limits[0], row, strict=True)) for row in limits if row[:2] == ("fatigue", "roller"))
+    assert hours["hours"] == pytest.approx(float(ds.roller_life_hours)) and hours["state"] == "finite"
+    assert hours["years_low"] == pytest.approx(hours["low"] / 1760)
 
 
 SPECTRUM = """\

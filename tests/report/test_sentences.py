@@ -13,8 +13,8 @@ import yaml
 
 from trackroller.report.numbers import percent, percent_up, plus_minus, share
 from trackroller.report.tables.table import Table
-from trackroller.report.words.accuracy import SLIDING_ERROR
 from trackroller.report.workbook import export
+from trackroller.results.flags import SLIDING_ERROR
 from trackroller.study.file.load import parse_study
 
 

@@ -8,14 +8,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import xarray as xr
+from limit_rows import headline, part_of
 from typer.testing import CliRunner
 
 import trackroller as tr
 from trackroller.cli.main import app
 from trackroller.report.figures.wear import course, profiles
-from trackroller.report.pages.wear import state_table
-from trackroller.report.words.accuracy import SLIDING_WEAR
-from trackroller.report.words.wear import deeper_contact, sentences
+from trackroller.results.flags import SLIDING_WEAR
+from trackroller.results.wear_answer import answer_of_wear, deeper_contact
 from trackroller.roller.wearing import Groove, travel_to_depth
 
 CASE = """
@@ -63,12 +63,12 @@ def test_a_run_of_the_command_goes_on_with_the_same_bits_and_writes_its_page(pla
         np.testing.assert_array_equal(parts[name].values, whole[name].values, err_msg=str(name))
     page = (place / "page.html").read_text(encoding="utf-8")
     assert page.count("<img ") == 2 and "trackroller wear --to 9km --report page.html" in page
-    for sentence in sentences(whole):
-        assert sentence.text in said and sentence.text in page
-    end = sentences(whole)[0].values
-    assert end["depths"]["roller"] == 1e3 * float(whole.groove_depth.isel(travel=-1).max()) and end["travel"] == 9.0
+    answer = answer_of_wear(whole)
+    assert headline(answer) in " ".join(said.split())
+    assert answer.headline["depths"] == {"roller": 1e3 * float(whole.groove_depth.isel(travel=-1).max())}
+    assert answer.headline["travel"] == 9.0 and answer.table["depth"].tolist()[1] == 0.0
     assert deeper_contact(whole) == 2
-    assert float(state_table(whole).rows[-1][0]) == 9.0
+    np.testing.assert_array_equal(part_of(answer, "states")["travel"], whole.travel.values)
     for draw in (profiles, course):
         assert draw(whole)[1].caption
     assert tr.report(whole, place / "again.html").exists()
@@ -89,16 +89,20 @@ def test_the_page_states_the_wear_coefficient_and_that_it_is_a_placeholder(tmp_p
     assert command[2:6] == ["--to", "1km", "--report", "page.html"]
     assert {"motor_force=0", "friction_coefficient=0.2", "contact_model=sliding", "accuracy=preview"} < set(command)
     assert SLIDING_WEAR in page
-    assert "wear coefficient <i>k</i><sub>W</sub>" in page and "1e-05 to 0.0001" in page
+    assert "wear coefficient <i>k</i><sub>W</sub>" in page and "1·10⁻⁵ to 1·10⁻⁴" in page
+    assert answer_of_wear(ds).headline["guessed"]
 
 
-def test_the_sentence_on_pressure_tells_its_error_and_no_state_twice(whole):
+def test_the_headline_tells_a_larger_pressure_between_both_ends_alone(whole):
     worn = whole.assign(max_pressure=whole.max_pressure.copy())
     rising = np.linspace(400.0, 600.0, worn.sizes["travel"])
     worn["max_pressure"] = worn.max_pressure * 0.0 + xr.DataArray(rising, dims="travel")
-    told = sentences(worn)[1]
-    assert told.text.count("600 MPa") == 1
-    assert told.values["error"] == float(whole.pressure_error.sel(contact=2).max()) > 0.0
+    answer = answer_of_wear(worn)
+    assert headline(answer).count("600 MPa") == 1
+    assert answer.headline["pressure_error"] == float(whole.pressure_error.sel(contact=2).max()) > 0.0
+    rising[1] = 700.0
+    worn["max_pressure"] = worn.max_pressure * 0.0 + xr.DataArray(rising, dims="travel")
+    assert "700 MPa at" in headline(answer_of_wear(worn))
 
 
 def test_a_place_that_hardly_wears_gives_no_warning_on_the_way_to_the_permissible_depth():

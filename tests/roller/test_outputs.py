@@ -6,11 +6,12 @@ import math
 
 import numpy as np
 import pytest
+from limit_rows import part_of
 from reference_cases import solve_sliding
 
 import trackroller as tr
 from trackroller.parameters import OPTIONS
-from trackroller.report.pages.sheet import collect
+from trackroller.results.roller_answer import answer_of_roller
 from trackroller.roller import solver
 from trackroller.roller.dataset import FLAGS, VARIABLES, shown
 
@@ -34,12 +35,13 @@ def test_every_declared_output_has_a_value_and_every_value_a_declaration(monkeyp
 @pytest.mark.slow
 def test_what_is_shown_stands_on_the_sheet_with_its_value():
     ds = solve_sliding(tr.Case())
-    facts = collect(ds)
-    assert len(facts.whole) == len([name for name in shown() if name in ds])
+    answer = answer_of_roller(ds)
+    whole = part_of(answer, "whole").set_index("quantity")
+    assert len(whole) == len([name for name in shown() if name in ds])
     peaks = 4  # stress and depth of roller and guide
-    assert len(facts.lines) == len([name for name in shown("contact") if name in ds]) + peaks
-    torque = next(row for row in facts.whole if row.words.startswith("drive torque"))
-    assert float(torque.value) == pytest.approx(float(ds.drive_torque), rel=1e-3) and torque.unit == "N·mm"
+    assert len(part_of(answer, "contacts")) == len([name for name in shown("contact") if name in ds]) + peaks
+    torque = whole.loc["drive torque about the roller's axis M_xR"]
+    assert torque["value"] == float(ds.drive_torque) and torque["units"] == "N mm"
 
 
 @pytest.mark.parametrize("motor", [-30.0, 0.0, 25.0])

@@ -4,13 +4,13 @@ import json
 
 import numpy as np
 import pytest
+from limit_rows import limit_row
 
 import trackroller as tr
 from trackroller.errors import InputError
 from trackroller.materials import Material, load_database
 from trackroller.materials.tables import material_details
-from trackroller.report.pages.sheet import collect
-from trackroller.report.tables.limits import not_checked, placeholders
+from trackroller.results.roller_answer import answer_of_roller
 from trackroller.roller import temperature
 from trackroller.roller.case import to_table
 from trackroller.study.spectrum.file import load_spectrum
@@ -111,8 +111,9 @@ def test_end_of_the_table_is_told(cold):
 
 def test_sheet_names_the_table_among_what_the_data_rest_on(warm):
     words = "temperature: youngs_modulus and tensile_strength of material 'inline' are those at its bulk temperature."
-    assert words in collect(warm).guesses
-    assert not any("temperature: " in sentence for sentence in (*placeholders(warm), *not_checked(warm)))
+    answer = answer_of_roller(warm)
+    assert words in [caution.where for caution in answer.warnings if caution.code == "flagged"]
+    assert not any("temperature: " in text for texts in answer.not_checked.values() for text in texts)
 
 
 def test_unknown_temperature_is_told():
@@ -195,7 +196,8 @@ def test_units_of_a_table():
 
 def test_the_sheet_compares_with_the_strength_at_the_temperature_of_the_body(warm):
     strength = np.interp(roller_temperature(warm), TABLE["temperature"], TABLE["tensile_strength"])
-    own = {m.body: m.used for m in collect(warm).margins if m.title.startswith("pressure limit")}
+    answer = answer_of_roller(warm)
+    own = {body: limit_row(answer, "pressure", body)["used_low"] for body in ("roller", "guide")}
     pressure = float(warm.max_pressure.max())
     assert strength < 79.0 and own["roller"] == pytest.approx(pressure / (1.6 * strength), rel=1e-12)
     assert own["guide"] == pytest.approx(pressure / (1.6 * 720), rel=1e-12)

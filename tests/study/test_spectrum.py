@@ -9,13 +9,13 @@ import pytest
 import xarray as xr
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from limit_rows import part_of
 
 import trackroller as tr
 from trackroller.damage.sn_curve import SNCurve
 from trackroller.errors import InputError
 from trackroller.materials import builtin_database
-from trackroller.report.numbers import rounded
-from trackroller.report.words.spectrum import sentences
+from trackroller.results.spectrum_answer import answer_of_spectrum
 from trackroller.study.spectrum.file import Spectrum, load_spectrum, overrollings_per_shift
 from trackroller.study.spectrum.solve import solve_spectrum
 
@@ -26,8 +26,10 @@ SCATTERED = {"like": "1.7225-normalised", "scatter_in_cycles": 4.0}
 DB = builtin_database()
 
 
-def summary(ds):
-    return [sentence.text for sentence in sentences(ds)]
+def life_of(ds, body):
+    """Return the row of the median life of a body by fatigue."""
+    lives = part_of(answer_of_spectrum(ds), "lives")
+    return lives[(lives["body"] == body) & (lives["probability"] == 0.5)].iloc[0]
 
 
 def spectrum(*blocks, **more):
@@ -117,7 +119,7 @@ def test_a_block_in_which_a_contact_lifts_off_makes_the_life_unknown():
     lifted = {"name": "lifted", "distance": 10, "axial_force": 200}
     ds = solve_spectrum(spectrum({"name": "calm", "distance": 10}, lifted, contact_model="sliding"))
     assert ds.regime.values.tolist() == [0, 2] and np.isnan(ds.damage.isel(block=1)).all()
-    assert np.isnan(ds.roller_life_shifts) and "'lifted' (lift-off)" in summary(ds)[0]
+    assert np.isnan(ds.roller_life_shifts) and "lifted (lift-off)" in life_of(ds, "roller")["why"]
 
 
 def test_a_body_that_breaks_and_a_roller_that_skids_have_no_fatigue_life():
@@ -138,12 +140,10 @@ def test_a_spectrum_says_where_a_body_breaks_and_where_a_roller_skids():
     skids, breaks = ({**calm, "name": "slips", "motor_force": -60}, {**calm, "name": "blow", "radial_force": -4000})
     more = {"base": base, "contact_model": "sliding", "accuracy": "preview", "limits": ["fatigue"]}
     ds = solve_spectrum(spectrum(calm, skids, breaks, **more))
-    said = summary(ds)
+    row = life_of(ds, "roller")
     assert ds.regime.values.tolist() == [0, 1, 0] and np.isnan(ds.roller_life_hours)
-    assert said[0].startswith(
-        "The roller has no fatigue life: its peak stress exceeds its tensile strength in 'blow'; "
-    )
-    assert "the roller skids in 'slips'" in said[0] and "at most" in said[0]
+    assert row["why"] == "its peak stress exceeds its tensile strength in blow; the roller skids in slips"
+    assert np.isnan(row["hours"]) and row["at_most"] > 0
     assert ds.life_to_first_limit_shifts.values.tolist() == [0, 0], "it breaks in each shift"
     assert ds.limiting_mechanism.attrs["flag_meanings"].split()[int(ds.limiting_mechanism[0])] == "fatigue"
     slips = solve_spectrum(spectrum(calm, skids, **more))
@@ -156,9 +156,9 @@ def test_a_failed_block_is_not_hidden_and_named():
     blocks = ({"name": "a", "distance": 10}, {"name": "jam", "distance": 10})
     ds = solved(spectrum(*blocks), regimes=[0, 3], stress=stress)
     assert np.isnan(ds.roller_life_shifts)
-    assert "'jam' (failed)" in summary(ds)[0]
+    assert "jam (failed)" in life_of(ds, "roller")["why"]
     bound = solved(spectrum(blocks[0]), stress=stress[:1]).roller_life_shifts.item()
-    assert f"at most {rounded(bound * float(ds.duration.sum()))} h" in summary(ds)[0]
+    assert life_of(ds, "roller")["at_most"] == pytest.approx(bound * float(ds.duration.sum()), rel=1e-12)
     blocks[1]["distance"] = 0
     assert np.isfinite(solved(spectrum(*blocks), regimes=[0, 3], stress=stress).roller_life_shifts)
 
@@ -186,13 +186,14 @@ def test_a_block_by_distance_by_hours_and_by_share_of_the_time_are_the_same():
         assert lives == pytest.approx([lives[0]] * 3, rel=1e-12), name
     assert float(found["share"].duration.sum()) == pytest.approx(1.0)
     assert float(found["hours"].roller_life_shifts) == pytest.approx(float(found["share"].roller_life_hours) / 10)
-    assert not any("shift" in text for text in summary(found["share"]))
+    shifts = [column.name for column in answer_of_spectrum(found["share"]).columns if "shift" in column.name]
+    assert shifts == []
 
 
 def test_guide_life_is_unknown_without_its_overrollings_and_the_summary_says_what_to_give():
     ds = solved(spectrum({"distance": 10}))
     assert np.isnan(ds.guide_life_shifts) and np.isfinite(ds.roller_life_shifts)
-    assert "guide_overrollings" in summary(ds)[1]
+    assert "guide_overrollings" in life_of(ds, "guide")["why"]
 
 
 def test_scatter_of_the_material_gives_lives_at_failure_probabilities():
@@ -223,7 +224,7 @@ def test_delivered_example_with_the_real_solver():
     lives = tr.solve([block.case for block in spec.blocks], outputs="life", life_rule="haibach", database=DB)
     expected = (ds.overrollings.values[:, None, :] / lives.life_cycles.values).sum(axis=0)
     assert ds.damage_sum.values == pytest.approx(expected, rel=1e-9)
-    assert [one.kind for one in sentences(ds)] == ["spectrum_pair", "spectrum_limit", "spectrum", "spectrum"]
+    assert answer_of_spectrum(ds).kind == "lasts"
 
 
 def test_blocks_from_a_table_are_those_of_the_list(tmp_path):
@@ -305,10 +306,11 @@ def test_command_prints_the_shifts_of_the_delivered_example(tmp_path):
 
     path = str(ROOT / "config" / "spectra" / "sorter.yaml")
     said = CliRunner().invoke(app, ["spectrum", path])
-    assert said.exit_code == 0 and "By fatigue the roller lasts" in said.output and "empty return" in said.output
+    assert said.exit_code == 0 and "then fatigue of the roller" in said.output and "empty return" in said.output
     told = json.loads(CliRunner().invoke(app, ["spectrum", path, "--json"]).output)
     assert told["regime"]["meaning"] == ["rolling"] * 3
-    assert f"{rounded(told['roller_life_shifts']['value'])} shifts" in said.output
+    lives = {row["body"]: row for row in told["answer"]["parts"]["lives"]["rows"]}
+    assert lives["roller"]["shifts"] == told["roller_life_shifts"]["value"]
     assert CliRunner().invoke(app, ["spectrum", path, "-o", str(tmp_path / "out.nc")]).exit_code == 0
     with xr.open_dataset(tmp_path / "out.nc") as kept:
         assert float(kept["roller_life_shifts"]) == told["roller_life_shifts"]["value"]
@@ -322,4 +324,4 @@ def test_a_life_beyond_the_data_is_said_to_be():
     for force, beyond in ((-40.0, True), (-300.0, False)):
         ds = solved(spectrum({"distance": 1000.0, "radial_force": force, "guide_overrollings": 10.0}))
         total = float(ds.roller_life_shifts) * float(ds.overrollings.sel(body="roller").sum())
-        assert (total > 5e6) == beyond and ("beyond the S-N data" in summary(ds)[0]) == beyond
+        assert (total > 5e6) == beyond and answer_of_spectrum(ds).headline["extrapolated"] == beyond

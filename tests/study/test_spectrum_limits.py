@@ -2,12 +2,11 @@
 
 import numpy as np
 import pytest
+from limit_rows import headline, limit_row
 
 from trackroller.damage.verdict import ENDS, STATES
 from trackroller.errors import InputError
-from trackroller.report.numbers import rounded
-from trackroller.report.pages.spectrum import limit_table
-from trackroller.report.words.spectrum import sentences
+from trackroller.results.spectrum_answer import answer_of_spectrum
 from trackroller.study.spectrum.file import Spectrum
 from trackroller.study.spectrum.solve import solve_spectrum
 
@@ -62,22 +61,26 @@ def test_the_first_limit_is_the_one_that_comes_first():
             shifts.limit[int(shifts.sel(body=body).fillna(np.inf).values.argmin())].values
         )
     assert float(ds.pair_life_to_first_limit_shifts) == float(shifts.min())
-    head, other = sentences(ds)[:2]
+    answer = answer_of_spectrum(ds)
     hours = shifts.min("limit") * float(ds["duration"].sum())
-    assert (head.kind, head.values["body"]) == ("spectrum_pair", str(hours.body.values[int(hours.values.argmin())]))
-    assert head.values["hours"].startswith(f"{rounded(float(ds.pair_life_to_first_limit_hours_low))}")
-    assert other.kind == "spectrum_limit" and other.values["body"] != head.values["body"]
-    assert [row[0].split()[0] for row in limit_table(ds).rows] == ["static", "rolling-contact", "wear"]
+    assert answer.headline["body"] == str(hours.body.values[int(hours.values.argmin())])
+    assert answer.headline["low"] == float(ds.pair_life_to_first_limit_hours_low)
+    assert answer.headline["high"] == float(ds.pair_life_to_first_limit_hours_high)
+    assert set(answer.table["name"]) == {"static", "fatigue", "wear"}
+    for row in answer.table.itertuples():
+        own = ds.sel(limit=row.name, body=row.body)
+        np.testing.assert_array_equal(row.low, float(own["life_hours_by_limit_low"]))
+        np.testing.assert_array_equal(row.used_low, float(own["utilisation"]))
 
 
 def test_a_limit_without_a_life_is_exceeded_at_once_by_the_worst_block():
     jerk = LOADED | {"name": "jerk", "distance": 1, "radial_force": -9e4}
     ds = solved(EMPTY, jerk, limits=("static",))
     assert (ds.life_to_first_limit_shifts == 0).all() and (ds.utilisation > 1).all()
-    kinds = ["spectrum_outside", "spectrum_states", "spectrum_unknown", "spectrum_unknown"]
-    assert [said.kind for said in sentences(ds)[:4]] == kinds
-    assert sentences(ds)[1].text.startswith("Exceeded: static failure of the roller, ")
-    assert sentences(ds)[4].text.startswith("The roller exceeds static failure")
+    answer = answer_of_spectrum(ds)
+    assert answer.kind == "breaks" and {one["body"] for one in answer.headline["broken"]} == {"roller", "guide"}
+    assert all(one["blocks"] == ["jerk"] for one in answer.headline["broken"])
+    assert headline(answer).startswith("The roller and guide break at once in jerk")
     assert (ds.limit_state == STATES.index("exceeded")).all()
     still = solved(EMPTY, jerk | {"distance": 0, "guide_overrollings": 0}, limits=("static",))
     assert (still.utilisation < 1).all() and np.isnan(still.life_to_first_limit_shifts).all()  # no limit has a life
@@ -99,19 +102,21 @@ def palletiser():
     return solve_spectrum(Spectrum.from_dict(given))
 
 
-def test_the_first_sentences_name_ranges_and_limits_that_a_block_exceeds():
+def test_the_headline_names_ranges_and_limits_that_a_block_exceeds():
     ds = palletiser()
-    head, states, other = sentences(ds)[:3]
+    answer = answer_of_spectrum(ds)
     low, high = (ds[f"life_hours_by_limit{end}"] for end in ("_low", "_high"))
     lowest, highest = (float(of.sel(limit=["fatigue", "wear"]).min()) for of in (low, high))
-    assert head.text.startswith(f"The pair lasts {rounded(lowest)} to {rounded(highest)} h, ")
+    head = answer.headline
+    assert (head["low"], head["high"]) == (lowest, highest) and head["guessed"]
     assert float(low.sel(limit="wear", body="roller")) == lowest and float(high.sel(limit="wear").min()) > highest
     assert float(high.sel(limit="fatigue", body="guide")) == highest
-    assert "by values that nobody has measured, until wear (permissible depth) ends the roller or rolling" in head.text
+    assert set(head["ends"]) == {"wear", "fatigue"}
     used = float(ds["utilisation"].sel(limit="shakedown", body="guide"))
     assert used > 1.0 > float(ds["utilisation"].sel(limit="shakedown", body="roller"))
-    assert states.text == f"Exceeded: elastic shakedown of the guide, {rounded(100 * used)} % in 'bump'."
-    assert other.kind == "spectrum_limit" and "measured" not in other.text and "beyond" not in other.text
+    (over,) = head["exceeded"]
+    assert (over["limit"], over["body"], over["use"], over["blocks"]) == ("shakedown", "guide", used, ["bump"])
+    assert "shakedown of the guide exceeded" in headline(answer) and "in bump" in headline(answer)
 
 
 def test_a_limit_that_a_placeholder_decides_is_open_in_its_blocks():
@@ -124,9 +129,10 @@ def test_a_limit_that_a_placeholder_decides_is_open_in_its_blocks():
     near = solved(LOADED | {"radial_force": force}, EMPTY, limits=("fatigue", "shakedown"))
     used = float(near.utilisation.sel(limit="shakedown", body="roller"))
     assert used * 450 / high < 1 < used * 450 / low
-    said = next(one.text for one in sentences(near) if one.kind == "spectrum_states")
-    assert said.startswith("Open, exceeded at one end of the range of a placeholder: elastic shakedown of the roller, ")
-    assert f"of the roller, {rounded(100 * used)} % in 'loaded'" in said
+    answer = answer_of_spectrum(near)
+    assert {"limit": "shakedown", "body": "roller"} in answer.headline["open"]
+    row = limit_row(answer, "shakedown", "roller")
+    assert (row["state"], row["used_low"], row["blocks"]) == ("open", used, "loaded")
 
 
 def test_a_block_outside_the_half_space_is_named_before_any_life():
@@ -135,8 +141,10 @@ def test_a_block_outside_the_half_space_is_named_before_any_life():
     ds = solved(*blocks, base=base, limits=("fatigue",))
     wide = ds["validity"].values & 1  # the first flag: half_space
     assert wide.tolist() == [1, 0]
-    assert sentences(ds)[0].text.startswith("Outside the half-space in 'loaded': not judged.")
-    assert sentences(solved(LOADED, EMPTY))[0].kind == "spectrum_pair"
+    answer = answer_of_spectrum(ds)
+    assert answer.headline["not_judged"] == ["outside the half-space"] and "not judged" in headline(answer)
+    assert next(caution.where for caution in answer.warnings if caution.code == "not_judged").endswith(": loaded")
+    assert answer_of_spectrum(solved(LOADED, EMPTY)).headline["not_judged"] == []
 
 
 def test_the_life_of_the_other_body_says_that_it_lies_beyond_the_data():
@@ -145,7 +153,7 @@ def test_the_life_of_the_other_body_says_that_it_lies_beyond_the_data():
         b: float(ds["life_shifts"].sel(body=b).min() * ds["overrollings"].sel(body=b).sum()) for b in ds.body.values
     }
     assert min(turns.values()) > 5e6  # the last cycles of the S-N data
-    assert all("(beyond the S-N data)" in sentence.text for sentence in sentences(ds)[:2])
+    assert (answer_of_spectrum(ds).table["extrapolated"] == "yes").all()
 
 
 def test_names_of_limits_are_checked():

@@ -17,18 +17,19 @@ import pydantic
 import xarray as xr
 
 from trackroller.app.studies import RESULTS, TEXTS, WRITTEN
+from trackroller.app.tables import limits_on_page, part_on_page
 from trackroller.carriage.example import EXAMPLE
 from trackroller.carriage.file import Carriage, carriage_of
 from trackroller.carriage.files import name_of_study, spectrum_of
 from trackroller.carriage.solve import forces_of, solve_carriage
 from trackroller.errors import InputError
 from trackroller.files import files_beside, is_link, read_text, sha256
+from trackroller.report.headlines import headline_of, warning_line
 from trackroller.report.numbers import lives_in_years
-from trackroller.report.pages.carriage import tables
-from trackroller.report.tables.table import Table, cell
-from trackroller.report.words.carriage import sentences, worst_place
+from trackroller.report.tables.table import cell
+from trackroller.results.answer import Answer
+from trackroller.results.carriage_answer import answer_of_carriage, worst_place
 from trackroller.roller.aliases import ALIASES
-from trackroller.roller.stored_inputs import doubts_of
 from trackroller.study.store import ownership
 from trackroller.study.store.digests import read_record
 from trackroller.yaml_file import change_yaml, errors_by_line, parse_mapping, write_yaml
@@ -142,32 +143,42 @@ def _loads(ds: xr.Dataset) -> dict[str, Any]:
         [str(name), *("lifted" if r == 0 else f"{cell(float(r))} / {cell(float(a))}" for r, a in both)]
         for name, both in zip(ds["roller"].values, np.stack([radial, axial], 2).swapaxes(0, 1), strict=True)
     ]
-    heads = ["Roller", *map(str, ds["load_case"].values)]
     note = "Radial forces below 0 press the roller on its rail; axial forces act on the roller along its own axis x_R."
+    table = {
+        "title": "Radial / axial force of the rollers by load case [N]",
+        "heads": ["Roller", *map(str, ds["load_case"].values)],
+        "rows": rows,
+        "note": note,
+    }
     return {
         "radial": radial.tolist(),
         "axial": axial.tolist(),
         "worst": worst_place(ds)[1],
-        "table": table_on_page(Table("", "Radial / axial force of the rollers by load case [N]", heads, rows, note)),
-        "said": [one.text for one in sentences(ds)],
+        "table": table,
+        **_said(answer_of_carriage(ds)),
     }
 
 
-def table_on_page(table: Table) -> dict[str, Any]:
-    """Return the parts of a table that the page shows, by name."""
-    return {"title": table.title, "heads": table.heads, "rows": table.rows, "note": table.note}
+def _said(answer: Answer) -> dict[str, Any]:
+    """Return the headline of a record and its warnings as texts."""
+    said = headline_of(answer)
+    warnings = [warning_line(caution) for caution in answer.warnings]
+    return {"headline": {"lead": said.lead, "rest": said.rest}, "warnings": warnings}
 
 
 def carriage_lives(text: str, file: str = "") -> dict[str, Any]:
-    """Return lives and margins of a carriage: sentences, and the tables of `trackroller carriage`."""
+    """Return the record of a carriage with lives and margins: headline, warnings, and its tables as texts."""
     return _lives(solve_carriage(_carriage(text, file)))
 
 
 @lives_in_years
 def _lives(ds: xr.Dataset) -> dict[str, Any]:
+    answer = answer_of_carriage(ds)
+    shown = [column.name for column in answer.columns]
     return {
-        "said": [*(one.text for one in sentences(ds)), *(f"Doubtful: {text}" for text in doubts_of(ds))],
-        "tables": [table_on_page(table) for table in tables(ds)],
+        **_said(answer),
+        "answer": answer.to_dict(),
+        "tables": [limits_on_page(answer, shown), *(part_on_page(answer, part) for part in answer.parts)],
         "worst": str(ds.attrs.get("worst_roller", "")),
     }
 

@@ -17,16 +17,22 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from trackroller.app.tables import limits_on_page, part_on_page
 from trackroller.damage import LIMITS
 from trackroller.errors import InputError
 from trackroller.report.figures.contact_outline import Patch, patches_of
 from trackroller.report.figures.roller_section import drawing
-from trackroller.report.numbers import head_unit, lives_in_years, on_duty
-from trackroller.report.pages.sheet import collect, render, write_sheet
+from trackroller.report.headlines import headline_of
+from trackroller.report.numbers import head_unit, lives_in_years, on_duty, rounded
+from trackroller.report.pages.blocks import warnings_of
+from trackroller.report.pages.sheet import render, sheet_inputs, write_sheet
 from trackroller.report.workbook import write_roller
+from trackroller.results.roller_answer import answer_of_roller
 from trackroller.roller.case import Case
+from trackroller.roller.duty import EXAMPLE, years
 from trackroller.roller.find import find
 from trackroller.roller.regime_limits import Limits
+from trackroller.roller.requirement import YEARS
 from trackroller.roller.settings import checked_case, with_beside
 from trackroller.roller.solver import solve
 from trackroller.roller.stored_inputs import given_inputs, solve_command
@@ -38,7 +44,6 @@ POINTS = 21  # cases of a curve
 LIVE = ("forces", "contact", "friction_work", "peak_stress", "life", "tractions")
 _JUDGED = tuple(dict.fromkeys(limit.group for limit in LIMITS.values() if limit.verdict is not None))
 _UNKNOWN = Limits((math.nan, math.nan), (math.nan, math.nan), math.nan)  # not searched, which takes up to 1 s
-DERIVED = ("share", "factor", "life", "when")  # properties of a margin that the page shows
 STILL = 0.01  # of the largest local creepage: elements that creep less count as adhering
 
 
@@ -95,14 +100,18 @@ def picture(values: Values, accuracy: str = "preview", complete: bool = False, i
 
 @lives_in_years
 def _facts(ds: xr.Dataset, ranges: Limits | None) -> dict[str, Any]:
-    facts = vars(collect(ds, ranges))
-    words = ("verdict", "reason", "not_checked", "guesses", "doubts")
-    rows = ("inputs", "whole", "lives", "flags")
+    """Return the record of a roller, and what the page shows of it: headline, table of limits, warnings, inputs."""
+    answer = answer_of_roller(ds, ranges)
+    said = headline_of(answer)
     return {
-        **{name: facts[name] for name in words},
-        **{name: [asdict(row) for row in facts[name]] for name in rows},
-        "lines": facts["lines"],
-        "margins": [asdict(m) | {name: getattr(m, name) for name in DERIVED} for m in facts["margins"]],
+        "answer": answer.to_dict(),
+        "headline": {"lead": said.lead, "rest": said.rest},
+        "limits": limits_on_page(answer),
+        "parts": {part.name: part_on_page(answer, part) for part in answer.parts},
+        "not_checked": {body: list(limits) for body, limits in answer.not_checked.items() if limits},
+        "not_used": dict(answer.not_used),
+        "warnings": [[head, where] for head, _, where in warnings_of(answer)],
+        "inputs": [asdict(row) for row in sheet_inputs(ds)],
     }
 
 
@@ -222,16 +231,30 @@ def found(values: Values, over: str, condition: str) -> dict[str, Any]:
     over : str
         The parameter.
     condition : str
-        A comparison of a result with a number, such as "pair_life_to_first_limit_hours >= 10500".
+        A comparison of a result with a number, such as "pair_life_to_first_limit_hours >= 10500", or, beside a duty,
+        "pair_life_to_first_limit_hours >= 3 years".
 
     Returns
     -------
     dict
         The answer in words, and the ends of the range; they are NaN if no value meets the condition.
     """
-    case, options, _ = read(values)
-    range_ = find(case, over, condition, **{name: value for name, value in options.items() if name != "outputs"})
-    return {"text": range_.text, "ends": [range_.low, range_.high]}
+    case, options, beside = read(values)
+    asked, said = _in_hours(condition, beside.get("duty"))
+    range_ = find(case, over, asked, **{name: value for name, value in options.items() if name != "outputs"})
+    return {"text": f"{said}{range_.text}", "ends": [range_.low, range_.high]}
+
+
+def _in_hours(condition: str, duty: Any) -> tuple[str, str]:
+    """Return a condition whose last number is in years with hours in their place, and a sentence on them."""
+    head, relation, number = condition.rpartition("=")
+    found = YEARS.fullmatch(number)
+    if found is None:
+        return condition, ""
+    if duty is None:
+        raise InputError("find", number.strip(), "hours, or years beside a duty", EXAMPLE, "needs a duty")
+    hours = float(found[1]) / float(years(1.0, duty))
+    return f"{head}{relation} {hours!r}", f"{number.strip()} are {rounded(hours, 4)} h. "
 
 
 def texts(values: Values) -> dict[str, str]:

@@ -6,13 +6,13 @@ from typing import Any
 
 import xarray as xr
 
-from trackroller.app.carriage import table_on_page
 from trackroller.app.materials import typed
 from trackroller.app.picture import Values, read
+from trackroller.app.tables import limits_on_page, part_on_page
 from trackroller.errors import InputError
+from trackroller.report.headlines import headline_of, warning_line
 from trackroller.report.numbers import lives_in_years
-from trackroller.report.pages.spectrum import block_table, limit_table, warnings
-from trackroller.report.words.spectrum import sentences
+from trackroller.results.spectrum_answer import answer_of_spectrum
 from trackroller.roller.settings import LOADS, parts_for_spectrum
 from trackroller.roller.stored_inputs import given_inputs
 from trackroller.study.spectrum.file import TRAVEL, Spectrum
@@ -35,7 +35,7 @@ def spectrum(values: Values, by: str, blocks: list[dict[str, str]]) -> dict[str,
     Returns
     -------
     dict
-        Sentences and warnings, tables, and the text of the spectrum file.
+        The record, its headline, warnings and tables as texts, and the text of the spectrum file.
     """
     if by not in TRAVEL:
         raise InputError("by", by, ", ".join(TRAVEL), "Choose what the blocks are given by.")
@@ -53,8 +53,12 @@ def spectrum(values: Values, by: str, blocks: list[dict[str, str]]) -> dict[str,
 
 @lives_in_years
 def _answer(ds: xr.Dataset) -> dict[str, Any]:
+    answer = answer_of_spectrum(ds)
+    said = headline_of(answer)
     return {
-        "said": [one.text for one in sentences(ds)],
-        "warnings": warnings(ds),
-        "tables": [table_on_page(table) for table in (limit_table(ds), block_table(ds)) if table is not None],
+        "answer": answer.to_dict(),
+        "headline": {"lead": said.lead, "rest": said.rest},
+        "warnings": [warning_line(caution) for caution in answer.warnings],
+        "not_checked": {body: list(limits) for body, limits in answer.not_checked.items() if limits},
+        "tables": [limits_on_page(answer), *(part_on_page(answer, part) for part in answer.parts)],
     }

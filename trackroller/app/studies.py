@@ -22,12 +22,12 @@ from trackroller.app.worker import LOCK, PAUSE, PROGRESS, is_held
 from trackroller.environment import python
 from trackroller.errors import InputError, WorkError
 from trackroller.files import files_beside, find_beside, open_here, read_text, refuse_links, sha256
-from trackroller.report.headlines import headline_of, shown_answer, warning_line
+from trackroller.report.headlines import headline_of, warning_line
 from trackroller.report.html import write_page
 from trackroller.report.numbers import rounded, unit_text
 from trackroller.report.tables.inputs import factor_table
 from trackroller.report.workbook import write_results
-from trackroller.results.results import Results
+from trackroller.results.results import Results, shown_answer
 from trackroller.results.stored_study import open_as_reported
 from trackroller.roller.aliases import ALIASES
 from trackroller.study.file.config import check_name

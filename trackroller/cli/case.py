@@ -254,14 +254,14 @@ def solve_and_tell(  # noqa: PLR0913 - one argument for each option of the comma
     if target is not None:
         _write_roller(dataset, target, book)
     from trackroller.report.pages.sheet import as_json as json_of  # heavy: rich and jinja2
-    from trackroller.report.pages.sheet import collect, print_facts, print_margins, write_sheet
+    from trackroller.report.pages.sheet import print_facts, print_limits, write_sheet
 
     if page is not None:
         write_sheet(dataset, page, case.stem if case is not None else "")
     if as_json:
         print(json_of(dataset))
     elif target is None and limits is not None and not is_failed(dataset):
-        print_margins(collect(dataset), float(dataset.attrs["failure_probability"]))
+        print_limits(dataset)
     elif target is None:
         print_facts(dataset)
     if not is_failed(dataset):
@@ -346,9 +346,10 @@ def run_wear(
     tell_start(case, settings)
     tell_doubts(new)
 
-    from trackroller.report.numbers import on_duty
+    from trackroller.report.pages.record import print_record
     from trackroller.report.pages.wear import write_wear
-    from trackroller.report.words.wear import sentences
+    from trackroller.results.wear_answer import answer_of_wear
+    from trackroller.roller.duty import with_duty
     from trackroller.roller.wear import wear
     from trackroller.study.store.netcdf import read_netcdf
 
@@ -369,11 +370,10 @@ def run_wear(
     dataset = wear(new, to, resume=before, tell=tell, **options)
     if target is not None:
         write_result(dataset, target)
-    with on_duty(beside.get("duty")):
-        if page is not None:
-            write_wear(dataset, page)
-        for sentence in sentences(dataset):
-            print(sentence.text)
+    worn = with_duty(dataset, beside.get("duty"))
+    if page is not None:
+        write_wear(worn, page)
+    print_record(answer_of_wear(worn))
 
 
 def is_failed(dataset: xr.Dataset) -> bool:

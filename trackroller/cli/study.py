@@ -120,9 +120,9 @@ def print_explorer(study: str, results: Path, out: Path | None) -> None:
 def print_best(study: str, results: Path, out: Path | None, as_json: bool = False) -> None:
     """Print the answer to a study: headline, table and warnings, or its record as JSON; write its page to `out`."""
     from trackroller.report.build import report_text  # heavy: SALib
-    from trackroller.report.headlines import shown_answer
     from trackroller.report.html import write_page
     from trackroller.report.printed import print_answer
+    from trackroller.results.results import shown_answer
     from trackroller.results.stored_study import open_study
 
     target = out if out is None else writable_page(out)

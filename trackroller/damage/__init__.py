@@ -147,6 +147,11 @@ def others(names: Collection[str]) -> tuple[str, ...]:
     return () if "all" in names else tuple(limit.name for limit in judged() if limit.name not in names)
 
 
+def word_of(name: str) -> str:
+    """Return the word for a limit by its name, and any other text as it is."""
+    return LIMITS[name].word if name in LIMITS else name
+
+
 def judged(outputs: Collection[str] = (verdict.GROUP,), not_checked: Collection[str] = ()) -> tuple[Limit, ...]:
     """Return the limits of the verdict: all that have one, without those of `not_checked`; none without `limits`."""
     if verdict.GROUP not in outputs:

@@ -177,6 +177,7 @@ FIELD = MappingField(
 LIMIT = Limit(
     name="bearing",
     title="bearing inside the roller, ring or stud",
+    short="bearing",
     group="bearing",
     meaning="rating life and static safety of the bearing inside, and utilisation by a maker's catalogue",
     evaluate=evaluate,

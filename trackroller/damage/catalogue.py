@@ -113,6 +113,7 @@ FIELD = MappingField(
 LIMIT = Limit(
     name="catalogue",
     title="maker's catalogue (load factor)",
+    short="catalogue",
     group="bearing",
     evaluate=evaluate,
     verdict=verdict,

@@ -122,6 +122,7 @@ def verdict(solved: SolvedRollers, results: Values) -> Verdict:
 LIMIT = Limit(
     name="fatigue",
     title="rolling-contact fatigue (S-N curve)",
+    short="fatigue",
     group="life",
     meaning="overrollings and hours to failure",
     evaluate=life,

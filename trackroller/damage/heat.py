@@ -178,6 +178,7 @@ _CB, _C = ("contact", "body"), ("contact",)
 LIMIT = Limit(
     name="heat",
     title="heat (temperature limit of the material)",
+    short="heat",
     group="heat",
     meaning="flash and bulk temperature of roller and guide, hysteresis, pressure times velocity",
     evaluate=evaluate,

@@ -151,7 +151,7 @@ class Limit:
     Parameters
     ----------
     name, title : str
-        Name in data sets, and its words in tables, sheets and reports.
+        Name in data sets, and its words where it is defined: in the proof of a page and in the documentation.
     group : str
         Group of `outputs` that brings the results.
     evaluate : callable
@@ -196,6 +196,8 @@ class Limit:
         The standard that the limit follows, or an empty text.
     assumes : tuple of str
         Assumptions as sentences, for the sheet.
+    short : str
+        Word for it in headlines and tables; the title without its remark in brackets if it is not given.
     """
 
     name: str
@@ -220,6 +222,12 @@ class Limit:
     compares: tuple[str, str] = ("", "")
     standard: str = ""
     assumes: tuple[str, ...] = ()
+    short: str = ""
+
+    @property
+    def word(self) -> str:
+        """Return the word for the limit in headlines and tables."""
+        return self.short or self.title.partition(" (")[0]
 
     def required(self, options: Mapping[str, Any]) -> tuple[str, ...]:
         """Return the fields of a case and values of a material that a verdict requires under options of a solution."""

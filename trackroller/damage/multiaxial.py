@@ -101,6 +101,7 @@ _CB = ("contact", "body")
 LIMIT = Limit(
     name="multiaxial",
     title="multiaxial fatigue (Findley, Dang Van)",
+    short="multiaxial fatigue",
     group="multiaxial",
     meaning="von Mises amplitude, Goodman's, Findley's and Dang Van's stress while a point is overrolled",
     evaluate=evaluate,

@@ -70,6 +70,7 @@ def verdict(solved: SolvedRollers, results: Values) -> Verdict:
 LIMIT = Limit(
     name="rating",
     title="standard rating of wheel and rail (EN 13001-3-3)",
+    short="rating",
     group="rating",
     meaning="utilisation and hours after EN 13001-3-3, from Hertzian pressure and hardness",
     evaluate=evaluate,

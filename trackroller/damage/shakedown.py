@@ -81,6 +81,7 @@ def evaluate(solved: SolvedRollers) -> Values:
 LIMIT = Limit(
     name="shakedown",
     title="elastic shakedown (no ratchetting)",
+    short="shakedown",
     group="shakedown",
     meaning="elastic limit, elastic shakedown by Melan's theorem, and surface fatigue index",
     shared=of_mechanics,

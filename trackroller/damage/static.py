@@ -14,6 +14,7 @@ def verdict(solved: SolvedRollers, results: Values) -> Verdict:
 LIMIT = Limit(
     name="static",
     title="static failure (peak stress over R_m)",
+    short="static strength",
     group="peak_stress",
     evaluate=lambda solved: {},
     verdict=verdict,

@@ -356,6 +356,7 @@ TABLE = MappingField(
 LIMIT = Limit(
     name="wear",
     title="wear (permissible depth)",
+    short="wear",
     group="wear",
     meaning="depth and volume of wear, travel until the groove has changed, life to the permissible depth",
     shared=of_mechanics,

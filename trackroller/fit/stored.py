@@ -141,6 +141,16 @@ def _read(path: Path, name: str, changed: int) -> tuple[StoredFit, tuple[float, 
         ) from None
     if "fatigue_level" not in ds or "fatigue_limit" not in ds.attrs:
         return None
+    try:
+        return _fit_of(ds, name)
+    except KeyError as missing:
+        remedy = "Fit the tests again."
+        wrong = f"is that of another version: it has no {missing.args[0]}"
+        raise InputError("fit", str(path), "a file that this version wrote", remedy, wrong) from None
+
+
+def _fit_of(ds: xr.Dataset, name: str) -> tuple[StoredFit, tuple[float, float]]:
+    """Return the fit of a data set of this version, with strength and knee of its material."""
     held = {key: ds.attrs.get(f"fatigue_held_{key}") for key in ("slope", "scatter")}
     tests = Tests(*(ds[f"fatigue_test_{part}"].values for part in ("stress", "low", "high")))
     line = Line(

@@ -21,7 +21,7 @@ Keys of `Answer.headline`; a key that is missing, None, NaN or empty is left out
 `not_judged`       {count, of, where}: the same for conditions that the model cannot judge
 `elsewhere`        whether the leader holds all other conditions, so that the headline says "elsewhere"
 `exceeded`         {limit, body, use [1], hours}: the worst check of the leader above 100 %
-`second`           {limit, verdict}: second model ("the rating") that turns the leader's verdict; a state of `STATES`
+`second`           {limit, verdict}: second model ("rating") that turns the leader's verdict; a state of `STATES`
 `measure`          {what, of, on, turn, units, low, high}: placeholder, its body, the other one, where the leader turns
 `give`             {what}: load that was not given, in words: "the motor force"
 `nearest`          {name (as one of `names`), holds, of, meets, low, fails}: `fails` says where it fails, in words
@@ -48,6 +48,9 @@ requirements that are no goals), `stopped` (search stopped before this end);
 `binds` (requirement, limit or end of a range in words), `accuracy` (of these numbers), `extrapolated`,
 `exceeded`, `second`.
 
+`roller`, `spectrum`, `wear`, `carriage`: see `roller_answer`, `spectrum_answer`, `wear_answer` and `carriage_answer`
+in `trackroller.results`.
+
 `how it behaves`: `smallest`, `largest` [unit of the output], `at_smallest`, `at_largest` (levels in words),
 `ends` (list of {limit, body, count}), `of` (cases), `lost` (cases without the output), `ends_low`.
 """
@@ -63,6 +66,7 @@ from trackroller.errors import listing
 from trackroller.parameters.carriage_fields import parameter_of
 from trackroller.report.bounds import bounds_of_output
 from trackroller.report.numbers import (
+    as_required,
     capital,
     carried,
     carried_range,
@@ -77,8 +81,6 @@ from trackroller.report.numbers import (
     years_of,
 )
 from trackroller.results.answer import Answer, Caution, Column, Required
-from trackroller.results.how_it_behaves import answer_how_it_behaves
-from trackroller.results.results import Results
 from trackroller.study.design.levels import NAMED
 
 MOST_WORDS = 40
@@ -115,11 +117,6 @@ def headline_of(answer: Answer) -> Headline:
     """
     with on_duty(answer.facts.get("duty")):
         return TEMPLATES[answer.question](answer)
-
-
-def shown_answer(results: Results) -> Answer:
-    """Return the answer to a study; of a search without one how its designs behave."""
-    return results.answer or answer_how_it_behaves(results)
 
 
 def decide(answer: Answer) -> Headline:
@@ -474,6 +471,211 @@ def _end(end: Mapping[str, Any]) -> str:
     return f"{end['limit']} of the {end['body']}" if end.get("body") else str(end["limit"])
 
 
+def roller(answer: Answer) -> Headline:
+    """Say what ends one roller and when, or why it does not last; an exceeded limit comes first."""
+    head = answer.headline
+    if answer.kind in STOPS:
+        return STOPS[answer.kind](answer)
+    unsure = f"if the model holds ({listing(head['not_judged'])}: not judged), " if head["not_judged"] else ""
+    clauses = [*_open_limits(head), *_unknown_hours(head), *_required(answer)]
+    if head["state"]:
+        clauses[-1] += f": {head['state']}"
+    if answer.kind == "no_life":
+        lasts = "no limit with hours is known"
+    else:
+        lasts = f"{_roller_life(answer)}{_first_limits(head)}"
+    if not head["exceeded"]:
+        text = f"{unsure}{lasts}"
+        return Headline(capital(text), "".join(f"; {clause}" for clause in clauses) + ".")
+    worst = head["exceeded"][0]
+    hours = worst["hours"]
+    after = f", after {grouped(hours, 2)} h by its rule" if hours is not None and math.isfinite(hours) else ""
+    lead = f"{_limit_of(worst)} exceeded ({percent(worst['use'])})"
+    return Headline(
+        capital(lead), f"{after}. {capital(unsure + 'otherwise ' + lasts)}{''.join(f'; {c}' for c in clauses)}."
+    )
+
+
+def _roller_life(answer: Answer) -> str:
+    """Return the life of one roller with its years and whether it is extrapolated."""
+    head = answer.headline
+    notes = [word for word, true in (("extrapolated", head["extrapolated"]), ("placeholders", head["guessed"])) if true]
+    return _value(answer, head["low"], head["high"], notes)
+
+
+def _first_limits(head: Mapping[str, Any]) -> str:
+    """Return the limits that may end one roller first, behind its life."""
+    if math.isinf(head["low"]):
+        return ""
+    body = "" if head["body"] == "pair" else f" of the {head['body']}"
+    return f", then {' or '.join(head['ends'])}{body}"
+
+
+def _limit_of(one: Mapping[str, Any]) -> str:
+    """Return a limit with its body; the pair is not named."""
+    return one["limit"] if one["body"] == "pair" else f"{one['limit']} of the {one['body']}"
+
+
+def _bodies_of(listed: Sequence[Mapping[str, Any]]) -> list[str]:
+    """Return the bodies of some limits, the roller first."""
+    return sorted({one["body"] for one in listed}, reverse=True)
+
+
+def _open_limits(head: Mapping[str, Any]) -> list[str]:
+    """Return the limits that are exceeded at one end of a placeholder alone."""
+    listed = head["open"]
+    if not listed:
+        return []
+    named = ", ".join(_limit_of(one) for one in listed[:2])
+    more = f" and {len(listed) - 2} more" if len(listed) > 2 else ""
+    return [f"open by placeholders: {named}{more}"]
+
+
+def _unknown_hours(head: Mapping[str, Any]) -> list[str]:
+    """Say whose hours are not known; they count for nothing then."""
+    return [f"the hours of the {head['unknown']} are not known"] if head["unknown"] else []
+
+
+def _failed(answer: Answer) -> Headline:
+    return Headline("No solution", f": {str(answer.facts['reason']).rstrip('.')}.")
+
+
+def _lifts_off(answer: Answer) -> Headline:
+    """Say between which axial forces both contacts carry."""
+    head = answer.headline
+    if not math.isfinite(head["axial_low"] + head["axial_high"]):
+        return Headline("A contact lifts off", ".")
+    ends = f"{grouped(head['axial_low'], 3)} to {grouped(head['axial_high'], 3)} N"
+    return Headline("A contact lifts off", f": both contacts carry at an axial force of {ends}.")
+
+
+def _breaks(answer: Answer) -> Headline:
+    """Say which body breaks at once, and by how much."""
+    broken = answer.headline["broken"]
+    use = max(one["use"] for one in broken)
+    bodies = listing(_bodies_of(broken))
+    verb = "break" if len(broken) > 1 or " and " in bodies else "breaks"
+    lead = f"The {bodies} {verb} at once"
+    return Headline(lead, f": peak stress {percent(use)} of what the material bears." if use == use else ".")
+
+
+def _skids(answer: Answer) -> Headline:
+    """Say between which motor forces the roller rolls."""
+    head = answer.headline
+    rest = [f"friction transmits {grouped(head['motor_low'], 3)} to {grouped(head['motor_high'], 3)} N"]
+    if not math.isfinite(head["motor_low"] + head["motor_high"]):
+        rest = ["the motor force exceeds what friction transmits"]
+    if answer.kind == "skids" and math.isfinite(head["low"]):
+        rest.append(f"{_roller_life(answer)}{_first_limits(head)}")
+    if head["exceeded"]:
+        worst = head["exceeded"][0]
+        rest.append(f"{_limit_of(worst)} exceeded ({percent(worst['use'])})")
+    return Headline("The roller skids", f": {'; '.join(rest)}.")
+
+
+def spectrum(answer: Answer) -> Headline:
+    """Say what ends the roller or the guide of a spectrum and when, and which block does most of it."""
+    head = answer.headline
+    clauses = [f"the life of the {body} is not known" for body in head["unknown"]] if answer.kind != "unknown" else []
+    clauses = [*_exceeded_in_blocks(head["exceeded"]), *_open_limits(head), *clauses]
+    if answer.kind == "breaks":
+        broken = head["broken"]
+        bodies = listing(_bodies_of(broken))
+        verb = "break" if len(_bodies_of(broken)) > 1 else "breaks"
+        blocks = listing(list(dict.fromkeys(name for one in broken for name in one["blocks"])))
+        return _joined(f"The {bodies} {verb} at once in {blocks}", clauses)
+    if answer.kind == "unknown":
+        return _joined("The life is not known", [*head["why"][:2], *clauses])
+    unsure = f"if the model holds ({listing(head['not_judged'])}: not judged), " if head["not_judged"] else ""
+    if answer.kind == "unlimited":
+        return _joined(capital(f"{unsure}no limit ends this spectrum"), clauses)
+    if head["block"]:
+        clauses.insert(0, f"{percent(head['share'])} of it by {head['block']}")
+    km = carried_range(head["km_low"], head["km_high"])
+    text = f"{unsure}{_roller_life(answer)}, {km} km{_first_limits(head)}"
+    return Headline(capital(text), "".join(f"; {clause}" for clause in clauses) + ".")
+
+
+def wear(answer: Answer) -> Headline:
+    """Say how deep a roller and its guide have worn after which travel, what becomes of the pressure, and the end."""
+    head = answer.headline
+    depths = [f"{body} {grouped(depth, 3)} µm" for body, depth in head["depths"].items()]
+    worn = f"{listing(depths)} worn" if depths else "neither body has worn"
+    lead = f"{worn} after {grouped(head['travel'], 3)} km ({_hours_said(head['hours'])})"
+    notes = ["placeholders"] if head["guessed"] else []
+    pressures = f"{grouped(head['pressure_first'], 3)} → {grouped(head['pressure_last'], 3)} MPa"
+    clauses = [f"pressure of contact {head['contact']} {pressures}"]
+    most = head["pressure_most"]
+    if most > PEAK * max(head["pressure_first"], head["pressure_last"]):
+        clauses[0] += f", {grouped(most, 3)} MPa at {grouped(head['travel_most'], 3)} km"
+    return _joined(_noted(capital(lead), notes), [*clauses, f"the run ends there: {head['end']}"])
+
+
+def carriage(answer: Answer) -> Headline:
+    """Say which roller of a carriage ends first and when, and up to which loads all rollers roll."""
+    head = answer.headline
+    margins = [f"{one['of']} × {grouped(one['times'], 3)} to {one['end']} ({one['case']})" for one in head["margins"]]
+    if answer.kind == "unsettled":
+        return _joined(f"The forces in {listing(head['unsettled'])} are not known", ["more preload helps"])
+    if answer.kind == "lasts":
+        life = carried_range(head["low"], head["high"])
+        years = years_of(head["low"], head["high"])
+        lead = (
+            f"Roller {head['roller']} ends first: {life} h{f' ({years})' if years else ''}, {grouped(head['km'], 3)} km"
+        )
+        clauses = [f"then {head['limit']} of the {head['body']}"] if head["limit"] else []
+        if _known(head, "part"):
+            clauses.append(f"{percent(head['part'])} of it by {head['case']}")
+        if head["unknown"]:
+            clauses.append(f"the life of {listing(head['unknown'])} is not known")
+        return _joined(lead, [*clauses, *margins])
+    if answer.kind == "unlimited":
+        return _joined("No roller reaches a limit under these loads", margins)
+    lead = "No roller carries a load"
+    if _known(head, "force"):
+        lead = f"Roller {head['roller']} carries most, {grouped(head['force'], 3)} N in {head['case']}"
+    clauses = ["the life of no roller is known"] if answer.kind == "no_life" else []
+    return _joined(lead, [*clauses, *margins])
+
+
+def end_of_carriage(answer: Answer) -> str:
+    """Return the last line of a carriage: how long it lasts, and which roller or rail ends it by which limit."""
+    head = answer.headline
+    if answer.kind != "lasts" or not head["limit"]:
+        return ""
+    place = f"the rail under roller {head['roller']}" if head["body"] == "guide" else f"roller {head['roller']}"
+    years = years_of(head["low"], head["high"])
+    life = _noted(f"{carried_range(head['low'], head['high'])} h", [years] if years else [])
+    return f"The carriage lasts {life}: then {place} reaches its first limit, {head['limit']}."
+
+
+PEAK = 1.01  # times the pressure at both ends, from which on a larger one between them is said
+
+
+def _hours_said(hours: float) -> str:
+    """Return hours with their years where the duty is known."""
+    years = years_of(hours)
+    return f"{grouped(hours, 3)} h{f', {years}' if years else ''}"
+
+
+def _exceeded_in_blocks(listed: Sequence[Mapping[str, Any]]) -> list[str]:
+    """Return the worst limit that blocks of a spectrum exceed, and how many more there are."""
+    if not listed:
+        return []
+    worst = listed[0]
+    use = f" ({percent(worst['use'])})" if worst["use"] is not None and math.isfinite(worst["use"]) else ""
+    more = f" and {len(listed) - 1} more" if len(listed) > 1 else ""
+    return [f"{_limit_of(worst)} exceeded{use} in {listing(list(worst['blocks'])[:MOST_NAMES])}{more}"]
+
+
+STOPS: dict[str, Callable[[Answer], Headline]] = {  # kinds of one roller without a usual life
+    "failed": _failed,
+    "lifts_off": _lifts_off,
+    "breaks": _breaks,
+    "skids": _skids,
+}
+
+
 TEMPLATES: dict[str, Callable[[Answer], Headline]] = {
     "decide": decide,
     "what matters": what_matters,
@@ -481,6 +683,10 @@ TEMPLATES: dict[str, Callable[[Answer], Headline]] = {
     "best": best,
     "which model": which_model,
     "how it behaves": how_it_behaves,
+    "roller": roller,
+    "spectrum": spectrum,
+    "wear": wear,
+    "carriage": carriage,
 }
 WARNING_HEADS = {
     "not_held": "Not held",
@@ -491,17 +697,23 @@ WARNING_HEADS = {
     "not_given": "Not given",
     "at_end": "At an end",
     "unlike": "Unlike",
+    "guessed": "Guessed",
+    "doubtful": "Doubtful",
+    "flagged": "Flagged",
 }
 
 
 def warning_line(caution: Caution) -> str:
     """Return a warning in one line: its head, how many rows of how many, and where."""
     where = f": {caution.where}" if caution.where else ""
-    return f"{WARNING_HEADS[caution.code]}, {warning_rows(caution)}{where}"
+    rows = warning_rows(caution)
+    return f"{WARNING_HEADS[caution.code]}{f', {rows}' if rows else ''}{where}"
 
 
 def warning_rows(caution: Caution) -> str:
     """Return how many rows a warning concerns; nothing is counted where it concerns none."""
+    if not caution.what:
+        return ""
     if caution.of < 2 and caution.what != "cases":
         return "leader"
     return f"{caution.count:,} of {caution.of:,} {caution.what}"
@@ -640,7 +852,7 @@ def _other_rules(head: Mapping[str, Any]) -> list[str]:
     second = head.get("second")
     if second:
         verb = {"met": "meets", "open": "leaves it open", "missed": "misses", "none": "does not judge"}
-        clauses.append(f"{second['limit']} {verb[second['verdict']]}")
+        clauses.append(f"the {second['limit']} {verb[second['verdict']]}")
     exceeded = head.get("exceeded")
     if exceeded:
         clauses.append(f"{exceeded['limit']} exceeded ({percent(exceeded['use'])})")
@@ -667,7 +879,7 @@ def _bound(required: Required, output: str) -> str:
 
 
 def _amount(required: Required, value: float) -> str:
-    text = _measured(grouped(value, 6), required.units)
+    text = _measured(as_required(value), required.units)
     years = years_of(value) if required.units == "h" else ""
     return _noted(text, [years] if years else [])
 

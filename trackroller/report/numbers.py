@@ -17,7 +17,7 @@ from trackroller.study.design.levels import NAMED, short
 
 UNITS = {"1": "–", "-": "–", "degree": "°", "deg": "°"}
 UNITS |= {"m min-1": "m/min", "h-1": "1/h", "J m-1": "J/m", "N mm": "N·mm", "mm km-1": "mm/km", "mm3 km-1": "mm³/km"}
-UNITS["mm3/(N m)"] = "mm³/(N m)"
+UNITS |= {"mm3/(N m)": "mm³/(N m)", "degC": "°C", "mm2": "mm²", "W/(m2 K)": "W/(m² K)"}
 SMALL_NUMBERS = {2: "two", 3: "three", 4: "four", 5: "five", 6: "six", 7: "seven", 8: "eight", 9: "nine"}
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
@@ -122,6 +122,19 @@ def hour_unit(hours: float) -> str:
     if lasts > MOST_YEARS:
         return f"h (over {count(MOST_YEARS)} years)"
     return f"h ({_year_words(rounded(lasts, 2))})"
+
+
+def year_text(lasts: float) -> str:
+    """Write years as a person says them: two figures, from one year on; a shorter life is said in hours alone.
+
+    Examples
+    --------
+    >>> year_text(1.263), year_text(131.0), year_text(7e-4), year_text(2e5)
+    ('1.3', '130', '–', '> 1,000')
+    """
+    if not lasts >= LEAST_YEARS:
+        return "–"
+    return f"> {count(MOST_YEARS)}" if lasts > MOST_YEARS else rounded(lasts, 2)
 
 
 def _year_words(*ends: str) -> str:
@@ -445,3 +458,15 @@ def carried_range(low: float, high: float, error: float = math.nan, beside: Sequ
     """Write a range as `carried` does; one number where both ends read alike."""
     ends = (carried(low, error, beside), carried(high, error, beside))
     return " to ".join(dict.fromkeys(ends))
+
+
+def as_required(value: float) -> str:
+    """Write a required value: as it was given, up to six figures; one that was computed in three.
+
+    Examples
+    --------
+    >>> as_required(10500.0), as_required(1500 / 3.6)
+    ('10,500', '417')
+    """
+    given = math.isclose(value, float(f"{value:.6g}"), rel_tol=1e-12)
+    return grouped(value, 6 if given else 3)

@@ -11,11 +11,10 @@ import xarray as xr
 
 from trackroller.errors import InputError
 from trackroller.report.explorer.page import explorer_text, write_explorer
-from trackroller.report.headlines import shown_answer
 from trackroller.report.html import write_page
 from trackroller.report.pages.study import page_text, proof_of, report_text
 from trackroller.report.workbook import write_results
-from trackroller.results.results import Results
+from trackroller.results.results import Results, shown_answer
 from trackroller.results.stored_study import open_study
 
 

@@ -24,25 +24,32 @@ def room() -> int:
 
 
 def print_table(
-    heads: Sequence[str], rows: Sequence[Sequence[str]], right: Sequence[int] = (), title: str | None = None
+    heads: Sequence[str],
+    rows: Sequence[Sequence[str]],
+    right: Sequence[int] = (),
+    title: str | None = None,
+    names: int = 1,
 ) -> None:
     """Print a table that cuts no cell: cells are broken between words, and a table that is too wide is parted.
 
-    Each part of a table repeats its first column.
+    Each part of a table repeats its first columns, which name the rows, where the line has room for them.
 
     Parameters
     ----------
     heads, rows : texts of the columns
     right : numbers of the columns that are aligned to the right
     title : text above the table
+    names : number of first columns that name a row
     """
     width = room()
     columns = [[head, *(row[i] for row in rows)] for i, head in enumerate(heads)]
     least = [_least(cells) for cells in columns]
-    parts = [[0]]
-    for i in range(1, len(heads)):
-        if sum(least[j] + FRAME for j in (*parts[-1], i)) + 1 > width and len(parts[-1]) > 1:
-            parts.append([0])
+    wide = sum(least[:names]) + FRAME * names > width / 2
+    repeated = [0] if wide else list(range(names))
+    parts = [list(repeated)]
+    for i in range(len(repeated), len(heads)):
+        if sum(least[j] + FRAME for j in (*parts[-1], i)) + 1 > width and len(parts[-1]) > len(repeated):
+            parts.append(list(repeated))
         parts[-1].append(i)
     console = Console(width=width, highlight=False, markup=False)
     for number, own in enumerate(parts):

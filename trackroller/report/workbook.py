@@ -24,14 +24,14 @@ from trackroller.parameters.validity import VALIDITY
 from trackroller.report import html
 from trackroller.report.headlines import headline_of
 from trackroller.report.numbers import long_name, plain, unit_text
-from trackroller.report.pages.sheet import collect
 from trackroller.report.tables.table import Table, cell
-from trackroller.results.answer import Answer
+from trackroller.results.answer import Answer, Column
 from trackroller.results.results import Results
+from trackroller.results.roller_answer import answer_of_roller
 from trackroller.roller import stored_inputs as record
 from trackroller.roller.aliases import RADII
 from trackroller.roller.dataset import FLAGS
-from trackroller.roller.duty import duty_of, years
+from trackroller.roller.duty import duty_of
 from trackroller.roller.output_names import PARTS
 from trackroller.study.outputs import flat, parts_in
 from trackroller.study.store.seal import put, put_text
@@ -110,23 +110,32 @@ def _fields(name: str, value: Any) -> Iterator[tuple[str, Any]]:
 
 def _rows_sheet(answer: Answer) -> Table:
     """Return the rows of an answer: every column that a reader is shown, and both ends of a range."""
-    names = [name for column in answer.columns for name in (column.name, column.until) if name]
-    kept = [name for name in dict.fromkeys(names) if name in answer.table]
-    columns = [answer.table[name].astype(object).tolist() for name in kept]
-    return Table("rows", "Rows", kept, [list(row) for row in zip(*columns, strict=True)])
+    return _sheet_of("rows", "Rows", answer.table, answer.columns)
+
+
+def _sheet_of(name: str, title: str, table: pd.DataFrame, columns: Sequence[Column]) -> Table:
+    """Return the rows of a table of a record as a sheet."""
+    names = [one for column in columns for one in (column.name, column.until) if one]
+    kept = [one for one in dict.fromkeys(names) if one in table]
+    values = [table[one].astype(object).tolist() for one in kept]
+    return Table(name, title, kept, [list(row) for row in zip(*values, strict=True)])
 
 
 def _further_sheets(answer: Answer) -> list[Table]:
     """Return definitions of the columns, effects, ends and warnings."""
     heads = ["column", "title", "unit", "kind", "until", "definition"]
-    told = [[one.name, one.title, one.units, one.kind, one.until, one.meaning] for one in answer.columns]
+    every = [*answer.columns, *(one for part in answer.parts for one in part.columns)]
+    told = [[one.name, one.title, one.units, one.kind, one.until, one.meaning] for one in every]
     sheets = [Table("columns", "Columns", heads, told)]
+    sheets += [_sheet_of(part.name, part.title, part.table, part.columns) for part in answer.parts]
     effects = [
         [curve.factor, level, *(float(end[place]) for end in (curve.middle, curve.low, curve.high)), curve.units]
         for curve in answer.curves
         for place, level in enumerate(curve.levels)
     ]
-    sheets.append(Table("effects", "Effects", ["factor", "level", "middle", "low", "high", "unit of level"], effects))
+    if answer.curves or not answer.parts:
+        heads = ["factor", "level", "middle", "low", "high", "unit of level"]
+        sheets.append(Table("effects", "Effects", heads, effects))
     if not answer.ends.empty:
         ends = [list(row) for row in answer.ends.itertuples(index=False)]
         sheets.append(Table("ends", "Ends", list(map(str, answer.ends.columns)), ends))
@@ -184,7 +193,10 @@ def write_results(results: Results, path: Path) -> Path:
 
 
 def write_roller(ds: xr.Dataset, path: Path) -> Path:
-    """Write the result of one case as a workbook with the sheets `inputs`, `results` and `limits`."""
+    """Write the result of one case as a workbook with the sheets `inputs`, `results` and `limits`.
+
+    Further sheets hold the rest of its record: `headline`, `columns`, `warnings`, and one for each further table.
+    """
     inputs, example = record.inputs_of(ds), record.names_not_given(ds.attrs)
     own = record.radii_of(ds) | {name: value for name, value in inputs.items() if value is not None}
     units = dict.fromkeys(RADII, "mm")
@@ -200,13 +212,10 @@ def write_roller(ds: xr.Dataset, path: Path) -> Path:
     found = [(name, part.words, part.values(ds).item()) for name, part in known.items() if "limit" not in part.at]
     told = [[name, words, in_words(name, [value])[0], unit_of(name)] for name, words, value in found if value == value]
     sheets.append(Table("results", "Results", ["result", "meaning", "value", "unit"], told))
-    heads = ["limit", "of", "now", "at most", "used", "state", "hours", "hours, low end", "hours, high end"]
-    heads += ["years"] * bool(duty)
-    limits = []
-    for m in collect(ds).margins:
-        lives = [m.hours, m.low, m.high, *([float(years(m.hours, duty))] if duty else [])]
-        limits.append([m.title, m.body, m.now, m.required, m.used, m.life if m.lifeless else m.state, *lives])
-    sheets.append(Table("limits", "Limits", heads, limits))
+    answer = answer_of_roller(ds)
+    limits = _rows_sheet(answer)
+    sheets.append(Table("limits", "Limits", limits.heads, limits.rows))
+    sheets += [_headline_sheet(answer), *_further_sheets(answer)]
     return put(path, lambda beside: _save(beside, sheets))
 
 

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from trackroller.study.file.config import QUESTIONS as QUESTIONS
+from trackroller.study.file.questions import QUESTIONS as QUESTIONS
 
 VERSION = 1  # of the keys of `Answer.to_dict`; a key that is renamed or that changes its meaning raises it
 WARNINGS = {  # code -> what it means
@@ -26,8 +26,11 @@ WARNINGS = {  # code -> what it means
     "not_given": "values that nobody gave",
     "at_end": "the named design stands at the end of a range, or the search stopped before it",
     "unlike": "loads, scatter or samples differ between the candidates",
+    "guessed": "values of materials that nobody has measured",
+    "doubtful": "values that are unusual",
+    "flagged": "an assumption of the model or an accuracy is not kept",
 }
-STATES = ("met", "open", "missed", "none")
+STATES = ("met", "open", "missed", "none")  # of a candidate; a limit has those of `trackroller.damage.verdict.STATES`
 
 
 @dataclass(frozen=True)
@@ -40,10 +43,14 @@ class Column:
     title : its head
     units : unit of its numbers; '' for texts and plain numbers
     meaning : its definition in one sentence
-    kind : `level` of a factor, `number`, `count`, `share` [1], `ratio`, `error` [1], `state`, or `text`
-    until : column with the upper end of the same range; '' without one
+    kind : `level` of a factor, `number`, `count`, `share` [1], `ratio`, `error` [1], `state`, `text`, `whole` for a
+        number that is said with four figures, `life` for hours of which a very long life is said as a bound,
+        `years`, or
+        `bounded` for a value of a permitted one, in the unit that the column `units` states
+    until : column with the upper end of the same range, or with the permitted value; '' without one
     role : `name` for the choices that name a row, `bar` for those that the picture of a decision draws (`low`, `median`
-        and `best`), otherwise ''
+        and `best`), `use` for the share of a limit that is used, `file` for one that stands in files alone; otherwise
+        an empty text
     """
 
     name: str
@@ -64,7 +71,7 @@ class Caution:
     code : one of `WARNINGS`
     count, of : rows concerned, of all
     where : the levels that hold these rows, or the values concerned
-    what : `cases` or `candidates`: what is counted
+    what : what is counted: `cases`, `candidates`, `blocks`, `rollers`; '' for one roller, where nothing is counted
     """
 
     code: str
@@ -132,6 +139,25 @@ class Required:
 
 
 @dataclass(frozen=True, eq=False)
+class Part:
+    """A further table of an answer, such as the forces of both contacts or the blocks of a spectrum.
+
+    Attributes
+    ----------
+    name, title : its key in files, and its head on a page
+    table : its rows
+    columns : the columns of `table` in their order
+    note : what holds for all of it, in one or two sentences
+    """
+
+    name: str
+    title: str
+    table: pd.DataFrame
+    columns: tuple[Column, ...]
+    note: str = ""
+
+
+@dataclass(frozen=True, eq=False)
 class Answer:
     """The answer to a study.
 
@@ -148,13 +174,15 @@ class Answer:
     curves : effects, the largest first
     ends : counts of cases by what ends them (columns) at each level of a factor (columns `factor` and `level`)
     outputs : range of each usual output over the cases that are held, see `trackroller.results.output_ranges`
+    parts : further tables
     picture : arrays of the picture of the first screen that `table` and `curves` do not hold
     not_checked : limits that were not checked for each body
     not_used : values that were given and changed nothing
     not_given : values that nobody gave, with their units in words
     warnings : see `Caution`
     facts : title line: `name`, `description`, `date`, `cases`, `candidates`, `conditions`, `drawn`, `models`,
-        `accuracy`
+        `accuracy`, `duty`, `counted` (what `cases` counts); of one roller `probability`, `regime`, `converged` and
+        `reason` as well
     """
 
     question: str
@@ -167,6 +195,7 @@ class Answer:
     curves: tuple[Curve, ...] = ()
     ends: pd.DataFrame = field(default_factory=pd.DataFrame)
     outputs: pd.DataFrame = field(default_factory=pd.DataFrame)
+    parts: tuple[Part, ...] = ()
     picture: Mapping[str, Any] = field(default_factory=dict)
     not_checked: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     not_used: Mapping[str, str] = field(default_factory=dict)
@@ -203,6 +232,7 @@ class Answer:
             "effects": [vars(curve) for curve in self.curves],
             "ends": self.ends.to_dict("records"),
             "outputs": self.outputs.to_dict("records"),
+            "parts": {part.name: _part(part) for part in self.parts},
             "not_checked": self.not_checked,
             "not_used": self.not_used,
             "not_given": self.not_given,
@@ -211,6 +241,12 @@ class Answer:
         }
         plain: dict[str, Any] = plain_value(named)
         return plain
+
+
+def _part(part: Part) -> dict[str, Any]:
+    """Return a further table as plain values."""
+    columns = [vars(column) for column in part.columns]
+    return {"title": part.title, "columns": columns, "rows": part.table.to_dict("records"), "note": part.note}
 
 
 def plain_value(value: Any) -> Any:

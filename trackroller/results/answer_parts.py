@@ -8,11 +8,10 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from trackroller.damage import LIMITS
+from trackroller.damage import LIMITS, word_of
 from trackroller.parameters import BODIES, PARAMETERS
 from trackroller.parameters.carriage_fields import long_name_of
 from trackroller.results.answer import Caution
-from trackroller.results.candidate_table import title_of
 from trackroller.results.candidates import slip_margin
 from trackroller.results.case_ranges import CaseRanges
 from trackroller.results.columns import codes
@@ -83,9 +82,9 @@ def checks_left_out(results: SolvedCases) -> dict[str, tuple[str, ...]]:
                 continue
             hit = known.get(name, np.zeros((len(rows), len(BODIES)), dtype=bool))[rows, place]
             if not hit.any():
-                found[body].append(limit.title)
+                found[body].append(limit.word)
             elif not hit.all():
-                found[body].append(f"{limit.title} ({int((~hit).sum()):,} of {len(hit):,} cases)")
+                found[body].append(f"{limit.word} ({int((~hit).sum()):,} of {len(hit):,} cases)")
     return {body: tuple(names) for body, names in found.items()}
 
 
@@ -122,7 +121,7 @@ def given_for_nothing(results: SolvedCases) -> dict[str, str]:
     unknown = names_not_given(results.data.attrs)
     idle = given_in_vain(results.config.base, unchecked_names(results))
     return {
-        name: "needed by " + " and ".join(title_of(one) for one in limits)
+        name: "needed by " + " and ".join(word_of(one) for one in limits)
         for name, limits in idle.items()
         if name not in unknown
     }
@@ -218,7 +217,7 @@ def case_cautions(results: SolvedCases, ranges: CaseRanges, rows: np.ndarray) ->
     unknown = rows & ~ranges.judged
     for code, hit in (("not_held", lost), ("not_judged", unknown)):
         if hit.any():
-            reasons = pd.Series(ranges.reason[hit]).map(lambda word: title_of(str(word).removeprefix("limit ")))
+            reasons = pd.Series(ranges.reason[hit]).map(lambda word: word_of(str(word).removeprefix("limit ")))
             counts = ", ".join(f"{word} {count:,}" for word, count in reasons.value_counts().items())
             where = where_text(results, hit, rows)
             found.append(Caution(code, int(hit.sum()), total, f"{counts}: {where}" if where else counts))

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from trackroller.damage import LIMITS
+from trackroller.damage import LIMITS, word_of
 from trackroller.errors import InputError, listing
 from trackroller.methods.optimise import nondominated_ranks
 from trackroller.parameters import BODIES, REGIMES
@@ -24,7 +24,6 @@ from trackroller.results.answer_parts import (
     given_for_nothing,
     not_given_words,
 )
-from trackroller.results.candidate_table import title_of
 from trackroller.results.case_ranges import CaseRanges
 from trackroller.results.comparison import wilson
 from trackroller.results.judging import (
@@ -505,7 +504,7 @@ def _missed(found: _Found, number: int) -> str:
     if not causes:
         return ""
     cause = causes.most_common(1)[0][0]
-    return REASONS.get(cause, title_of(cause.removeprefix("limit ")))
+    return REASONS.get(cause, word_of(cause.removeprefix("limit ")))
 
 
 def _at_ends(found: _Found, number: int) -> list[str]:
@@ -590,7 +589,12 @@ def _exceeded(found: _Found, number: int) -> dict[str, Any] | None:
         return None
     case, limit, body = np.unravel_index(np.nanargmax(known), known.shape)
     after = float(hours[case, limit, body])
-    return {"limit": limits[limit], "body": BODIES[body], "use": float(known[case, limit, body]), "hours": after}
+    return {
+        "limit": word_of(limits[limit]),
+        "body": BODIES[body],
+        "use": float(known[case, limit, body]),
+        "hours": after,
+    }
 
 
 def _picture(found: _Found) -> dict[str, Any]:

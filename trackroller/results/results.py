@@ -13,10 +13,12 @@ from trackroller.results import SHOWN
 from trackroller.results.answer import Answer
 from trackroller.results.by_tests import ByTests, by_tests_of
 from trackroller.results.candidates import Candidates, candidates_of
+from trackroller.results.how_it_behaves import answer_how_it_behaves
 from trackroller.results.pareto import pareto, study_pareto
 from trackroller.results.questions import answer_of
 from trackroller.results.sensitivity import analysis_of, indices_of
 from trackroller.results.solved_cases import SolvedCases
+from trackroller.results.summary import summary_of
 from trackroller.roller.duty import years
 from trackroller.roller.output_names import declared, is_life
 
@@ -53,6 +55,10 @@ class Results(SolvedCases):
     >>> results.data.sizes["friction_coefficient"], results.indices().attrs["method"]
     (2, 'grid')
     """
+
+    def __repr__(self) -> str:
+        """Return ten lines on the study: cases, factors, regimes, the life that counts, and what to take next."""
+        return summary_of(self)
 
     def indices(self) -> xr.Dataset:
         """Return the sensitivity indices of every output, see `trackroller.results.sensitivity.analyse`.
@@ -187,3 +193,8 @@ class Results(SolvedCases):
 
 for _name, _method in SHOWN.items():
     setattr(Results, _name, _method)
+
+
+def shown_answer(results: Results) -> Answer:
+    """Return the answer to a study; of a search without one how its designs behave."""
+    return results.answer or answer_how_it_behaves(results)

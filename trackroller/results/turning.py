@@ -174,7 +174,7 @@ class Turning:
             material = str(self.materials[BODIES[body]][own[row]])
             known = [one for one in placeholders_of(results.data) if (one.limit, one.material) == (limit, material)]
             if not known:
-                return {"what": LIMITS[limit].title, "of": material, "on": "", "turn": np.nan, "units": ""}
+                return {"what": LIMITS[limit].word, "of": material, "on": "", "turn": np.nan, "units": ""}
             found = self.told(known[0], -1)
             if len(known) > 1:
                 found["what"] = " or ".join(dict.fromkeys(one.name for one in known))

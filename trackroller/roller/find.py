@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -24,6 +24,9 @@ from trackroller.roller.case import Case
 from trackroller.roller.doubts import doubts_of_case
 from trackroller.roller.output_names import PARTS, unit_of
 from trackroller.roller.solver import solve
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 STEPS = 24  # values tried on either side of the case
 RATIO = 16.0  # a value of one sign is tried from a sixteenth to sixteen times the case's
@@ -283,11 +286,21 @@ class _Search:
         held = np.broadcast_to(meets(self.plain, {**columns, **{r: r for r in REGIMES}}, "find"), (len(cases),))
         out = []
         for i, good in enumerate(held.tolist()):
-            said = [f"{one} {float(columns[one][i]):.5g}" for one in self.results]
+            said = [f"{one} {self._band(ds, one, i, float(columns[one][i]))}" for one in self.results]
             if regime[i] != REGIMES.index("rolling") or not said:
                 said.insert(0, REGIMES[regime[i]].replace("_", " "))
             out.append((bool(good), ", ".join(said) + "."))
         return out
+
+    def _band(self, ds: xr.Dataset, name: str, place: int, value: float) -> str:
+        """Write a result, and both ends of its range where placeholders give it one."""
+        ends = [PARTS.get(f"{name}_{end}") for end in ("low", "high")]
+        if any(one is None or one.variable.name not in ds for one in ends):
+            return f"{value:.5g}"
+        low, high = (float(one.values(ds).values[place]) for one in ends if one is not None)
+        if not low < high * (1.0 - ROUNDING):
+            return f"{value:.5g}"
+        return f"{value:.5g} ({low:.4g} to {high:.4g})"
 
     def notes(self) -> tuple[str, ...]:
         """Say what the condition does not count."""

@@ -180,6 +180,11 @@ def materials_of(ds: xr.Dataset) -> dict[str, dict[str, Any]]:
     return json.loads(ds.attrs[MATERIALS])
 
 
+def as_material(values: Mapping[str, Any]) -> Material:
+    """Return the material that a result stores with its sources."""
+    return Material(**{key: value for key, value in values.items() if key not in ("sources", "notes", "guesses")})
+
+
 def friction_records(attrs: Mapping[str, Any]) -> list[dict[str, Any]]:
     """Return the friction coefficients that a result took from the database: pair, level, value, source, placeholder.
 

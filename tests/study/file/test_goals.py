@@ -18,9 +18,9 @@ from trackroller.methods.delta import delta
 from trackroller.methods.given_data import given_data
 from trackroller.parameters import expressions
 from trackroller.report.figures.sn_diagram import sn_diagram
-from trackroller.report.tables.inputs import as_material
 from trackroller.results.robustness import material_deviations
 from trackroller.results.sensitivity import analyse
+from trackroller.roller.stored_inputs import as_material
 from trackroller.study.file.goals import Analysis
 from trackroller.study.file.load import parse_study
 

@@ -10,11 +10,12 @@ import xarray as xr
 from trackroller.report.figures import style
 from trackroller.report.figures.panels import legend
 from trackroller.report.numbers import rounded
-from trackroller.report.words.carriage import worst_place
+from trackroller.results.carriage_answer import worst_place
 
 LONGEST = 0.3  # of the size of the carriage: the arrow of the largest force
 APART = 0.45  # of the smallest distance between rollers, so that the arrows of a pair do not meet
 ROOM = 0.55  # of the width of a view, right of the last roller: for its name and forces
+LABEL_WIDTH, LABEL_HEIGHT = 0.9, 0.3  # of a label beside its roller, over the size of the carriage
 VIEWS = (("from the side", 0, 2), ("from above", 0, 1))  # axes of the picture
 
 
@@ -48,7 +49,7 @@ def views(ds: xr.Dataset) -> style.Drawn:
         axes.plot(*masses[:, [across, up]].T, "D", color="0.35", ms=4, label="mass")
         for colour, scale, forces in zip(style.PAIR, scales, (radial, axial), strict=False):
             _arrows(axes, at[:, [across, up]], scale * forces[:, [across, up]], colour)
-        _name(axes, own, at[:, [across, up]], worst)
+        _name(axes, own, at[:, [across, up]], worst, masses[:, [across, up]], size)
         axes.set(xlabel="x, forward [mm]", ylabel=f"{'z, up' if up == 2 else 'y, left'} [mm]", title=words)
         axes.set_aspect("equal", adjustable="datalim")
         axes.margins(0.2)
@@ -77,8 +78,11 @@ def _arrows(axes: Any, at: np.ndarray, forces: np.ndarray, colour: str) -> None:
     axes.update_datalim((at + forces)[shown])
 
 
-def _name(axes: Any, own: xr.Dataset, at: np.ndarray, worst: str) -> None:
-    """Write name and forces beside each roller; rollers that one view shows at one point share a label."""
+def _name(axes: Any, own: xr.Dataset, at: np.ndarray, worst: str, masses: np.ndarray, size: float) -> None:
+    """Write name and forces beside each roller; rollers that one view shows at one point share a label.
+
+    A label stands above its roller, and below it where a mass stands in its place.
+    """
     labels: dict[tuple[float, float], list[str]] = {}
     for j, name in enumerate(own["roller"].values):
         radial, axial = (rounded(float(own[key][j])) for key in ("radial_force", "axial_force"))
@@ -86,4 +90,7 @@ def _name(axes: Any, own: xr.Dataset, at: np.ndarray, worst: str) -> None:
         text = f"{name} {forces}{' (worst)' if name == worst else ''}"
         labels.setdefault((float(at[j, 0]), float(at[j, 1])), []).append(text)
     for place, texts in labels.items():
-        axes.annotate("\n".join(texts), place, xytext=(6, 6), textcoords="offset points", fontsize=7)
+        away = (masses - np.array(place)) / size
+        taken = ((away > 0) & (away < np.array([LABEL_WIDTH, LABEL_HEIGHT]))).all(axis=1).any()
+        offset, side = ((6, -6), "top") if taken else ((6, 6), "baseline")
+        axes.annotate("\n".join(texts), place, xytext=offset, textcoords="offset points", fontsize=7, va=side)

@@ -15,8 +15,9 @@ from trackroller.parameters import BODIES
 from trackroller.report.figures import style
 from trackroller.report.figures.panels import Entries, legend
 from trackroller.report.numbers import capital, listing, rounded, with_unit
-from trackroller.report.tables.inputs import as_material, stored_materials
+from trackroller.report.tables.inputs import stored_materials
 from trackroller.results.results import Results
+from trackroller.roller.stored_inputs import as_material
 
 BEYOND = 1e4  # the axis ends at this multiple of the cycles at the fatigue limit
 MAX_MATERIALS = 6

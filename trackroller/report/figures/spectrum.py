@@ -8,7 +8,7 @@ import xarray as xr
 from trackroller.parameters import BODIES
 from trackroller.report.figures import style
 from trackroller.report.numbers import chance, listing
-from trackroller.report.words.spectrum import known_damage
+from trackroller.results.spectrum_answer import known_damage
 
 MOST = 16  # blocks drawn one by one; the others stand together
 

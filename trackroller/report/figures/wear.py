@@ -8,7 +8,7 @@ import xarray as xr
 from trackroller.parameters import BODIES
 from trackroller.report.figures import style
 from trackroller.report.numbers import rounded
-from trackroller.report.words.wear import deeper_contact
+from trackroller.results.wear_answer import deeper_contact
 
 TRAVELS = 5  # profiles drawn side by side
 ROOM = 1.25  # width drawn over the half width of the widest patch

@@ -9,32 +9,56 @@ from __future__ import annotations
 import base64
 import csv
 import io
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 from typing import Any
 
 from markupsafe import Markup
 
+from trackroller.damage import judged
 from trackroller.files import inert_cell
 from trackroller.report.headlines import WARNING_HEADS, headline_of, warning_rows
 from trackroller.report.numbers import count, long_name, on_duty, plain, rounded, unit_text
 from trackroller.report.pictures import curves
 from trackroller.report.pictures.bars import Bars
-from trackroller.report.pictures.first_screen import map_of, picture_of, row_names
+from trackroller.report.pictures.first_screen import picture_of
+from trackroller.report.pictures.pairs_map import map_of
+from trackroller.report.pictures.picture import row_names
+from trackroller.report.pictures.uses import UseBars
 from trackroller.report.tables.rows import (
-    FIRST_ROWS,
-    MOST_ROWS,
     MOST_SHOWN,
     Rows,
     definitions,
     ends_table,
     fit_columns,
+    rows_before_fold,
     rows_of,
 )
-from trackroller.results.answer import Answer
+from trackroller.results.answer import Answer, Part
 
 MOST_TRANSPOSED = 4  # rows of a table that may stand beside its picture as columns
 MOST_EFFECTS = 4  # of the first screen; the others stand under Why
 MOST_DOWNLOADED = 5000  # rows of a table that a page holds as a file
+
+
+@dataclass(frozen=True)
+class Drawn:
+    """A column of bars.
+
+    Attributes
+    ----------
+    head : the axis of its head
+    rows : one bar a row
+    title, unit, meaning : of its head
+    place : column before which the bars stand
+    """
+
+    head: Markup
+    rows: tuple[Markup, ...]
+    title: str
+    unit: str
+    meaning: str
+    place: int
 
 
 @dataclass(frozen=True)
@@ -44,20 +68,14 @@ class Shown:
     Attributes
     ----------
     rows : heads and cells
-    bars : the head of its bars and one bar a row; None without bars
-    place : column before which the bars stand
+    bars : its columns of bars
     key : what the marks of a bar mean
     first : rows before the fold
     of : all rows of the answer
     """
 
     rows: Rows
-    head: Markup | None
-    bars: tuple[Markup, ...]
-    bar_title: str
-    bar_unit: str
-    bar_meaning: str
-    place: int
+    bars: tuple[Drawn, ...]
     key: tuple[tuple[Markup, str], ...]
     first: int
     of: int
@@ -76,14 +94,15 @@ def screen_of(answer: Answer) -> dict[str, Any]:
     dict
         `title`, `description`, `facts`, `headline`, `table`, `others` (columns that do not fit), `transposed`,
         `shared`, `picture`, `effects`, `effects_first`, `effects_caption`, `map`, `not_checked`, `not_used`,
-        `not_given`, `warnings`, `ends`, `outputs`, `definitions`, `download`.
+        `not_given`, `warnings`, `ends`, `outputs`, `definitions`, `limits` (their words and what they mean),
+        `parts` (further tables with their rows), `download`.
     """
     with on_duty(answer.facts.get("duty")):
         picture = picture_of(answer)
         shown = table_of(answer)
         beside = picture is not None and picture.beside
         effects = curves.effects(answer)
-        first = MOST_EFFECTS if _curves_are_the_picture(answer, picture is not None or shown.head is not None) else 0
+        first = MOST_EFFECTS if _curves_are_the_picture(answer, picture is not None or bool(shown.bars)) else 0
         return {
             "title": str(answer.facts.get("name", "")),
             "description": str(answer.facts.get("description") or ""),
@@ -105,6 +124,8 @@ def screen_of(answer: Answer) -> dict[str, Any]:
             "ends": ends_table(answer),
             "outputs": _outputs(answer),
             "definitions": list(definitions(answer)),
+            "limits": [(limit.word, limit.title) for limit in judged() if limit.word != limit.title],
+            "parts": [(part, part_rows(answer, part)) for part in answer.parts],
             "download": download_of(answer),
             "output_heads": OUTPUT_HEADS,
         }
@@ -144,7 +165,8 @@ def facts_line(answer: Answer) -> str:
     if conditions:
         drawn = "drawn " if facts.get("drawn") else ""
         sizes.append(f"{conditions} {drawn}conditions")
-    cases = f"{count(facts['cases'])} cases" if facts.get("cases", 0) > 1 else ""
+    counted = facts.get("counted", "cases")
+    cases = f"{count(facts['cases'])} {counted}" if facts.get("cases", 0) > 1 else ""
     size = f"{cases}: {', '.join(sizes)}" if cases and sizes else cases
     models = facts.get("models", "")
     models = models if isinstance(models, str) else ", ".join(map(str, models))
@@ -162,24 +184,43 @@ def _conditions(number: Any) -> str:
 
 def table_of(answer: Answer) -> Shown:
     """Return the table of an answer with its bars; columns that do not fit the page are left to the proof."""
-    bars = Bars.of(answer)
-    fit = fit_columns(answer, bars is not None)
+    fit = fit_columns(answer, _bar_columns(answer))
     rows = rows_of(answer, fit.shown)
-    of = len(answer.table)
-    first = FIRST_ROWS if of > MOST_ROWS else of
-    if bars is None:
-        return Shown(rows, None, (), "", "", "", -1, (), first, of)
-    records = answer.table.head(MOST_SHOWN).to_dict("records")
     names = [column.name for column in fit.shown]
-    place = next((i for i, name in enumerate(names) if name in bars.columns), len(names))
-    meaning = "; ".join(column.meaning for column in bars.columns.values() if column.meaning)
-    drawn = tuple(bars.row(row) for row in records)
-    return Shown(rows, bars.head(), drawn, bars.title, bars.units, meaning, place, tuple(bars.key()), first, of)
+    bars = Bars.of(answer)
+    key = tuple(bars.key()) if bars else ()
+    return Shown(rows, tuple(_drawn(answer, names)), key, rows_before_fold(answer), len(answer.table))
+
+
+def _bar_columns(answer: Answer) -> int:
+    """Return how many columns of bars a table has."""
+    return len([one for one in (UseBars.of(answer), Bars.of(answer)) if one is not None])
+
+
+def _drawn(answer: Answer, names: Sequence[str]) -> Iterator[Drawn]:
+    """Yield the columns of bars of a table, which has columns of these names."""
+    records = answer.table.head(MOST_SHOWN).to_dict("records")
+    uses = UseBars.of(answer)
+    if uses is not None:
+        own = uses.column
+        drawn = tuple(uses.row(row) for row in records)
+        yield Drawn(uses.head(), drawn, own.title, "%", own.meaning, names.index(own.name) + 1)
+    bars = Bars.of(answer)
+    if bars is not None:
+        place = next((i for i, name in enumerate(names) if name in bars.columns), len(names))
+        meaning = "; ".join(column.meaning for column in bars.columns.values() if column.meaning)
+        drawn = tuple(bars.row(row) for row in records)
+        yield Drawn(bars.head(), drawn, bars.title, bars.units, meaning, place + (uses is not None))
+
+
+def part_rows(answer: Answer, part: Part) -> Rows:
+    """Return heads and cells of a further table of an answer."""
+    return rows_of(replace(answer, table=part.table, columns=part.columns, required=()))
 
 
 def _others(answer: Answer) -> Rows | None:
     """Return the columns that do not fit the first screen, with the names of their rows."""
-    fit = fit_columns(answer, Bars.of(answer) is not None)
+    fit = fit_columns(answer, _bar_columns(answer))
     if not fit.others:
         return None
     names = [column for column in fit.shown if column.role == "name"]

@@ -13,7 +13,7 @@ from trackroller.errors import listing
 from trackroller.fit.fitted import WORDS, Fit, Group
 from trackroller.report import html
 from trackroller.report.numbers import capital, rounded, with_unit
-from trackroller.report.pages.sheet import pictures, versions_text
+from trackroller.report.pages.record import pictures, versions_text
 from trackroller.report.tables.table import Table, cell, heading
 
 SYMBOLS = {

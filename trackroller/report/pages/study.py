@@ -12,7 +12,6 @@ import xarray as xr
 from trackroller import parameters
 from trackroller.methods import METHODS
 from trackroller.report.explorer.page import explorer, secured
-from trackroller.report.headlines import shown_answer
 from trackroller.report.html import render
 from trackroller.report.numbers import capital, lives_in_years, long_name, part_of, percent_up, rounded
 from trackroller.report.pages.blocks import screen_of
@@ -24,10 +23,10 @@ from trackroller.report.workbook import export, write_answer
 from trackroller.results.answer import Answer
 from trackroller.results.judging import OPTIMUM
 from trackroller.results.looks import UNTIL
-from trackroller.results.results import Results
+from trackroller.results.results import Results, shown_answer
 from trackroller.roller.dataset import solved_by
 from trackroller.roller.doubts import doubts
-from trackroller.roller.stored_inputs import NOT_GIVEN
+from trackroller.roller.stored_inputs import NOT_GIVEN, as_material
 from trackroller.study.store.seal import put_text, sealing
 
 OPTIONS = tuple(option.name for option in parameters.OPTIONS.values() if option.recorded)
@@ -107,7 +106,7 @@ def tables_of(results: Results) -> list[Table]:
 def _doubts(results: Results) -> list[str]:
     """Return a sentence for each unusual value of the cases."""
     varied = {name: results.table[name].to_numpy() for name in results.table if name in parameters.PARAMETERS}
-    materials = map(inputs.as_material, inputs.stored_materials(results.data.attrs).values())
+    materials = map(as_material, inputs.stored_materials(results.data.attrs).values())
     return doubts({**results.base, **varied}, materials)
 
 

@@ -16,9 +16,11 @@ from trackroller.report.pictures.marks import dot, element, joined, label, line,
 from trackroller.results.answer import Answer, Column
 
 LENGTH = 190.0  # smallest width of the bars of a table [px]
+SHORT = 115.0  # the same where a table has two columns of bars
 ROW = 24  # height of a bar [px]
 DIFFERENT = 0.6  # of the axis [%]: ends that differ by less are one dot
-COLOURS = {"met": "cm", "open": "co", "missed": "cx", "none": "cx"}
+COLOURS = {"met": "cm", "open": "co", "missed": "cx", "none": "cx"}  # classes by the verdict
+COLOURS |= {"kept": "cm", "finite": "cm", "exceeded": "cx", "unknown": "cg"}
 
 
 @dataclass(frozen=True)
@@ -33,6 +35,7 @@ class Bars:
     shares : whether they are shares, which are drawn from 0 to 100 %
     bounds : required values with their words
     state : column of the verdict, which colours the bars; '' without one
+    length : smallest width, into which the ticks of the head have to fit [px]
     """
 
     title: str
@@ -42,6 +45,7 @@ class Bars:
     shares: bool
     bounds: tuple[tuple[float, str], ...]
     state: str = ""
+    length: float = LENGTH
 
     @classmethod
     def of(cls, answer: Answer) -> Bars | None:
@@ -59,14 +63,15 @@ class Bars:
         values = answer.table[names].to_numpy(dtype=float).ravel()
         axis = Axis.of([*values, *(value for value, _ in bounds)])
         unit = unit_text(answer.output[2]).replace("–", "")
-        return cls(capital(answer.output[1]), unit, axis, columns, False, bounds, state)
+        length = SHORT if any(column.role == "use" for column in answer.columns) else LENGTH
+        return cls(capital(answer.output[1]), unit, axis, columns, False, bounds, state, length)
 
     def head(self) -> Markup:
         """Return the axis that stands in the head of the table."""
         if self.shares:
             ticks = [(share, f"{100 * share:.0f}") for share in (0.0, 0.25, 0.5, 0.75, 1.0)]
         else:
-            ticks = self.axis.ticks(LENGTH)
+            ticks = self.axis.ticks(self.length)
         parts = [self._tick(value, text) for value, text in ticks]
         parts += [self._bound(value, text) for value, text in self.bounds[:1]]
         return element("svg", joined(parts), height=28, aria_hidden="true")
@@ -78,7 +83,7 @@ class Bars:
 
     def _bound(self, value: float, text: str) -> Markup:
         place = self.axis.place(value)
-        reach = 50 * width_of(text) / LENGTH
+        reach = 50 * width_of(text) / self.length
         anchor = "start" if place < reach else "end" if place > 100 - reach else "middle"
         return label(text, place, "10", anchor, "rt")
 
@@ -95,7 +100,7 @@ class Bars:
         if self.shares:
             return [0.0, 0.25, 0.5, 0.75, 1.0]
         powers = self.axis.powers()
-        return powers if len(powers) > 1 else [value for value, _ in self.axis.ticks(LENGTH)]
+        return powers if len(powers) > 1 else [value for value, _ in self.axis.ticks(self.length)]
 
     def _share_marks(self, row: Mapping[Any, Any]) -> Iterator[Markup]:
         for column in self.columns.values():

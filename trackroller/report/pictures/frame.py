@@ -9,7 +9,7 @@ from typing import Any
 from markupsafe import Markup
 
 from trackroller.report.bounds import required_of_output
-from trackroller.report.numbers import grouped, unit_text
+from trackroller.report.numbers import as_required, unit_text
 from trackroller.report.pictures.axis import Axis
 from trackroller.report.pictures.marks import (
     anchor_at,
@@ -107,7 +107,7 @@ def bounds_of(answer: Answer) -> list[tuple[float, str]]:
 
 def _bounds(required: Required) -> list[tuple[float, str]]:
     ends = [(required.least, "required"), (required.most, "at most")]
-    return [(value, f"{word} {grouped(value, 6)}") for value, word in ends if math.isfinite(value)]
+    return [(value, f"{word} {as_required(value)}") for value, word in ends if math.isfinite(value)]
 
 
 def required_levels(answer: Answer, axis: Axis) -> Markup:

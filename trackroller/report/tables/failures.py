@@ -8,7 +8,7 @@ import xarray as xr
 from trackroller.parameters.validity import VALIDITY
 from trackroller.report.numbers import plain
 from trackroller.report.tables.table import Table
-from trackroller.report.words.accuracy import bodies_of
+from trackroller.results.flags import bodies_of
 from trackroller.results.results import Results
 
 OF_LIVES = ("deep_life",)  # validity flags that say how far a life holds

@@ -155,11 +155,6 @@ def stored_materials(attrs: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
     return {n: v for n, v in stored.items() if isinstance(v, dict)} if isinstance(stored, dict) else {}
 
 
-def as_material(values: Mapping[str, Any]) -> Material:
-    """Return the material that a result stores with its sources."""
-    return Material(**{key: value for key, value in values.items() if key not in ("sources", "notes", "guesses")})
-
-
 def material_source(values: Mapping[str, Any]) -> str:
     """Return where the values of a material come from, and which of them are guesses."""
     source = "; ".join(dict.fromkeys(values.get("sources", {}).values())) or "not given"

@@ -15,17 +15,26 @@ from trackroller.report.numbers import (
     level_text,
     lowered,
     unit_text,
+    year_text,
     year_words,
 )
+from trackroller.report.pictures.axis import tick_text
 from trackroller.results.answer import Answer, Column
 from trackroller.study.design.levels import NAMED
 
-STATE_SIGNS = {"met": "● met", "open": "◐ open", "missed": "✕ missed", "none": "– none"}
+STATE_SIGNS = {"met": "● met", "open": "◐ open", "missed": "✕ missed", "none": "– none"}  # of a candidate
+STATE_SIGNS |= {
+    "kept": "● kept",
+    "finite": "● finite",
+    "exceeded": "✕ exceeded",
+    "unknown": "– not known",
+}  # of a limit
 MOST_ROWS = 15  # of a table that stands on a page whole
 FIRST_ROWS = 12  # of a longer one, before the fold
 MOST_SHOWN = 200  # of a longer one, the fold included; the others stand in the files
 PAGE = 1090.0  # width of a table on a page [px]
 BARS = 210.0  # width of the bars of a table [px]
+HALF_BARS = 150.0  # width of each of two columns of bars [px]
 GAP = 17.0  # between two columns [px]
 LETTER = 7.3  # mean width of a letter of a table [px]
 WRAPPED = 24  # letters of a line of a text in a table
@@ -36,6 +45,8 @@ NARROW_KINDS = ("ratio", "error")  # that a card of a narrow screen leaves out
 NARROW_NAMES = ("median", "best")
 WORDS = ("factor", "output")  # columns of words that name a row
 UNDRAWN = ("best",)  # columns that are drawn and not written
+LONG_LIFE = 1e9  # h; a longer one is no number that a person reads
+IN_FILES = "file"  # role of columns that stand in files alone
 
 
 @dataclass(frozen=True)
@@ -78,15 +89,21 @@ def rows_of(answer: Answer, columns: Iterable[Column] | None = None) -> Rows:
     """Return the table of an answer; columns that are equal in all rows are said once."""
     shared = answer.shared
     every = tuple(answer.columns) if columns is None else tuple(columns)
-    shown = [one for one in every if one.name not in shared and one.name not in UNDRAWN]
+    shown = [one for one in every if one.name not in shared and not _is_hidden(one)]
     records = answer.table.head(MOST_SHOWN).to_dict("records")
     heads = tuple(head_of(answer, column) for column in shown)
     pairs = list(zip(shown, heads, strict=True))
     cells = tuple(tuple(cell_of(answer, column, row, head.kind) for column, head in pairs) for row in records)
     first = records[0] if records else {}
     said = [_shared_text(answer, column, first) for column in answer.columns if column.name in shared]
-    said.append(year_words())
+    if any(column.units == "h" for column in shown):
+        said.append(year_words())
     return Rows(heads, cells, tuple(text for text in said if text))
+
+
+def _is_hidden(column: Column) -> bool:
+    """Return whether a page leaves a column out, because it is drawn or stands in files alone."""
+    return column.name in UNDRAWN or column.role == IN_FILES
 
 
 def head_of(answer: Answer, column: Column) -> Head:
@@ -143,26 +160,59 @@ def cell_of(answer: Answer, column: Column, row: Mapping[Any, Any], kind: str) -
 def text_of(answer: Answer, column: Column, row: Mapping[Any, Any]) -> str:
     """Return what a cell says, without the unit of its head."""
     value = row[column.name]
-    if _missing(value):
+    if _missing(value) and column.kind != "bounded":
         return "–"
     if column.kind == "level":
         return _level_text(column, value)
+    if column.kind == "bounded":
+        return _bounded_text(column, row)
+    if column.name == "units":
+        return unit_text(str(value)).replace("–", "")
     if isinstance(value, str):
         return capital(value) if column.name in WORDS else value
-    if column.kind == "count":
-        return grouped(float(value), 12)
+    if column.kind in FIGURES:
+        return grouped(float(value), FIGURES[column.kind])
     low = float(value)
     high = float(row[column.until]) if column.until and not _missing(row[column.until]) else low
+    return _range_text(answer, column, row, (low, high))
+
+
+FIGURES = {"count": 12, "whole": 4}  # of a number by the kind of its column
+
+
+def _range_text(answer: Answer, column: Column, row: Mapping[Any, Any], ends: tuple[float, float]) -> str:
+    """Return what a cell says of a number or of a range."""
     if column.kind in ("share", "error"):
-        return _percent_range(low, high)
+        return _percent_range(*ends)
     if column.kind == "ratio":
-        return " to ".join(dict.fromkeys(ratio_text(end) for end in (low, high)))
-    return carried_range(low, high, _error_of(row, column), _bounds(answer, column))
+        return " to ".join(dict.fromkeys(ratio_text(end) for end in ends))
+    if column.kind == "life" and ends[0] >= LONG_LIFE:
+        return f"> {tick_text(LONG_LIFE)}"
+    if column.kind == "years":
+        return year_text(ends[0])
+    return carried_range(*ends, _error_of(row, column), _bounds(answer, column))
+
+
+def _bounded_text(column: Column, row: Mapping[Any, Any]) -> str:
+    """Return a value and the permitted one: '33.4 of 360 MPa'."""
+    value = float(row[column.name])
+    most = float(row[column.until])
+    unit = unit_text(str(row.get("units", ""))).replace("–", "")
+    if math.isnan(value):
+        return "–" if math.isnan(most) else f"at most {grouped(most, 3)} {unit}".strip()
+    bound = f" of {grouped(most, 3)}" if math.isfinite(most) else ""
+    return f"{grouped(value, 3)}{bound} {unit}".strip().replace(" °", "°")
 
 
 def ratio_text(ratio: float) -> str:
     """Write a ratio: three figures near 1, where small differences count, otherwise two."""
     return grouped(ratio, 3 if 0.1 <= ratio < 10 else 2)
+
+
+def rows_before_fold(answer: Answer) -> int:
+    """Return how many rows stand before the fold; the limits of one roller are never folded."""
+    of = len(answer.table)
+    return FIRST_ROWS if of > MOST_ROWS and answer.question != "roller" else of
 
 
 def _missing(value: Any) -> bool:
@@ -221,13 +271,13 @@ class ColumnSplit:
     others: tuple[Column, ...]
 
 
-def fit_columns(answer: Answer, bars: bool, width: float = PAGE) -> ColumnSplit:
+def fit_columns(answer: Answer, bars: int, width: float = PAGE) -> ColumnSplit:
     """Return the columns that fit a width, from the first one on; columns that name a row or are drawn stay."""
     shared = answer.shared
-    left = width - (BARS if bars else 0.0)
+    left = width - bars * (BARS if bars == 1 else HALF_BARS)
     shown, others = [], []
     for column in sorted(answer.columns, key=lambda one: not one.role and one.kind != "state"):
-        if column.name in shared or column.name in UNDRAWN:
+        if column.name in shared or _is_hidden(column):
             continue
         needed = _width(answer, column)
         readable = column.kind != "text" or _longest(answer, column) <= LINES * WIDEST
@@ -248,7 +298,8 @@ def _width(answer: Answer, column: Column) -> float:
     if column.kind == "text" or column.role == "name":
         longest = max(min(longest, WRAPPED), longest // LINES)
     if column.kind == "state":
-        longest = len("✕ missed")
+        signs = [len(STATE_SIGNS.get(str(state), "")) for state in answer.table[column.name]]
+        longest = max(signs, default=0)
     heads = [len(word) for word in (*column.title.split(), unit_of(column))]
     return LETTER * max(longest, *heads) + GAP
 
@@ -262,7 +313,7 @@ def _longest(answer: Answer, column: Column) -> int:
 def definitions(answer: Answer) -> Iterator[tuple[str, str]]:
     """Yield each column with its definition."""
     for column in answer.columns:
-        if column.meaning:
+        if column.meaning and column.role != IN_FILES:
             unit = unit_of(column)
             title = capital(column.title)
             yield (f"{title} [{unit}]" if unit else title), capital(column.meaning)

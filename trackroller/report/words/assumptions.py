@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
 
 import xarray as xr
 
@@ -21,7 +20,6 @@ ALWAYS = (
     "Pressure limit: R_m stands for the yield strength.",
 )
 NO_WEAR = "No wear: the profiles stay as given."
-POLYMER = 20e3  # MPa; a material with a lower Young's modulus is treated as a polymer
 
 
 def assumptions(ds: xr.Dataset) -> list[str]:
@@ -53,34 +51,6 @@ def friction_sentence(ds: xr.Dataset) -> str:
         for r in friction_records(ds.attrs)
     ]
     return " ".join(sentences)
-
-
-def material_warnings(stored: Mapping[str, Mapping[str, Any]], materials: Mapping[str, Material]) -> list[str]:
-    """Return what the database itself says against the values of the materials, and what polymers need.
-
-    Parameters
-    ----------
-    stored : mapping of str to mapping
-        Values with sources, guesses and notes, by `roller_material` and `guide_material`.
-    materials : mapping of str to Material
-        Material of each body.
-    """
-    out = []
-    for body, material in materials.items():
-        own = stored[f"{body}_material"]
-        by_note: dict[str, list[str]] = {}
-        for name, note in own.get("notes", {}).items():
-            by_note.setdefault(note, []).append(PROPERTIES[name].symbol)
-        out += [f"{material.name}: {listing(symbols)}: {note}." for note, symbols in by_note.items()]
-        if own.get("guesses"):
-            guessed = [plain(name) for name in own["guesses"]]
-            out.append(f"{material.name}: guesses without a source: {listing(guessed)}.")
-        if material.youngs_modulus < POLYMER:
-            out.append(
-                f"{material.name}: stiffness, strength and friction of a polymer depend on temperature and moisture. "
-                "The database states neither: give values for the temperature and the moisture in use."
-            )
-    return list(dict.fromkeys(out))
 
 
 def strength_sentences(materials: Mapping[str, Material]) -> list[str]:

@@ -31,11 +31,11 @@ from trackroller.study.design.entries import base_value, choice, factor
 from trackroller.study.design.roles import check_words
 from trackroller.study.file.correlations import check_entries
 from trackroller.study.file.goals import Analysis, comparisons, directions, own_expressions
+from trackroller.study.file.questions import QUESTIONS
 from trackroller.study.file.search import Budget
 from trackroller.study.file.until import Until
 
 NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,63}")
-QUESTIONS = ("decide", "what matters", "how sure", "best", "which model", "how it behaves")
 DEVICE = re.compile(r"(con|prn|aux|nul|com\d|lpt\d)(\..*)?", re.IGNORECASE)
 
 

@@ -11,7 +11,8 @@ from trackroller.methods.factor import DISTRIBUTIONS
 from trackroller.parameters import MAPPING_FIELDS, MATERIAL_FIELDS, PARAMETERS, Option
 from trackroller.parameters.accuracy import QUANTITIES
 from trackroller.study.design.entries import OPTION_FACTORS
-from trackroller.study.file.config import IN_STUDY, NAME, QUESTIONS, StudyFile
+from trackroller.study.file.config import IN_STUDY, NAME, StudyFile
+from trackroller.study.file.questions import QUESTIONS
 
 FILE = Path(__file__).resolve().parents[3] / "workflow" / "schemas" / "study.schema.json"
 

@@ -3,6 +3,7 @@
 import { ask } from "./api.js";
 import { el, replace, select } from "../dom.js";
 import { carriagePicture } from "./carriage_picture.js";
+import { headlineOf, part } from "./tables.js";
 
 const PAUSE = 300; // ms without a change of the text until it is read
 const REST = 500; // ms without a change until lives and margins are computed
@@ -152,8 +153,8 @@ export function carriageView(state, { changed }) {
     paint();
     for (const one of [loads, sentences, lives]) one.classList.toggle("old", !carried || one === lives);
     if (!carried) return (verdict.textContent = "Not solved. Mend what is marked.");
-    verdict.textContent = carried.said[0];
-    replace(sentences, carried.said.slice(1).map((words) => el("li", {}, words)));
+    replace(verdict, headlineOf(carried.headline));
+    replace(sentences, carried.warnings.map((words) => el("li", {}, words)));
     replace(loads, table(carried.table, spectrum));
     resting = setTimeout(live, REST);
   }
@@ -169,9 +170,9 @@ export function carriageView(state, { changed }) {
     try {
       const answer = await ask("carriage_lives", { text, file });
       if (own !== newest) return;
-      verdict.textContent = answer.said[0];
-      replace(sentences, answer.said.slice(1).map((words) => el("li", {}, words)));
-      replace(lives, answer.tables.flatMap((one) => [el("h3", {}, one.title), table(one), one.note ? el("p", { class: "soft" }, one.note) : null]));
+      replace(verdict, headlineOf(answer.headline));
+      replace(sentences, answer.warnings.map((words) => el("li", {}, words)));
+      replace(lives, answer.tables.flatMap((one) => [el("h3", {}, one.name === "limits" ? "Rollers" : one.title), part(one)].flat()));
       lives.classList.remove("old");
       stage.textContent = "shown: loads, lives and margins";
       stage.dataset.stage = "complete";

@@ -1,6 +1,7 @@
 // The load spectrum of the roller on the screen: loads by share of the time, hours or metres, and what they sum to.
 import { ask } from "./api.js";
 import { copy, el, replace, select } from "../dom.js";
+import { headlineOf, limitTable, part } from "./tables.js";
 
 const BY = [["share", "share of the time"], ["hours", "hours a shift"], ["distance", "metres a shift"]];
 const START = [["heavy", "20 %"], ["usual", "50 %"], ["light", "30 %"]]; // shares of a first example
@@ -34,16 +35,6 @@ export function spectrumView(state, offered) {
     replace(grid, el("table", { class: "blocks" }, el("thead", {}, head), el("tbody", {}, loads.map(row))));
   }
 
-  const table = ({ title, heads, rows, note }) => [
-    el("h3", {}, title),
-    el(
-      "div",
-      { class: "wide", tabindex: "0", role: "region", "aria-label": title },
-      el("table", { class: "numbers" }, el("thead", {}, el("tr", {}, heads.map((words) => el("th", { scope: "col" }, words)))), el("tbody", {}, rows.map(([first, ...cells]) => el("tr", {}, el("th", { scope: "row" }, first), cells.map((text) => el("td", {}, text)))))),
-    ),
-    note ? el("p", { class: "soft" }, note) : null,
-  ];
-
   async function solve() {
     told.textContent = "Solving the loads …";
     try {
@@ -53,9 +44,10 @@ export function spectrumView(state, offered) {
       const button = el("button", { type: "button", onclick: () => copy(found.text, button) }, "Copy");
       replace(
         answer,
-        found.said.map((words) => el("p", {}, words)),
+        el("p", { class: "verdict" }, headlineOf(found.headline)),
         el("ul", { class: "warnings" }, found.warnings.map((words) => el("li", {}, words))),
-        found.tables.flatMap(table),
+        Object.entries(found.not_checked).map(([body, names]) => el("p", { class: "soft" }, `not checked, ${body}: ${names.join(", ")}`)),
+        found.tables.flatMap((one) => [el("h3", {}, one.title), one.bars ? el("div", { class: "wide" }, limitTable(one)) : part(one)].flat()),
         el("details", {}, el("summary", {}, "The spectrum as a file, for trackroller spectrum"), el("div", { class: "tools" }, button), text),
       );
     } catch (error) {

@@ -14,11 +14,14 @@ function facts(picture) {
   const found = new Map();
   const add = (group, words, value, unit = "") => found.set(`${group}|${words}`, `${value} ${unit}`.trim());
   for (const { words, value, unit } of picture.inputs) add("Inputs", words, value, unit);
-  add("Verdict", "verdict", picture.verdict);
-  for (const [words, one, two, unit] of picture.lines) add("Contacts 1 / 2", words, one === two ? one : `${one} / ${two}`, unit);
-  for (const m of picture.margins) add("Used of the limit", `${m.title}, ${m.body}`, m.share || "–");
-  for (const m of picture.margins) if (Number.isFinite(m.hours)) add("Reached after", `${m.title}, ${m.body}`, m.life);
-  for (const { words, value, unit } of picture.lives) add("Life", words, value, unit);
+  add("Answer", "headline", `${picture.headline.lead}${picture.headline.rest}`);
+  const { contacts, lives } = picture.parts;
+  for (const [words, one, two, unit] of contacts?.rows ?? []) add("Contacts 1 / 2", words.text, one.text === two.text ? one.text : `${one.text} / ${two.text}`, unit?.text);
+  const place = (name) => picture.limits.heads.findIndex((head) => head.name === name);
+  for (const row of picture.limits.rows) add("Used of the limit", `${row[place("limit")].text}, ${row[place("body")]?.text ?? ""}`, row[place("used_low")].text, "%");
+  for (const row of picture.limits.rows) if (place("low") >= 0 && row[place("low")].text !== "–") add("Life to the limit", `${row[place("limit")].text}, ${row[place("body")]?.text ?? ""}`, row[place("low")].text, "h");
+  const life = (name) => lives?.heads.findIndex((head) => head.name === name) ?? -1;
+  for (const row of lives?.rows ?? []) add("Life by fatigue", [row[0].text, life("probability") >= 0 ? `${row[life("probability")].text} % failed` : "", life("basis") >= 0 ? row[life("basis")].text : ""].filter(Boolean).join(", "), life("low") >= 0 ? row[life("low")].text : "", "h");
   return found;
 }
 
@@ -38,7 +41,7 @@ export function whatIf(state, offered, { rows }) {
     try {
       pictures.set(key(values), facts(await ask("picture", { values, accuracy: "standard", complete: true }, key(values))));
     } catch (error) {
-      pictures.set(key(values), new Map([["Verdict|verdict", error.message]]));
+      pictures.set(key(values), new Map([["Answer|headline", error.message]]));
     }
     draw();
   }
@@ -168,9 +171,10 @@ export function whatIf(state, offered, { rows }) {
   const bound = el("input", { type: "text", inputmode: "decimal", size: 8, "aria-label": "Value that the result has to meet" });
   const far = el("p", { class: "soft", role: "status" }, "Say what the result of the curve has to be, such as 10500.");
   const search = el("button", { type: "button", onclick: () => findRange() }, "How far may it go?");
+  const inYears = () => /= 1 year/.test(found?.columns[result.field.value]?.unit ?? "");
   async function findRange() {
     const typed = bound.value.trim().replace(",", ".");
-    if (!typed || !Number.isFinite(Number(typed))) return (far.textContent = "Write a number that the result of the curve has to meet, such as 10500.");
+    if (!/^[-+]?[\d.]+(e[-+]?\d+)?(\s*(a|yrs?|years?))?$/i.test(typed)) return (far.textContent = `Write a number that the result of the curve has to meet, such as 10500${inYears() ? " or 3 years" : ""}.`);
     far.textContent = "Searching …";
     try {
       far.textContent = (await ask("found", { values: state.values, over: over.field.value, condition: `${result.field.value} ${relation.field.value} ${typed}` })).text;

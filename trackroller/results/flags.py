@@ -1,27 +1,20 @@
-"""What limits a result: validity flags in words, and known errors of the contact models."""
+"""What limits the result of one case: validity flags in words, and known errors of the contact models."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import xarray as xr
 
 from trackroller.parameters import BODIES, REGIMES
 from trackroller.parameters.validity import VALIDITY
-from trackroller.report.numbers import capital, percent
 from trackroller.roller.dataset import validity_bit
-
-if TYPE_CHECKING:
-    pass
 
 SLIDING_ERROR = "38 % of mu F_N in friction forces against kalker (median of 492 rollers)"
 SLIDING_WEAR = "41 % in friction energy and wear (median of 92 designs)"
 KNOWN_ERROR = 0.05  # a larger median error of the model is stated
-
-
 _ROLLING = REGIMES.index("rolling")
-OUTSIDE = {  # flags of cases that the model does not judge, as the head of a verdict
+OUTSIDE = {  # flags of cases that the model does not judge, as a headline says them
     "half_space": "outside the half-space",
     "conformal": "patch at the edge of the groove",
     "steep_friction": "friction that falls too steeply",
@@ -73,11 +66,11 @@ def flags_of(ds: xr.Dataset) -> list[Flag]:
         if bits & validity_bit(name):
             own = [body for body, mask in by_body.items() if flag.of_body and mask & validity_bit(name)]
             words = f"{flag.words} {of_body(name, ' and the '.join(own))}".rstrip()
-            flags.append(Flag(name, f"{capital(words)}.", flag.remedy))
+            flags.append(Flag(name, f"{words[0].upper()}{words[1:]}.", flag.remedy))
     residual = float(ds["energy_residual"]) if "energy_residual" in ds else 0.0
     exact = "Solve it with contact_model: kalker."
     if residual > KNOWN_ERROR:
-        text = f"Friction energy and power differ from the work put in by {percent(residual)}."
+        text = f"Friction energy and power differ from the work put in by {100 * residual:.0f} %."
         flags.append(Flag("energy_residual", text, exact))
     if {"run_in_distance", "groove_depth"} & set(ds) and ds.attrs.get("contact_model") == "sliding":
         flags.append(Flag("wear_of_sliding", f"Known error of full sliding: {SLIDING_WEAR}.", exact))

@@ -1,0 +1,105 @@
+"""The front of a search with two goals."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from markupsafe import Markup
+
+from trackroller.report.numbers import capital, grouped
+from trackroller.report.pictures.axis import Axis
+from trackroller.report.pictures.frame import (
+    WIDE,
+    cut,
+    framed,
+    left_room,
+    lower_axis,
+    upright_axis,
+    with_unit,
+)
+from trackroller.report.pictures.marks import (
+    dot,
+    joined,
+    label,
+    spread_labels,
+)
+from trackroller.report.pictures.picture import Picture, caption_of, row_names
+from trackroller.results.answer import Answer
+
+TALL = 260.0  # height of a front and of a history [px]
+LINE = 15.0  # height of a line of text in a picture [px]
+MOST_POINTS = 800  # of a front that are drawn; of more, those of the front and an even part of the others
+
+
+def draw_front(answer: Answer, data: Mapping[str, Any]) -> Picture | None:
+    """Draw a front: its designs as dots, other ones as rings, the named ones large; upwards the first goal.
+
+    None is drawn where no design has two known goals.
+    """
+    values = np.asarray(data["goals"], dtype=float)[:, [1, 0]]
+    known = np.isfinite(values).all(axis=1)
+    if not known.any():
+        return None
+    front = np.asarray(data["front"], dtype=bool)
+    across, up = Axis.of(values[:, 0]), Axis.of(values[:, 1])
+    parts = [upright_axis(up, TALL)]
+    rows = _thinned(front)
+    parts += [
+        dot("d small cm" if front[i] else "ring", across.place(values[i, 0]), 100 - up.place(values[i, 1]), 2.6)
+        for i in rows
+        if known[i]
+    ]
+    titles = row_names(answer, len(data["named"]))
+    named = [
+        {"x": values[i, 0], "y": values[i, 1], "title": text}
+        for i, text in zip(data["named"], titles, strict=True)
+        if known[i]
+    ]
+    parts += _named_dots(named, across, up)
+    words, units = data["words"], data["units"]
+    parts.append(lower_axis(across, with_unit(capital(words[1]), units[1]), WIDE))
+    left = left_room(up, TALL)
+    title = with_unit(capital(words[0]), units[0])
+    parts.append(label(title, 0, "0", "start", dx=2 - left, dy=-7))
+    spoken = "; ".join(f"{one['title']}: {grouped(one['x'], 3)}, {grouped(one['y'], 3)}" for one in named)
+    drawn = framed(joined(parts), TALL, spoken or title, left=left, right=14, top=24)
+    said = f"Small dots: {int(front.sum()):,} designs that no other one beats"
+    if (~front).any():
+        said += "; rings: other designs"
+    said += "; large: those of the headline."
+    if len(values[0]) < len(words):
+        said += f" Not drawn: {', '.join(words[2:])}."
+    if not known.all():
+        said += f" Not drawn, because a goal is not known: {int((~known).sum()):,} designs."
+    if len(rows) < len(front):
+        said += f" {len(front) - len(rows):,} designs are not drawn."
+    return Picture(drawn, caption_of(data, said), beside=True)
+
+
+def _thinned(best: np.ndarray) -> list[int]:
+    """Return the rows to draw: those of the front, and an even part of the others."""
+    others = np.flatnonzero(~best)
+    room = max(0, MOST_POINTS - int(best.sum()))
+    if len(others) > room:
+        others = others[np.linspace(0, len(others) - 1, room).astype(int)] if room else others[:0]
+    front = np.flatnonzero(best)
+    if len(front) > MOST_POINTS:
+        front = front[np.linspace(0, len(front) - 1, MOST_POINTS).astype(int)]
+    return sorted([*front.tolist(), *others.tolist()])
+
+
+def _named_dots(named: Sequence[Mapping[str, Any]], across: Axis, up: Axis) -> list[Markup]:
+    """Return large dots with their titles, on the side that has room, at heights that do not collide."""
+    places = [(across.place(float(one["x"])), 100 - up.place(float(one["y"]))) for one in named]
+    heights = [y * TALL / 100 for _, y in places]
+    texts = spread_labels(heights, LINE, LINE / 2, TALL - LINE / 2)
+    parts = []
+    for one, (x, y), height in zip(named, places, texts, strict=True):
+        end = x > 50
+        parts.append(dot("d cm", x, y, 5.5))
+        text = cut(str(one["title"]), WIDE * (x if end else 100 - x) / 100)
+        anchor = "end" if end else "start"
+        parts.append(label(text, x, f"{height:.0f}", anchor, "strong", dx=-12 if end else 12, dy=4))
+    return parts

@@ -1,0 +1,434 @@
+"""The record of a carriage: its worst roller with the life, every roller, the loads, and the margins of the load cases.
+
+Keys of `Answer.headline`: `roller` (the worst one, or the one with the largest radial force), `case` (that does most of
+its damage, or has that force), `part` (of the damage by that case [1]), `low`, `high` [h], `km` [km], `body` (`roller`
+or `guide`) and `limit` (in words) that end it, `force` (largest radial force [N]), `unknown` (rollers whose life is not
+known), `unsettled` (load cases without forces), `margins` (list of {of, end, times, case, tipping}: the first end of
+the payload and of all loads), `catalogue` ({roller, factor, case, shortest, km} or None).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import xarray as xr
+
+from trackroller.damage import word_of
+from trackroller.parameters import REGIME_LABELS, REGIMES
+from trackroller.parameters.validity import VALIDITY
+from trackroller.results.answer import Answer, Caution, Column, Part
+from trackroller.results.lives import FIRST_LIMIT
+from trackroller.results.roller_answer import CODES
+from trackroller.roller.dataset import validity_bit
+from trackroller.roller.duty import duty_of
+from trackroller.roller.stored_inputs import doubts_of
+
+LOADS = {"payload": "payload", "loads": "all loads"}  # parts of the loads that a margin multiplies
+ENDS = {"one_contact": "one contact", "lift_off": "lift-off", "tipping": "tipping"}
+ROLLING = REGIMES.index("rolling")
+COLUMNS = (
+    Column("roller", "Roller", "", "roller of the carriage", "text", role="name"),
+    Column("low", "Life", "h", "hours of travel to the first limit of the roller or its rail", "life", "high", "bar"),
+    Column("hours", "Life at the values", "h", "the same at the values of the placeholders", "life", role="file"),
+    Column("km", "Travel", "km", "the same life as travel of the carriage"),
+    Column("years", "Years", "", "the same life in years of the duty, from one year on", "years"),
+    Column("ends", "Ended by", "", "the limit that is reached first, and the body that reaches it", "text"),
+    Column("case", "Load case", "", "load case with the largest part of the damage, or the largest force", "text"),
+    Column("part", "Its part", "1", "part of the damage that this load case does", "share"),
+    Column("force", "Largest radial force", "N", "that presses the roller on its rail", "whole"),
+    Column("lifted", "Lifted in", "", "load cases in which the roller carries no load", "text"),
+    Column("lifted_share", "of the travel", "1", "share of the travel of these load cases", "share"),
+    Column("one_contact", "Not on both contacts in", "", "load cases in which a contact carries no load", "text"),
+    Column("factor", "Load factor", "1", "largest load factor of the maker's catalogue"),
+    Column("catalogue_km", "By the catalogue", "km", "life by the maker's catalogue"),
+)
+OF_LOADS = (
+    Column("case", "Load case", "", "", "text", role="name"),
+    Column("roller", "Roller", "", "", "text", role="name"),
+    Column("radial", "Radial force", "N", "below 0 it presses the roller on its rail", "whole"),
+    Column("axial", "Axial force", "N", "acts on the roller along its own axis x_R", "whole"),
+    Column("regime", "Regime", "", "", "text"),
+    Column("hours", "Life under it alone", "h", "life if this load case lasted", "life"),
+    Column("factor", "Load factor", "1", "of the maker's catalogue", "whole"),
+)
+OF_CASES = (
+    Column("case", "Load case", "", "", "text", role="name"),
+    Column("share", "Share", "1", "share of the travel", "share"),
+    Column("drive", "Drive", "N", "force of the drive along the track", "whole"),
+    *(
+        Column(f"{part}_{end}", f"{words} to {ends}", "1", f"multiplier of {words} that leads to {ends}", "whole")
+        for part, words in LOADS.items()
+        for end, ends in ENDS.items()
+    ),
+    Column("settled", "Settled", "", "whether a state of the rollers fulfils all conditions", "text"),
+)
+MASSES = (
+    Column("name", "Mass", "", "", "text", role="name"),
+    Column("mass", "Mass", "kg", "", "whole"),
+    *(Column(axis, axis, "mm", "place", "whole") for axis in "xyz"),
+)
+PLACES = (
+    Column("roller", "Roller", "", "", "text", role="name"),
+    *(Column(f"at_{axis}", f"at {axis}", "mm", "place", "whole") for axis in "xyz"),
+    *(Column(f"pushes_{axis}", f"pushes {axis}", "1", "direction of its load on the rail", "whole") for axis in "xyz"),
+    *(Column(f"axis_{axis}", f"x_R {axis}", "1", "axis of the roller", "whole") for axis in "xyz"),
+    Column("locating", "Locating", "", "whether it carries axial load", "text"),
+)
+OF_MARGINS = (
+    "A margin is a multiplier of the payload, or of all loads, with the same preload; ∞ is not up to 1000. "
+    "One contact: "
+    "the axial force lifts the other contact of a roller; friction may do so earlier. The model ends there: later "
+    "margins are not stated (–)."
+)
+
+
+def answer_of_carriage(ds: xr.Dataset) -> Answer:
+    """Return the record of a carriage.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        Result of `trackroller.carriage`.
+    """
+    table = _table(ds)
+    known = [one for one in COLUMNS if one.name == "roller" or not _is_empty(table[one.name])]
+    return Answer(
+        question="carriage",
+        kind=_kind(ds),
+        headline=_headline(ds),
+        output=(FIRST_LIMIT[0], "life to the first limit", "h"),
+        table=table,
+        columns=tuple(known),
+        parts=tuple(_parts(ds)),
+        warnings=tuple(_warnings(ds)),
+        facts={
+            "name": str(ds.attrs["title"]),
+            "description": str(ds.attrs.get("description", "")),
+            "date": "",
+            "cases": ds.sizes["load_case"],
+            "counted": "load cases",
+            "candidates": None,
+            "conditions": None,
+            "drawn": False,
+            "models": [],
+            "accuracy": "",
+            "duty": duty_of(ds),
+        },
+    )
+
+
+def worst_place(ds: xr.Dataset) -> tuple[str, str]:
+    """Return the worst roller and the load case with most of its damage, or those of the largest radial force."""
+    worst = ds.attrs.get("worst_roller")
+    if worst:
+        damage = ds["damage_per_km"].sel(roller=worst).values
+        return str(worst), str(ds["load_case"].values[int(np.argmax(damage))])
+    pressed = np.nan_to_num(ds["radial_force"].values, nan=0.0)
+    i, j = np.unravel_index(int(np.argmin(pressed)), pressed.shape)
+    return str(ds["roller"].values[j]), str(ds["load_case"].values[i])
+
+
+def _is_empty(column: pd.Series) -> bool:
+    return bool((column.isna() | (column == "")).all())
+
+
+def _kind(ds: xr.Dataset) -> str:
+    """Return the answer in one word."""
+    if not ds["converged"].values.all():
+        return "unsettled"
+    if "life_km" not in ds:
+        return "forces"
+    if ds.attrs.get("worst_roller"):
+        return "lasts"
+    unloaded = bool((ds["radial_force"] == 0).all())
+    return "unlimited" if unloaded or not np.isnan(ds["life_km"].values).any() else "no_life"
+
+
+def _headline(ds: xr.Dataset) -> dict[str, Any]:
+    """Return the numbers and names of the headline."""
+    roller, case = worst_place(ds)
+    forces = ds["radial_force"].values
+    lives = ds["life_km"].values if "life_km" in ds else np.full(ds.sizes["roller"], np.nan)
+    head: dict[str, Any] = {
+        "roller": roller,
+        "case": case,
+        "part": math.nan,
+        "low": math.nan,
+        "high": math.nan,
+        "km": math.nan,
+        "body": "",
+        "limit": "",
+        "force": -float(np.nanmin(forces)) if np.isfinite(forces).any() else math.nan,
+        "unknown": ds["roller"].values[np.isnan(lives)].tolist() if "life_km" in ds else [],
+        "without_file": [name for name in ds.attrs.get("without_case", "").split(", ") if name],
+        "unsettled": ds["load_case"].values[~ds["converged"].values].tolist(),
+        "margins": list(_first_margins(ds)),
+        "catalogue": _catalogue(ds),
+    }
+    if not ds.attrs.get("worst_roller"):
+        return head
+    own = ds.sel(roller=roller)
+    damage = own["damage_per_km"]
+    head["part"] = float(damage.sel(load_case=case) / damage.sum())
+    head["km"] = float(own["life_km"])
+    head["body"] = str(own["first_body"].item())
+    head["limit"] = word_of(str(own["first_limit"].item()))
+    return head | {"low": float(own["life_hours_low"]), "high": float(own["life_hours_high"])}
+
+
+def _first_margins(ds: xr.Dataset) -> Iterator[dict[str, Any]]:
+    """Yield the smallest multiplier of the payload, and of all loads, up to which all rollers roll on both contacts."""
+    for part, words in LOADS.items():
+        if f"{part}_to_lift_off" not in ds:  # the forces alone
+            continue
+        contact = ds[f"{part}_to_one_contact"].values
+        lift_off = ds[f"{part}_to_lift_off"].values
+        before = contact < lift_off  # beyond one contact the model has ended
+        first = np.where(before, contact, lift_off)
+        if not np.isfinite(first).any():
+            continue
+        place = int(np.nanargmin(first))
+        yield {
+            "of": words,
+            "end": "one contact" if before[place] else "lift-off",
+            "times": float(first[place]),
+            "case": str(ds["load_case"].values[place]),
+            "tipping": math.nan if before[place] else float(ds[f"{part}_to_tipping"].values[place]),
+        }
+
+
+def _catalogue(ds: xr.Dataset) -> dict[str, Any] | None:
+    """Return the largest load factor of the maker's catalogue and the shortest life by it; None without them."""
+    if "load_factor" not in ds:
+        return None
+    factor, life = ds["load_factor"].values, ds["catalogue_life_km"].values
+    if np.isnan(factor).all() or np.isnan(life).all():
+        return None
+    i, j = np.unravel_index(int(np.nanargmax(factor)), factor.shape)
+    names, shortest = ds["roller"].values, int(np.nanargmin(life))
+    return {
+        "roller": str(names[j]),
+        "factor": float(factor[i, j]),
+        "case": str(ds["load_case"].values[i]),
+        "shortest": str(names[shortest]),
+        "km": float(life[shortest]),
+    }
+
+
+def _table(ds: xr.Dataset) -> pd.DataFrame:
+    """Return one row a roller, the worst one first."""
+    rows = [_row(ds, str(name)) for name in ds["roller"].values]
+    worst = worst_place(ds)[0]
+    rows.sort(key=lambda row: row["roller"] != worst)
+    return pd.DataFrame(rows, columns=[name for one in COLUMNS for name in (one.name, one.until) if name])
+
+
+def _row(ds: xr.Dataset, roller: str) -> dict[str, Any]:
+    """Return the row of a roller."""
+    own = ds.sel(roller=roller)
+    forces = own["radial_force"].values
+    cases = ds["load_case"].values
+    lifted = forces == 0
+    case, part = _worst_case(ds, roller)
+    row: dict[str, Any] = {"roller": roller, "case": case, "part": part, "lifted": ", ".join(cases[lifted])}
+    row["force"] = -float(np.nanmin(forces)) if np.isfinite(forces).any() else math.nan
+    row["lifted_share"] = float(ds["share"].values[lifted].sum()) if lifted.any() else math.nan
+    row["one_contact"] = _beside_rolling(own)
+    numbers = {"low": "life_hours_low", "high": "life_hours_high", "hours": "life_hours", "km": "life_km"}
+    numbers |= {"years": "life_years", "catalogue_km": "catalogue_life_km"}
+    row |= {key: float(own[name]) if name in own else math.nan for key, name in numbers.items()}
+    row["ends"] = _end_of(own)
+    row["factor"] = math.nan
+    if "load_factor" in own and own["load_factor"].notnull().any():
+        row["factor"] = float(own["load_factor"].max())
+    return row
+
+
+def _end_of(own: xr.Dataset) -> str:
+    """Return the limit that a roller or its rail reaches first, and the body; '' where it is not known."""
+    if "first_limit" not in own or not str(own["first_limit"].item()):
+        return ""
+    return f"{word_of(str(own['first_limit'].item()))} of the {own['first_body'].item()}"
+
+
+def _worst_case(ds: xr.Dataset, roller: str) -> tuple[str, float]:
+    """Return the load case with most of the damage of a roller, and this part; or that with its largest force."""
+    own = ds.sel(roller=roller)
+    if "damage_per_km" in own and float(np.nansum(own["damage_per_km"].values)) > 0:
+        damage = np.nan_to_num(own["damage_per_km"].values)
+        place = int(np.argmax(damage))
+        return str(ds["load_case"].values[place]), float(damage[place] / damage.sum())
+    forces = np.nan_to_num(own["radial_force"].values)
+    place = int(np.argmin(forces))
+    return (str(ds["load_case"].values[place]) if forces[place] < 0 else ""), math.nan
+
+
+def _beside_rolling(own: xr.Dataset) -> str:
+    """Return the load cases in which a roller does not roll on both contacts, with the regime."""
+    if "roller_regime" not in own:
+        return ""
+    found: dict[str, list[str]] = {}
+    for code, case in zip(own["roller_regime"].values.tolist(), own["load_case"].values, strict=True):
+        if code not in (-1, ROLLING):
+            found.setdefault(REGIME_LABELS[code], []).append(str(case))
+    return "; ".join(f"{', '.join(cases)} ({regime})" for regime, cases in found.items())
+
+
+def _parts(ds: xr.Dataset) -> Iterator[Part]:
+    """Yield the further tables of a carriage: loads, load cases with their margins, masses, and places."""
+    loads = pd.DataFrame(list(_loads(ds)), columns=[one.name for one in OF_LOADS])
+    columns = tuple(one for one in OF_LOADS if not _is_empty(loads[one.name]) or one.role)
+    yield Part("loads", "Loads of the rollers", loads, columns)
+    cases = pd.DataFrame(list(_cases(ds)), columns=[one.name for one in OF_CASES])
+    shown = tuple(one for one in OF_CASES if "_to_" not in one.name or f"{one.name}" in ds)
+    yield Part("cases", "Load cases and margins", cases, shown, OF_MARGINS)
+    masses = [
+        [str(name), float(value), *map(float, at)]
+        for name, value, at in zip(ds["mass_name"].values, ds["mass"].values, ds["mass_at"].values, strict=True)
+    ]
+    yield Part("masses", "Masses", pd.DataFrame(masses, columns=[one.name for one in MASSES]), MASSES)
+    places = [
+        [str(name), *np.round(np.concatenate(own), 9).tolist(), "yes" if locates else "no"]
+        for name, locates, *own in zip(
+            ds["roller"].values,
+            ds["locating"].values,
+            *(ds[f"roller_{key}"].values for key in ("at", "pushes", "axis")),
+            strict=True,
+        )
+    ]
+    yield Part("places", "Places and directions", pd.DataFrame(places, columns=[one.name for one in PLACES]), PLACES)
+
+
+def _loads(ds: xr.Dataset) -> Iterator[dict[str, Any]]:
+    """Yield the forces of each roller in each load case."""
+    for case in ds["load_case"].values:
+        for roller in ds["roller"].values:
+            own = ds.sel(load_case=case, roller=roller)
+            lifted = float(own["radial_force"]) == 0
+            regime = ""
+            if "roller_regime" in own:
+                regime = "lifted" if lifted else REGIME_LABELS[int(own["roller_regime"])]
+            row = {"case": str(case), "roller": str(roller), "regime": regime, "radial": float(own["radial_force"])}
+            row["axial"] = float(own["axial_force"])
+            row["hours"] = float(own["case_life_hours"]) if "case_life_hours" in own and not lifted else math.nan
+            row["factor"] = float(own["load_factor"]) if "load_factor" in own else math.nan
+            yield row
+
+
+def _cases(ds: xr.Dataset) -> Iterator[dict[str, Any]]:
+    """Yield share, drive and margins of each load case; margins later than one contact are not stated."""
+    for case in ds["load_case"].values:
+        own = ds.sel(load_case=case)
+        row = {"case": str(case), "share": float(own["share"]), "drive": float(own["drive_force"])}
+        row["settled"] = "yes" if bool(own["converged"]) else "no"
+        for part in LOADS:
+            row |= _margins_of(own, part)
+        yield row
+
+
+def _margins_of(own: xr.Dataset, part: str) -> dict[str, float]:
+    """Return the multipliers of a part of the loads in one load case."""
+    if f"{part}_to_lift_off" not in own:
+        return {f"{part}_{end}": math.nan for end in ENDS}
+    found = {end: float(own[f"{part}_to_{end}"]) for end in ENDS}
+    if found["one_contact"] < found["lift_off"]:
+        found |= {"lift_off": math.nan, "tipping": math.nan}
+    return {f"{part}_{end}": value for end, value in found.items()}
+
+
+def _warnings(ds: xr.Dataset) -> Iterator[Caution]:
+    """Yield what a user has to know of forces, rollers without load, contacts, flags and unusual values."""
+    rollers = ds["roller"].values
+    cases = ds["load_case"].values[~ds["converged"].values].tolist()
+    if cases:
+        text = "no state of the rollers fulfils all conditions (balance, no pull on a rail, no axial force on a lifted "
+        text += f"roller), so that no life is known: {', '.join(cases)}. More preload helps."
+        yield Caution("not_judged", len(cases), ds.sizes["load_case"], text, "load cases")
+    without = [name for name in ds.attrs.get("without_case", "").split(", ") if name]
+    if without:
+        text = f"the file of {', '.join(without)}: lives are not computed. Add roller: FILE."
+        yield Caution("not_given", len(without), len(rollers), text, "rollers")
+    yield from _swinging(ds)
+    yield from _unloaded(ds)
+    yield from _one_contact(ds)
+    yield from _flags(ds)
+    for text in doubts_of(ds):
+        yield Caution("doubtful", 1, 1, text, "")
+
+
+def _swinging(ds: xr.Dataset) -> Iterator[Caution]:
+    """Yield that a carriage on rollers in one line is a pendulum, with its largest angle."""
+    if "swing" not in ds:
+        return
+    angles = ds["swing"].values
+    place = int(np.argmax(np.abs(angles)))
+    text = (
+        "a pendulum: the rollers stand in one line, about which the carriage is free to roll and stable; it swings by "
+        f"{angles[place]:.3g}° in {ds['load_case'].values[place]}, the largest angle, and the forces stand in the axes "
+        "of the swung carriage"
+    )
+    if np.isnan(ds.get("payload_to_tipping", ds["swing"])).any():
+        text += "; another payload swings it further, so that margins of the payload are not known"
+    swinging = int((np.abs(angles) > 0).sum())
+    yield Caution("flagged", swinging, ds.sizes["load_case"], text, "load cases")
+
+
+def _unloaded(ds: xr.Dataset) -> Iterator[Caution]:
+    """Yield the rollers that are lifted in some load cases, or carry no load in any, with the cause."""
+    settled = ds["converged"].values
+    play = ds.attrs.get("with_play", "").split(", ")
+    never: dict[bool, list[str]] = {}
+    lifted: list[str] = []
+    for roller in map(str, ds["roller"].values):
+        up = (ds["radial_force"].sel(roller=roller) == 0).values
+        gap = max(0.0, -float(ds["approach"].sel(roller=roller).max()))
+        if up.any() and up[settled].all():
+            told = f"{roller} ({gap:.3g} mm away from its rail at least)" if roller in play else roller
+            never.setdefault(roller in play, []).append(told)
+        elif up.any():
+            share = 100 * float(ds["share"].values[up].sum())
+            lifted.append(f"{roller} in {', '.join(ds['load_case'].values[up])} ({share:.3g} % of the travel)")
+    total = ds.sizes["roller"]
+    if lifted:
+        yield Caution("not_held", len(lifted), total, f"lifted: {'; '.join(lifted)}", "rollers")
+    for has_play, names in never.items():
+        why = (
+            "the play is larger than the deflection: less play or a preload"
+            if has_play
+            else "a preload presses them on"
+        )
+        yield Caution("not_held", len(names), total, f"without load in any case: {', '.join(names)}; {why}", "rollers")
+
+
+def _one_contact(ds: xr.Dataset) -> Iterator[Caution]:
+    """Yield the rollers that do not roll on both contacts in some load cases."""
+    if "roller_regime" not in ds:
+        return
+    alike: dict[str, list[str]] = {}
+    for roller in map(str, ds["roller"].values):
+        words = _beside_rolling(ds.sel(roller=roller))
+        if words:
+            alike.setdefault(words, []).append(roller)
+    for words, names in alike.items():
+        text = f"not on both contacts: {', '.join(names)} in {words}; more preload helps"
+        yield Caution("not_held", len(names), ds.sizes["roller"], text, "rollers")
+
+
+def _flags(ds: xr.Dataset) -> Iterator[Caution]:
+    """Yield each validity flag with its remedy, the rollers and their load cases."""
+    if "roller_validity" not in ds:
+        return
+    for name, flag in VALIDITY.items():
+        here = (ds["roller_validity"].values & validity_bit(name)) != 0
+        if not here.any():
+            continue
+        rollers: Sequence[str] = ds["roller"].values[here.any(axis=0)].tolist()
+        cases = ds["load_case"].values[here.any(axis=1)].tolist()
+        words = (
+            f"{flag.words[:1].upper()}{flag.words[1:]} for {', '.join(rollers)} in {', '.join(cases)}. {flag.remedy}"
+        )
+        yield Caution(CODES.get(name, "flagged"), len(rollers), ds.sizes["roller"], words, "rollers")
