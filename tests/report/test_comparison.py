@@ -16,7 +16,6 @@ from trackroller.study.run import run_study
 from validation.contact_models.product import compare
 
 MODELS = ["sliding", "kalker_table", "kalker"]
-FIGURES = {"models-error"}
 OUTPUTS = ["forces", "contact", "friction_work", "peak_stress", "life"]
 
 
@@ -79,9 +78,8 @@ def test_the_shipped_study_may_be_edited(tmp_path):
         found = compare(study, tmp_path / "results" / "contact_models")
         assert set(found["models"]) == {"sliding", "kalker_table"} and found["designs"] > 0
         text = (tmp_path / "results" / "contact_models" / "study" / "report.html").read_text(encoding="utf-8")
-        assert "Contact models compared" in text and "200 N radial" not in text
-        drawn = {p.stem for p in (tmp_path / "results" / "contact_models" / "study" / "figures").glob("*.svg")}
-        assert drawn >= FIGURES
+        assert "by each contact model" in text or "with the contact model" in text
+        assert "200 N radial" not in text
 
 
 def test_the_shipped_study_holds_friction_drive_and_spin():

@@ -22,7 +22,7 @@ SMALL = {"name": "s", "factors": {"friction_coefficient": {"values": [0.1, 0.2]}
 def few_cases(path: Path):
     """Return a shipped study with its design, factors, goals and analysis, but few cases and a quick model."""
     told = tr.load_study(path).as_dict() | {"contact_model": "sliding", "accuracy": "preview"}
-    told["samples"] = 32 if told["design"] == "inner_outer" else 8
+    told["samples"] = 32 if told["method"] == "inner_outer" else 8
     if "until" in told:  # stops at the first look
         told |= {"samples": 128, "until": told["until"] | {"half_width": 9.0}}
     for spec in told["factors"].values() if told["design"] == "grid" else ():
