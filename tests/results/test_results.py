@@ -25,7 +25,7 @@ def few_cases(path: Path):
     told["samples"] = 32 if told["method"] == "inner_outer" else 8
     if "until" in told:  # stops at the first look
         told |= {"samples": 128, "until": told["until"] | {"half_width": 9.0}}
-    for spec in told["factors"].values() if told["design"] == "grid" else ():
+    for spec in told["factors"].values() if told["method"] == "grid" else ():
         kind = next(key for key in ("values", "linspace", "logspace") if key in spec)
         spec[kind] = spec[kind][:2] if kind == "values" else [*spec[kind][:2], 2]
     return parse_study(told)
