@@ -18,9 +18,9 @@ from pathlib import Path
 from typing import Any
 
 from trackroller.errors import InputError, WorkError
-from trackroller.files import confine, interrupts_wait_for_files, refuse_links, try_lock
-from trackroller.study.store.folder import StudyFolder, wait_for_lock
-from trackroller.study.store.ownership import clear, write_text
+from trackroller.files import confine, interrupts_wait_for_files, refuse_links, try_lock, wait_for_lock
+from trackroller.study.store.folder import StudyFolder
+from trackroller.study.store.manifest import Manifest, put_changing
 
 LOCK, PROGRESS, PAUSE = ".page.lock", ".page.json", ".pause"
 TICK = 0.4  # seconds between two looks for the wish to pause, and between two records of progress
@@ -36,7 +36,7 @@ class Progress:
         """Add facts to the record, and write it at once or if the last record is old."""
         self.told |= told
         if at_once or time.monotonic() - self.written > TICK:
-            write_text(self.root / PROGRESS, json.dumps(self.told))
+            put_changing(self.root / PROGRESS, json.dumps(self.told))
             self.written = time.monotonic()
 
     def started(self, total: int, done: int) -> None:
@@ -60,7 +60,7 @@ def _watch(pause: Path) -> None:
     """Interrupt the main thread once the file that asks for a pause is there."""
     while not pause.exists():
         time.sleep(TICK)
-    clear(pause)
+    Manifest(pause.parent).unlink([pause])
     _thread.interrupt_main()
 
 

@@ -28,7 +28,7 @@ from trackroller.results.results import Results
 from trackroller.roller.dataset import solved_by
 from trackroller.roller.doubts import doubts
 from trackroller.roller.record import NOT_GIVEN
-from trackroller.study.store.seal import put_text, sealing
+from trackroller.study.store.manifest import put_text, replacing
 
 OPTIONS = tuple(option.name for option in parameters.OPTIONS.values() if option.recorded)
 _ELSEWHERE = (
@@ -53,7 +53,7 @@ def write_report(results: Results, out_html: Path) -> Path:
         The path of the report.
     """
     text = report_text(results)
-    with sealing(Path(out_html).with_name("tables")) as beside:
+    with replacing(Path(out_html).with_name("tables")) as beside:
         export(tables_of(results), beside)
         write_answer(shown_answer(results), beside)
     put_text(Path(out_html), text)
