@@ -53,8 +53,10 @@ def build_report(folder: StudyFolder, tell: Callable[[str], None] = log.info) ->
         results = open_study(folder.root)
         place = place_of_pages(results, folder)
         manifest = Manifest(folder.root)
+        pages = [place / name for name in REPORT]
+        written = [folder.root / name for page in pages for name in manifest.current(page)]
         # what is not ours is refused before the work; a folder may hold further files
-        manifest.check(*(page for page in (place / name for name in REPORT) if not page.is_dir()))
+        manifest.check(*(page for page in pages if not page.is_dir()), *written)
         tell("analyse the results")
         write_analysis(results, place / "sensitivity.nc")
         tell("draw the figures")

@@ -191,7 +191,7 @@ def test_a_file_at_any_path_in_a_study_stops_the_command_that_would_write_there(
         assert path.read_bytes() == FOREIGN, name
         assert code in (0, 2), (name, told)
         if code:
-            remedy = "restore plan.json" if str(name) == "plan.json" else "Move or remove it, then start again"
+            remedy = "restore its plan.json" if str(name) == "plan.json" else "Move or remove it, then start again"
             assert name.name in told and remedy in told, (name, told)
             path.unlink()
         seen["refused" if code else "left"] += 1
@@ -315,7 +315,7 @@ def test_only_the_scratch_folder_is_swept(tmp_path, monkeypatch):
     assert not ours.exists() and other.read_bytes() == folder.gathered.read_bytes() == FOREIGN
 
 
-@pytest.mark.parametrize("left", ["no mark", "an empty mark", "the mark"])
+@pytest.mark.parametrize("left", ["no mark", "an empty mark", "the mark", "an empty list"])
 def test_what_a_killed_process_left_is_ours_and_can_be_deleted(tmp_path, monkeypatch, left):
     """Before its mark is whole, and in the folders that it fills for later."""
     monkeypatch.chdir(tmp_path)
@@ -325,7 +325,12 @@ def test_what_a_killed_process_left_is_ours_and_can_be_deleted(tmp_path, monkeyp
         folder.plan_file.touch()
     elif left == "the mark":
         folder.create()
+    elif left == "an empty list":
+        folder.create()
+        Manifest(ROOT).path.touch()
     folder.create()
+    Manifest(ROOT).note({"study.nc": "0"})
+    assert Manifest(ROOT).contents() == {"plan/files.jsonl": [CHANGING], "study.nc": ["0"]}
     assert manifest.is_study(ROOT)
     plant(Manifest(ROOT).scratch(ROOT / "figures") / "one.svg")
     delete_study(ROOT)
@@ -616,7 +621,7 @@ def test_a_folder_whose_mark_is_damaged_is_refused(finished, solved):
     plan = (ROOT / "plan.json").read_bytes()
     plant(ROOT / "plan.json")
     code, _, err = command(("run", "study.yaml"))
-    assert code == 2 and "plan.json is damaged or somebody else's" in err and "restore plan.json" in err
+    assert code == 2 and "plan.json is damaged or somebody else's" in err and "restore its plan.json" in err
     (ROOT / "plan.json").write_bytes(plan)  # what the message says
     assert command(("run", "study.yaml", "-q"))[0] == 0 and sum(solved().values()) == 0
 

@@ -21,7 +21,7 @@ from trackroller.files import memory
 from trackroller.parameters import REGIMES
 from trackroller.roller.dataset import file_attributes, joined
 from trackroller.study.store.identity import chunk_name
-from trackroller.study.store.manifest import put_proved, sums_up
+from trackroller.study.store.manifest import put_unlisted, sums_up
 from trackroller.study.store.netcdf import too_large
 
 FAILED = REGIMES.index("failed")
@@ -79,7 +79,7 @@ def write(path: Path, block: xr.Dataset, packed: bool = False) -> None:
         with open(beside, "ab") as stream:
             stream.write(digest)
 
-    put_proved(path, save)
+    put_unlisted(path, save)
 
 
 @contextlib.contextmanager

@@ -31,7 +31,7 @@ from trackroller.study.store.manifest import (
     Manifest,
     files_below,
     is_study,
-    put_proved,
+    put_unlisted,
     read_mark,
     remove_empty,
     signed,
@@ -90,19 +90,21 @@ def _is_empty(root: Path) -> bool:
 
 def _foreign_folder(root: Path) -> InputError:
     """Return the error for a folder without our mark."""
-    names = sorted(os.listdir(root))
-    holds = ", ".join(names[:4])
-    if len(names) > 4:
-        holds += f" and {len(names) - 4} more"
-    allowed = "a new or empty folder, or one that trackroller made"
-    remedy = "Give the study another name, choose another --results, or move the folder away."
-    wrong = f"was not made by trackroller and holds {holds}"
     if read_mark(root):
         wrong = "was made by another version of trackroller"
         remedy = "Move the folder away and start again: its cases are solved anew."
-    elif MARK in names:
+        return InputError(WHAT, str(root), "a folder of this version", remedy, wrong)
+    names = sorted(os.listdir(root))
+    wrong = f"was not made by trackroller and holds {', '.join(names[:4])}"
+    if len(names) > 4:
+        wrong += f" and {len(names) - 4} more"
+    if MARK in names:
         wrong += f"; its {MARK} is damaged or somebody else's"
-        remedy += f" If trackroller made it, restore {MARK} from a copy."
+    allowed = "a new or empty folder, or one that trackroller made"
+    remedy = (
+        "Give the study another name, choose another --results, or move the folder away. "
+        f"If it is the folder of a study, restore its {MARK} from a copy."
+    )
     return InputError(WHAT, str(root), allowed, remedy, wrong)
 
 
@@ -232,7 +234,7 @@ class StudyFolder:
     def write_record(self, record: Mapping[str, Any]) -> None:
         """Write the record of the plan with its digest, and the mark that the folder is ours."""
         text = signed(record)
-        put_proved(self.plan_file, lambda beside: beside.write_text(text, encoding="utf-8", newline="\n"))
+        put_unlisted(self.plan_file, lambda beside: beside.write_text(text, encoding="utf-8", newline="\n"))
 
 
 @contextlib.contextmanager

@@ -166,16 +166,16 @@ class Manifest:
     def note(self, digests: Mapping[str, str]) -> None:
         """Write down what files are about to hold; the first line of a list names the list itself."""
         self.check()
-        noted = dict(digests)
-        if not os.path.lexists(self.path):
-            noted = {self.name: CHANGING} | noted
-        lines = [json.dumps({"file": name, "sha256": digest}) + "\n" for name, digest in noted.items()]
         with disk_errors(self.path):
             self.path.parent.mkdir(parents=True, exist_ok=True)
             with self._held(), open_here(self.path, "ab+") as stream:
+                noted = dict(digests)
+                if stream.seek(0, os.SEEK_END) == 0:
+                    noted = {self.name: CHANGING, **digests}
+                lines = [json.dumps({"file": name, "sha256": digest}) for name, digest in noted.items()]
                 if not _ends_with_line(stream):
-                    lines.insert(0, "\n")
-                stream.write("".join(lines).encode())
+                    lines.insert(0, "")
+                stream.write("".join(f"{line}\n" for line in lines).encode())
                 stream.flush()
                 os.fsync(stream.fileno())
 
@@ -208,10 +208,10 @@ class Manifest:
             return is_study(self.root)
         if self.of_study and BLOCK.fullmatch(name):
             return ends_with_checksum(path)
-        if state.st_size == 0 and path.suffix in EMPTY:
+        if state.st_size == 0 and (path.suffix in EMPTY or path == self.path):
             return True
         known = (self.contents() if listed is None else listed).get(name, [])
-        return CHANGING in known or digest_of_file(path) in {new, *known}
+        return CHANGING in known or digest_of_file(path) in {new, *known} - {""}
 
     def check(self, *paths: Path, new: Mapping[Path, str] | None = None, damaged: Iterable[Path] = ()) -> None:
         """Refuse to write where a link, a folder, a file of somebody else or a changed file of ours stands.
@@ -258,7 +258,7 @@ class Manifest:
         if len(paths) > 6:
             wrong += f" and {len(paths) - 6} more"
         remedy = AGAIN if len(paths) == 1 else AGAIN.replace(" it,", " these files,")
-        return InputError(WHAT, str(first), "a file as trackroller wrote it", remedy, wrong)
+        return InputError("file", str(first), "a file as trackroller wrote it", remedy, wrong)
 
     def discard(self, *results: Path) -> None:
         """Remove results, files or folders; a file that was changed stays, as somebody else's."""
@@ -382,8 +382,8 @@ def put_text(path: Path, text: str) -> Path:
     return put(path, lambda beside: beside.write_text(text, encoding="utf-8", newline="\n"))
 
 
-def put_proved(path: Path, save: Callable[[Path], object]) -> None:
-    """Write a block of cases or a plan, which holds its own digest and needs no line in the manifest."""
+def put_unlisted(path: Path, save: Callable[[Path], object]) -> None:
+    """Write a file whose digest the manifest does not list: a block of cases, a plan, or a file that was claimed."""
     manifest = _manifest_to_write(path)
     if manifest is None:
         write_whole(path, save)
@@ -405,14 +405,6 @@ def claim(path: Path) -> Path:
         manifest.check(path)
         manifest.note({manifest.name_of(path): CHANGING})
     return path
-
-
-def put_changing(path: Path, text: str) -> None:
-    """Write a text file that keeps changing, such as a record of progress, see `claim`."""
-    claim(path)
-    manifest = manifest_of(path)
-    beside = scratch_name(path) if manifest is None else manifest.scratch(path)
-    write_whole(path, lambda place: place.write_text(text, encoding="utf-8", newline="\n"), beside)
 
 
 def why_altered(path: Path) -> str | None:
