@@ -15,6 +15,7 @@ import shutil
 import signal
 import tempfile
 import threading
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
@@ -318,7 +319,7 @@ def disk_errors(path: Path) -> Iterator[None]:
         raise disk_error(OSError(code, str(exc)), path) from exc
 
 
-def write_whole(path: Path, write: Callable[[Path], object], ready: Callable[[], object] = lambda: None) -> None:
+def write_whole(path: Path, write: Callable[[Path], object], beside: Path | None = None) -> None:
     """Write a file under a temporary name, flush it to the disk and rename it.
 
     A failure leaves no file behind, and a killed process leaves the previous file unchanged.
@@ -329,8 +330,8 @@ def write_whole(path: Path, write: Callable[[Path], object], ready: Callable[[],
         The file to write.
     write : callable
         Writes the content; it receives the temporary path.
-    ready : callable
-        Called just before the rename; what it raises leaves the previous file unchanged.
+    beside : pathlib.Path, optional
+        The temporary path, on the same disk; by default a name beside the file.
 
     Raises
     ------
@@ -338,13 +339,14 @@ def write_whole(path: Path, write: Callable[[Path], object], ready: Callable[[],
         If the operating system or the netCDF library cannot write.
     """
     check_place(path, "file to write")
-    beside = scratch_name(path)
+    if beside is None:
+        beside = scratch_name(path)
     try:
         with disk_errors(path):
             path.parent.mkdir(parents=True, exist_ok=True)
+            beside.parent.mkdir(parents=True, exist_ok=True)
             write(beside)
             flush(beside)
-            ready()
             os.replace(beside, path)
             sync_folder(path.parent)
     finally:
@@ -528,3 +530,24 @@ def try_lock(stream: IO[bytes], shared: bool = False) -> bool:
     except (portalocker.LockException, OSError):
         return True
     return True
+
+
+def wait_for_lock(stream: IO[bytes], shared: bool = False, tell: Callable[[str], object] | None = None) -> None:
+    """Wait until `try_lock` succeeds; call `tell` once if another process holds the lock."""
+    if try_lock(stream, shared):
+        return
+    if tell is not None:
+        tell(f"{Path(stream.name).stem.lstrip('.')}: another process works on this, waiting for it")
+    while not try_lock(stream, shared):
+        time.sleep(0.05)
+
+
+@contextmanager
+def locked(path: Path, shared: bool = False, tell: Callable[[str], object] | None = None) -> Iterator[None]:
+    """Hold the lock of an empty file; the system releases the lock when the process ends, however it ends.
+
+    A file with content is never locked: on Windows a lock keeps every reader out, even the process that holds it.
+    """
+    with open_here(path, "ab") as stream:
+        wait_for_lock(stream, shared, tell)
+        yield

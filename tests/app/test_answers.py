@@ -33,7 +33,7 @@ from trackroller.study.file.load import load_study
 from trackroller.study.run import run_study
 from trackroller.study.spectrum.file import Spectrum
 from trackroller.study.spectrum.solve import solve_spectrum
-from trackroller.study.store.seal import sealing
+from trackroller.study.store.manifest import replacing
 
 
 def test_every_parameter_stands_on_the_page():
@@ -212,7 +212,7 @@ def test_altered_results_are_named_in_the_list_and_their_pages_refused(tmp_path,
     monkeypatch.chdir(tmp_path)
     mapping = {"name": "two", "factors": {"axial_force": {"values": [0, 30]}}, "contact_model": "sliding"}
     root = run_study(load_study(mapping), solver=fake_solver.solve).folder.root
-    with sealing(root / "report.html") as beside:
+    with replacing(root / "report.html") as beside:
         beside.write_text("sound")
     assert listing()[0]["state"] == "done" and page_of("two", "report.html").read_text() == "sound"
     for name in ("report.html", "study.nc"):

@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-import json
 from html.parser import HTMLParser
 
 import pytest
 from synthetic_results import PAIRS, grid_study
 
 from trackroller.report.build import build_report
-from trackroller.study.store.digests import record_digest
 from trackroller.study.store.folder import StudyFolder
-from trackroller.study.store.ownership import MADE_BY
-from trackroller.study.store.seal import put, put_text
+from trackroller.study.store.manifest import put, put_text
 
 FACTORS = {
     "friction_coefficient": [0.05, 0.3, 0.4],
@@ -77,10 +74,8 @@ def test_a_part_that_cannot_be_made_fails_the_command(part, tmp_path, monkeypatc
     def broken(*_, **__):
         raise RuntimeError("this part cannot be made")
 
-    place = StudyFolder(tmp_path / "friction-and-fit")
-    place.root.mkdir()
+    place = StudyFolder(tmp_path / "friction-and-fit").create()
     levels = {"friction_coefficient": [0.2, 0.3], "roller_profile_radius": [-8.0, -7.0], "axial_force": [0.0, 30.0]}
-    (place.root / "plan.json").write_text(json.dumps(MADE_BY | {"digest": record_digest(MADE_BY)}))
     put(place.gathered, grid_study(levels).to_netcdf)
     put_text(place.root / "report.html", "the report of before")
     if part.startswith("pages."):  # the figures come first, and take a second

@@ -14,10 +14,10 @@ from typer.testing import CliRunner
 
 from trackroller.cli.main import app
 from trackroller.errors import InputError, WorkError
-from trackroller.study.store.crate import METADATA, compare_results, damaged_files, read_crate
-from trackroller.study.store.digests import MARK, record_digest
+from trackroller.study.store.crate import CRATE, compare_results, damaged_files, read_crate
 from trackroller.study.store.folder import StudyFolder
 from trackroller.study.store.inputs import study_of_folder
+from trackroller.study.store.manifest import MARK, signed
 
 MATERIALS = """
 materials:
@@ -61,7 +61,7 @@ def _run(folder: Path, *words: str, code: int = 0) -> str:
 
 
 def test_every_file_stands_in_the_crate_with_its_digest(crate):
-    graph = json.loads((crate / METADATA).read_text())["@graph"]
+    graph = json.loads((crate / CRATE).read_text())["@graph"]
     by_id = {entry["@id"]: entry for entry in graph}
     listed = {part["@id"] for part in by_id["./"]["hasPart"]}
     assert {"study.nc", "design.nc", "inputs/study.yaml", "inputs/cases.csv", "inputs/materials.yaml"} <= listed
@@ -123,13 +123,13 @@ def test_a_damaged_input_is_not_solved(crate, tmp_path):
 @pytest.mark.parametrize("name", ["../outside.nc", "/etc/passwd"])
 def test_a_crate_cannot_name_files_outside_itself(tmp_path, name):
     entry = {"@id": name, "@type": "File", "sha256": "0"}
-    (tmp_path / METADATA).write_text(json.dumps({"@graph": [entry]}))
+    (tmp_path / CRATE).write_text(json.dumps({"@graph": [entry]}))
     with pytest.raises(InputError, match="inside the crate"):
         read_crate(tmp_path)
 
 
 def test_a_folder_without_a_crate_is_refused(tmp_path):
-    with pytest.raises(InputError, match=METADATA):
+    with pytest.raises(InputError, match=CRATE):
         damaged_files(tmp_path)
 
 
@@ -138,7 +138,7 @@ def test_a_plan_whose_inputs_are_a_list_is_refused(crate, tmp_path):
     record = json.loads((copy / MARK).read_text())
     record["inputs"] = list(record["inputs"])
     del record["digest"]
-    (copy / MARK).write_text(json.dumps(record | {"digest": record_digest(record)}))
+    (copy / MARK).write_text(signed(record))
     with pytest.raises(WorkError, match=r"plan\.json was altered or damaged"):
         study_of_folder(StudyFolder(copy))
 

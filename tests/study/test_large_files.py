@@ -16,7 +16,7 @@ import trackroller as tr
 from trackroller.errors import InputError
 from trackroller.study.file.load import load_study
 from trackroller.study.run import run_study
-from trackroller.study.store import chunks, netcdf, seal
+from trackroller.study.store import chunks, netcdf
 from trackroller.study.store.netcdf import MOST_VARIABLES
 
 MANY = 4_000_000_000
@@ -54,7 +54,7 @@ def little_memory():
 def test_every_reader_refuses_it(tmp_path, kind):
     path = write_bomb(tmp_path / "study.nc", kind)
     write_bomb(tmp_path / "sensitivity.nc", kind)
-    for read in (seal.read_result, tr.open_study, lambda path: tr.open_study(path.parent)):
+    for read in (netcdf.read_result, tr.open_study, lambda path: tr.open_study(path.parent)):
         with pytest.raises(InputError, match="4,000,000,000 values") as caught:
             read(path)
         assert len(str(caught.value).splitlines()) == 1
@@ -64,7 +64,7 @@ def test_every_reader_refuses_it(tmp_path, kind):
 def test_a_coordinate_or_a_field_of_many_values_is_refused(tmp_path, dimensions):
     path = write_bomb(tmp_path / "study.nc", dimensions=dimensions, variable=dimensions[0])
     with pytest.raises(InputError, match="declares"):
-        seal.read_result(path)
+        netcdf.read_result(path)
 
 
 def test_many_variables_and_nested_texts_are_refused(tmp_path):
@@ -75,7 +75,7 @@ def test_many_variables_and_nested_texts_are_refused(tmp_path):
         file.not_given = "[" * 100_000 + "]" * 100_000
     for name, words in (("many", "declares 5,001 variables"), ("deep", "maximum recursion depth")):
         with pytest.raises(InputError, match=words):
-            seal.read_result(tmp_path / f"{name}.nc")
+            netcdf.read_result(tmp_path / f"{name}.nc")
 
 
 def test_a_list_of_cases_and_a_chunk_are_called_corrupt(tmp_path):
@@ -100,10 +100,10 @@ def test_a_large_file_that_holds_its_values_is_read(tmp_path, monkeypatch):
     rows = np.random.default_rng(1).random(1_000_000)
     ds = xr.Dataset({"stress": ("case", rows), "flag": ("case", np.zeros(rows.size, np.int8))})
     ds.to_netcdf(tmp_path / "ds.nc", encoding={name: {"zlib": True} for name in ds})
-    assert seal.read_result(tmp_path / "ds.nc").equals(ds)
+    assert netcdf.read_result(tmp_path / "ds.nc").equals(ds)
     monkeypatch.setattr(netcdf, "memory", lambda: 1e6)
     with pytest.raises(InputError, match="fits the memory"):
-        seal.read_result(tmp_path / "ds.nc")
+        netcdf.read_result(tmp_path / "ds.nc")
 
 
 def test_a_study_with_a_bomb_among_its_chunks_solves_the_chunk_again(tmp_path):
@@ -112,5 +112,8 @@ def test_a_study_with_a_bomb_among_its_chunks_solves_the_chunk_again(tmp_path):
     chunk = folder.solved_files()[0]
     content = write_bomb(tmp_path / "bomb.nc", variable="case").read_bytes()
     chunk.write_bytes(content + hashlib.sha256(content).digest())
+    with pytest.raises(InputError, match=f"{chunk.name}.*altered.*Move or remove it"):
+        run_study(study, tmp_path, solver=fake_solver.solve)
+    chunk.unlink()
     run_study(study, tmp_path, solver=fake_solver.solve)
     assert tr.open_study(folder.root).data.sizes["axial_force"] == 2

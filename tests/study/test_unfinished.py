@@ -16,7 +16,7 @@ from trackroller.study.file.load import load_study, parse_study
 from trackroller.study.progress import progress_bar
 from trackroller.study.run import run_study
 from trackroller.study.store.identity import Cases
-from trackroller.study.store.seal import recorded
+from trackroller.study.store.manifest import digests_of
 
 NUMBERS = {"axial_force": {"uniform": [20, 50]}, "friction_coefficient": {"uniform": [0.1, 0.3]}}
 LISTS = {"axial_force": {"values": [20, 30, 40]}, "friction_coefficient": {"values": [0.1, 0.2, 0.3, 0.4]}}
@@ -95,7 +95,7 @@ def test_commands_show_the_solved_cases_and_seal_nothing(tmp_path, monkeypatch, 
         assert str(root / "unfinished") in out and (root / "unfinished" / made).is_file()
         assert made.endswith(".json") or said in (root / "unfinished" / made).read_text()
     for name in ("report.html", "figures", "sensitivity.nc", "ro-crate-metadata.json"):
-        assert not (root / name).exists() and recorded(root / name) is None
+        assert not (root / name).exists() and not digests_of(root / name)
     run_study(study)
     monkeypatch.setattr("trackroller.report.figures.study.draw_all", draw_one)
     with warnings.catch_warnings():

@@ -6,7 +6,6 @@ changed text, so that fields, picture and text show the same carriage.
 
 from __future__ import annotations
 
-import hashlib
 import os
 import re
 from pathlib import Path
@@ -23,22 +22,20 @@ from trackroller.carriage.file import Carriage, carriage_of
 from trackroller.carriage.files import name_of_study, spectrum_of
 from trackroller.carriage.solve import forces_of, solve_carriage
 from trackroller.errors import InputError
-from trackroller.files import files_beside, is_link, read_text, sha256
+from trackroller.files import files_beside, is_link, read_text, sha256, write_text
 from trackroller.report.headlines import headline_of, warning_line
 from trackroller.report.numbers import lives_in_years
 from trackroller.report.tables.table import cell
 from trackroller.results.answer import Answer
 from trackroller.results.carriage_answer import answer_of_carriage, worst_place
 from trackroller.roller.aliases import ALIASES
-from trackroller.study.store import ownership
-from trackroller.study.store.digests import read_record
+from trackroller.study.store.manifest import digest_of_text
 from trackroller.yaml_file import change_yaml, errors_by_line, parse_mapping, write_yaml
 
 LONGEST = 200_000  # bytes of a file that the list looks into
 HEADS = tuple(re.compile(rf"^{key}\s*:", re.M) for key in ("mass", "rollers", "cases"))
 WHAT = "carriage file"
 RESERVED = ("materials.yaml", "materials.yml", "config.yaml", "mkdocs.yml", "workflow", "profiles")  # of others
-RECORD = WRITTEN / "carriages.sha256"  # which files the page has read or written
 
 
 class Change(pydantic.BaseModel):
@@ -80,7 +77,7 @@ def open_carriage(file: str) -> dict[str, Any]:
     path = _place(file, "file")
     text = read_text(path, WHAT)
     _check_kind(text, path)
-    _note(path, {sha256(path)})
+    WRITTEN.note({path.as_posix(): sha256(path)})
     return {"text": text}
 
 
@@ -234,17 +231,12 @@ def _place(file: str, field: str) -> Path:
 
 def _write(path: Path, text: str) -> str:
     """Write a file, unless somebody else has changed it since the page read or wrote it."""
-    digest, known = hashlib.sha256(text.encode()).hexdigest(), read_record(RECORD)[1].get(path.as_posix(), set())
-    if os.path.lexists(path) and (not path.is_file() or sha256(path) not in known | {digest}):
-        allowed = "a file as this page last read or wrote it"
+    digest = digest_of_text(text)
+    if not WRITTEN.owns(path, digest):
         remedy = "Give it another name, or open the file first."
-        raise InputError("file", path.as_posix(), allowed, remedy, "is there already")
-    _note(path, known | {digest})
-    ownership.write_text(path, text)
+        raise InputError(
+            "file", path.as_posix(), "a file as this page last read or wrote it", remedy, "is there already"
+        )
+    WRITTEN.note({path.as_posix(): digest})
+    write_text(path, text)
     return path.as_posix()
-
-
-def _note(path: Path, digests: set[str]) -> None:
-    """Note what this page has read or written, so that it may write the file again."""
-    known = read_record(RECORD)[1]
-    ownership.write_record(RECORD, known | {path.as_posix(): digests}, current=True)

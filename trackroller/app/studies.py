@@ -8,7 +8,6 @@ from __future__ import annotations
 import contextlib
 import datetime
 import functools
-import hashlib
 import json
 import math
 import os
@@ -21,7 +20,7 @@ from typing import Any
 from trackroller.app.worker import LOCK, PAUSE, PROGRESS, is_held
 from trackroller.environment import python
 from trackroller.errors import InputError, WorkError
-from trackroller.files import files_beside, find_beside, open_here, read_text, refuse_links, sha256
+from trackroller.files import files_beside, find_beside, open_here, read_text, refuse_links, write_text
 from trackroller.report.headlines import headline_of, warning_line
 from trackroller.report.html import write_page
 from trackroller.report.numbers import rounded, unit_text
@@ -35,14 +34,20 @@ from trackroller.study.file.load import parse_study
 from trackroller.study.file.study import Study
 from trackroller.study.outputs import default_names, outputs
 from trackroller.study.status import plan_rows, status_of
-from trackroller.study.store import ownership
-from trackroller.study.store.digests import read_record
-from trackroller.study.store.folder import StudyFolder
-from trackroller.study.store.seal import altered, check_sealed
+from trackroller.study.store.folder import StudyFolder, delete_study
+from trackroller.study.store.manifest import (
+    Manifest,
+    check_unaltered,
+    claim,
+    digest_of_file,
+    digest_of_text,
+    is_study,
+    why_altered,
+)
 from trackroller.yaml_file import errors_by_line, parse_mapping, write_yaml
 
 TEXTS, RESULTS = Path("studies"), Path("results")
-WRITTEN = Path(".trackroller")  # where the page notes which study files it wrote
+WRITTEN = Manifest(Path(), ".trackroller/files.jsonl")  # studies and carriages that the page wrote or read
 MOST_CASES = 200_000  # larger studies belong on the command line, where nobody waits for a page
 PAGES = ("report.html", "explorer.html")
 _REFUSED: dict[str, Any] = {  # what the list shows of a study with a link in its folder
@@ -128,10 +133,9 @@ def start(text: str) -> dict[str, Any]:
         raise WorkError(f"The study '{name}' runs already. Pause it first, or give this study another name.")
     folder.create()
     _write_text(name, text, folder)
-    for file in (PROGRESS, PAUSE):
-        ownership.clear(folder.root / file, folder.root)
-    ownership.make_way(log_file := folder.root / "page.log", folder.root)
-    with open_here(log_file, "ab") as log:
+    states = [claim(folder.root / file) for file in (PROGRESS, PAUSE)]
+    Manifest(folder.root).unlink(states)
+    with open_here(claim(folder.root / "page.log"), "ab") as log:
         log.write(f"trackroller: started {datetime.datetime.now().isoformat(' ', 'seconds')}\n".encode())
         log.flush()
         _running[name] = subprocess.Popen(
@@ -149,17 +153,14 @@ def _write_text(name: str, text: str, folder: StudyFolder) -> None:
 
     The page wrote or read what stands in its own record, and what the study was planned from.
     """
-    path, record = TEXTS / f"{name}.yaml", WRITTEN / "studies.sha256"
-    known = read_record(record)[1]
+    path = TEXTS / f"{name}.yaml"
+    digest = digest_of_text(text)
     planned = {one["sha256"] for one in folder.record().get("inputs", {}).values()}
-    if os.path.lexists(path) and (path.is_symlink() or not path.is_file() or path.read_bytes() != text.encode()):
-        if path.is_symlink() or not path.is_file() or sha256(path) not in known.get(path.name, set()) | planned:
-            remedy, wrong = "Give the study another name, or rename the file.", f"has a file {path} from elsewhere"
-            raise InputError("name", name, "a name whose file this page wrote", remedy, wrong)
-    digest = hashlib.sha256(text.encode()).hexdigest()
-    ownership.write_record(record, known | {path.name: known.get(path.name, set()) | {digest}}, current=True)
-    ownership.write_text(path, text)
-    ownership.write_record(record, known | {path.name: {digest}}, current=True)
+    if not WRITTEN.owns(path, digest) and digest_of_file(path) not in planned:
+        remedy = "Give the study another name, or rename the file."
+        raise InputError("name", name, "a name whose file this page wrote", remedy, f"has a file {path} from elsewhere")
+    WRITTEN.note({path.as_posix(): digest})
+    write_text(path, text)
 
 
 def resume(name: str) -> dict[str, Any]:
@@ -172,8 +173,7 @@ def pause(name: str) -> None:
     folder = folder_of(name)
     if not (_starts(name) or is_held(folder.root / LOCK)):
         raise WorkError(f"The study '{name}' does not run from this page, so the page cannot pause it.")
-    ownership.make_way(folder.root / PAUSE, folder.root)
-    (folder.root / PAUSE).touch()
+    claim(folder.root / PAUSE).touch()
 
 
 def delete(name: str, confirm: str = "") -> None:
@@ -186,7 +186,7 @@ def delete(name: str, confirm: str = "") -> None:
     if not folder.root.is_dir():
         remedy = "It may be deleted already."
         raise InputError("name", name, "a study of this folder", remedy, "is not there")
-    ownership.delete_study(folder.create().root)
+    delete_study(folder.create().root)
 
 
 def _works(name: str, folder: StudyFolder) -> bool:
@@ -220,7 +220,7 @@ def _entry(name: str) -> dict[str, Any] | None:
     with contextlib.suppress(OSError, ValueError):
         progress = json.loads((folder.root / PROGRESS).read_text(encoding="utf-8"))
     works = _works(name, folder)
-    if not (works or progress or folder.gathered.is_file() or ownership.is_study(folder.root)):
+    if not (works or progress or folder.gathered.is_file() or is_study(folder.root)):
         return None
     chunks = folder.record().get("chunks", {})
     total = progress.get("total") or sum(chunks.values()) or None
@@ -256,7 +256,7 @@ def _stats(root: Path) -> Iterator[os.stat_result]:
 @functools.lru_cache(1000)  # the list is made every few seconds, and a digest takes up to a second
 def _altered(path: Path, newest: float, size: int) -> str:
     """Return what is wrong with a result that was altered after it was written; date and size are of its folder."""
-    return (altered(path) if path.is_file() else "") or ""
+    return (why_altered(path) if path.is_file() else "") or ""
 
 
 def text_of(name: str) -> dict[str, Any]:
@@ -281,7 +281,7 @@ def page_of(name: str, page: str) -> Path:
     if page not in PAGES or path.is_symlink() or not path.is_file():
         allowed = f"{' or '.join(PAGES)} of a study that was run"
         raise InputError("page", f"{name}/{page}", allowed, "Let the study run to its end.")
-    return check_sealed(path)
+    return check_unaltered(path)
 
 
 def file_of_study(name: str, file: str) -> bytes:

@@ -18,9 +18,9 @@ from pathlib import Path
 from typing import Any
 
 from trackroller.errors import InputError, WorkError
-from trackroller.files import confine, interrupts_wait_for_files, refuse_links, try_lock
-from trackroller.study.store.folder import StudyFolder, wait_for_lock
-from trackroller.study.store.ownership import clear, write_text
+from trackroller.files import confine, interrupts_wait_for_files, refuse_links, try_lock, wait_for_lock
+from trackroller.study.store.folder import StudyFolder
+from trackroller.study.store.manifest import Manifest, claim, put_unlisted
 
 LOCK, PROGRESS, PAUSE = ".page.lock", ".page.json", ".pause"
 TICK = 0.4  # seconds between two looks for the wish to pause, and between two records of progress
@@ -30,13 +30,15 @@ class Progress:
     """How far a study is, kept in a file for the page."""
 
     def __init__(self, root: Path) -> None:
-        self.root, self.told, self.written = root, dict[str, Any](), 0.0
+        self.place = claim(root / PROGRESS)
+        self.told: dict[str, Any] = {}
+        self.written = 0.0
 
     def say(self, at_once: bool = True, **told: Any) -> None:
         """Add facts to the record, and write it at once or if the last record is old."""
         self.told |= told
         if at_once or time.monotonic() - self.written > TICK:
-            write_text(self.root / PROGRESS, json.dumps(self.told))
+            put_unlisted(self.place, lambda beside: beside.write_text(json.dumps(self.told), encoding="utf-8"))
             self.written = time.monotonic()
 
     def started(self, total: int, done: int) -> None:
@@ -60,7 +62,7 @@ def _watch(pause: Path) -> None:
     """Interrupt the main thread once the file that asks for a pause is there."""
     while not pause.exists():
         time.sleep(TICK)
-    clear(pause)
+    Manifest(pause.parent).unlink([pause])
     _thread.interrupt_main()
 
 

@@ -178,9 +178,7 @@ def write_yaml_file(target: Path, values: Mapping[str, Any], comment: str = "") 
 
 def free_for_page(page: Path) -> None:
     """Refuse to write a page that the user did not name over a file that is no page of this program."""
-    from trackroller.study.store.ownership import is_page  # heavy: as above
-
-    if os.path.lexists(page) and not is_page(page):
+    if os.path.lexists(page) and not (page.is_file() and _is_ours(page, ".html")):
         allowed, wrong = "a new file, or a page that trackroller wrote", "is a file of somebody else"
         raise InputError("--out", str(page), allowed, "Give another path with -o.", wrong)
 

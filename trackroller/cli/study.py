@@ -29,9 +29,9 @@ from trackroller.study.repeat import repeat_case
 from trackroller.study.run import run_study
 from trackroller.study.status import Status, find_folder, find_study, plan_rows, status_of
 from trackroller.study.store.crate import compare_results, damaged_files, read_crate, study_of_crate, write_crate
-from trackroller.study.store.folder import StudyFolder
+from trackroller.study.store.folder import StudyFolder, check_folder
 from trackroller.study.store.ledger import study_folder
-from trackroller.study.store.ownership import check, is_study
+from trackroller.study.store.manifest import is_study
 
 EXPLORER = "explorer.html"
 MOST = 20_000  # --explain examines at most this many cases of a study
@@ -263,7 +263,7 @@ def print_rerun(crate: Path, results: Path) -> int:
 
 def _check_unoccupied(study: Study, folder: StudyFolder) -> None:
     """Refuse a folder that holds anything but the unfinished results of the same study, which is then solved on."""
-    check(folder.root)
+    check_folder(folder.root)
     record = folder.record()
     begun = record.get("study") in (None, study.merged()) and not folder.gathered.exists()
     if folder.root.is_dir() and any(folder.root.iterdir()) and not (record and begun):

@@ -19,10 +19,10 @@ from trackroller.materials.file import find_user_file
 from trackroller.study.cost import duration
 from trackroller.study.file.load import load_study
 from trackroller.study.file.study import Study
-from trackroller.study.store.folder import StudyFolder, Tell, unheard
+from trackroller.study.store.folder import StudyFolder, Tell, check_for_workflow, unheard
 from trackroller.study.store.identity import Cases
 from trackroller.study.store.ledger import Ledger, read_ledger, study_folder, working_ledger
-from trackroller.study.store.ownership import free_for_workflow
+from trackroller.study.store.manifest import claim
 
 CONFIG_KEYS = ("study", "results")
 _held = contextlib.ExitStack()  # keeps the lock of the study until this process ends
@@ -104,7 +104,7 @@ def workflow_ledger(config: Mapping[str, str], main: bool, tell: Tell = unheard)
     study, results = load_study(config["study"], planned=not main), config["results"]
     folder = study_folder(study.name, results)
     if main:
-        free_for_workflow(folder.create().root, tell)
+        check_for_workflow(folder.create().root)
     if study.decides:  # its rule plans each generation
         return Ledger(Cases(study), folder)
     if main:
@@ -209,6 +209,7 @@ def log_to(path: str, step: str = "") -> None:
     if step:
         print(step, file=sys.stderr, flush=True)
     Path(path).parent.mkdir(parents=True, exist_ok=True)
+    claim(Path(path))
     logging.basicConfig(filename=path, level=logging.INFO, format="%(asctime)s %(message)s", force=True)
     logging.captureWarnings(True)
 

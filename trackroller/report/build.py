@@ -17,10 +17,10 @@ from trackroller.results.results import Results
 from trackroller.results.stored_study import open_as_reported, open_study
 from trackroller.study.store.crate import write_crate
 from trackroller.study.store.folder import StudyFolder, reporting
-from trackroller.study.store.ownership import PAGES, UNFINISHED, files_below, remove, remove_empty, replaceable
-from trackroller.study.store.seal import put, sealing
+from trackroller.study.store.manifest import REPORT, Manifest, put, replacing
 
 log = logging.getLogger("trackroller")
+UNFINISHED = "unfinished"  # folder for the pages of solved cases
 
 
 @interrupts_wait_for_files()
@@ -52,9 +52,11 @@ def build_report(folder: StudyFolder, tell: Callable[[str], None] = log.info) ->
     with reporting(folder, tell):
         results = open_study(folder.root)
         place = place_of_pages(results, folder)
-        for page in (place / name for name in PAGES):
-            if not page.is_dir():
-                replaceable(page, folder.root)  # a file of somebody else is refused before the work
+        manifest = Manifest(folder.root)
+        pages = [place / name for name in REPORT]
+        written = [folder.root / name for page in pages for name in manifest.current(page)]
+        # what is not ours is refused before the work; a folder may hold further files
+        manifest.check(*(page for page in pages if not page.is_dir()), *written)
         tell("analyse the results")
         write_analysis(results, place / "sensitivity.nc")
         tell("draw the figures")
@@ -63,9 +65,7 @@ def build_report(folder: StudyFolder, tell: Callable[[str], None] = log.info) ->
         report = write_report(results, place / "report.html")
         if folder.plan_file.exists() and not results.unfinished:  # results solved in Python have no plan, and no crate
             write_crate(folder.root)
-            for path in files_below(folder.root / UNFINISHED):
-                remove(path, folder.root)
-            remove_empty(folder.root / UNFINISHED)
+            manifest.discard(folder.root / UNFINISHED)
     return report
 
 
@@ -95,6 +95,6 @@ def draw_figures(results: Results, out: Path) -> list[Any]:
     """Draw all figures of a study and return them; they are put in place when all of them are drawn."""
     from trackroller.report.figures.study import draw_all  # heavy: matplotlib and seaborn
 
-    with sealing(out) as beside:
+    with replacing(out) as beside:
         beside.mkdir()
         return draw_all(results, beside)

@@ -26,15 +26,15 @@ from trackroller.study.file.load import checked_keys, with_present_keys
 from trackroller.study.file.study import Study
 from trackroller.study.outputs import case_dims
 from trackroller.study.store import chunks
-from trackroller.study.store.folder import STORE_FORMAT, StudyFolder
+from trackroller.study.store.folder import StudyFolder, check_readable
 from trackroller.study.store.gather import collect
 from trackroller.study.store.identity import Cases
 from trackroller.study.store.inputs import MATERIALS, study_of_folder
 from trackroller.study.store.labels import labelled
 from trackroller.study.store.ledger import Ledger
-from trackroller.study.store.ownership import check_readable
+from trackroller.study.store.manifest import STORE_FORMAT, digests_of
+from trackroller.study.store.netcdf import read_result
 from trackroller.study.store.provenance import DATE
-from trackroller.study.store.seal import digest_of, read_result
 from trackroller.study.store.sources import solver_digest
 from trackroller.yaml_file import parse_mapping
 
@@ -107,7 +107,7 @@ def open_as_reported(root: Path) -> Results:
     Nothing is computed: a page or a figure that must not wait takes these results.
     """
     results, stored = open_study(root), root / "sensitivity.nc"
-    known = stored.is_file() and not results.unfinished and digest_of(stored)
+    known = stored.is_file() and not results.unfinished and digests_of(stored)
     return dataclasses.replace(results, known_indices=read_result(stored) if known else xr.Dataset())
 
 

@@ -14,11 +14,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import xarray as xr
 
-from trackroller.files import interrupts_wait_for_files
+from trackroller.files import interrupts_wait_for_files, locked
 from trackroller.study.cluster import workers
 from trackroller.study.solve_chunk import Executor, Solver, solve_chunk, solve_here
 from trackroller.study.store import chunks
-from trackroller.study.store.folder import Count, StudyFolder, Tell, locked, unheard
+from trackroller.study.store.folder import Count, StudyFolder, Tell, unheard
 from trackroller.study.store.gather import gather
 from trackroller.study.store.identity import Cases
 from trackroller.study.store.labels import labelled

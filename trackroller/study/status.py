@@ -18,12 +18,11 @@ from trackroller.study.design.growth import as_planned
 from trackroller.study.design.levels import in_words
 from trackroller.study.file.load import load_study
 from trackroller.study.store.chunks import FAILED, CorruptFile, read
-from trackroller.study.store.folder import StudyFolder
+from trackroller.study.store.folder import StudyFolder, check_folder
 from trackroller.study.store.identity import Cases
 from trackroller.study.store.inputs import study_of_folder
 from trackroller.study.store.ledger import Ledger, chunk_size, study_folder, unused_cases
-from trackroller.study.store.ownership import check
-from trackroller.study.store.seal import altered
+from trackroller.study.store.manifest import why_altered
 
 if TYPE_CHECKING:
     from trackroller.study.file.study import Study
@@ -137,7 +136,7 @@ def status_of(study: Study, folder: StudyFolder) -> Status:
     InputError
         If the folder is somebody else's, or holds a link.
     """
-    check(folder.root)
+    check_folder(folder.root)
     study = as_planned(study, folder.record())
     ledger = Ledger(Cases(study), folder)
     solved = np.flatnonzero(ledger.place >= 0)
@@ -159,7 +158,7 @@ def status_of(study: Study, folder: StudyFolder) -> Status:
         corrupt=[
             *ledger.corrupt.values(),
             *(f"{path}: it is gone" for path in folder.lost_files()),
-            *filter(None, map(altered, (folder.design, folder.gathered))),
+            *filter(None, map(why_altered, (folder.design, folder.gathered))),
         ],
     )
     for name, factor in study.drawn.factors.items():

@@ -5,11 +5,11 @@ import logging
 from pathlib import Path
 
 from trackroller.cli.workflow import log_to
-from trackroller.files import write_text
 from trackroller.results.growing import next_step
 from trackroller.study.file.load import load_study
+from trackroller.study.store.manifest import put_text
 
 log_to(snakemake.log[0], "look at the intervals")
 config = snakemake.params.config
 step = next_step(load_study(config["study"]), config["results"], logging.getLogger("trackroller").info)
-write_text(Path(snakemake.output[0]), json.dumps(step) + "\n")
+put_text(Path(snakemake.output[0]), json.dumps(step) + "\n")

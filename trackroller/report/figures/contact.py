@@ -24,7 +24,7 @@ from trackroller.report.figures import style
 from trackroller.report.figures.contact_outline import Patch, case_text, outline, patches_of
 from trackroller.report.figures.contact_sections import sections
 from trackroller.report.numbers import number, rounded
-from trackroller.study.store.seal import sealing
+from trackroller.study.store.manifest import replacing
 
 ARROWS = (17, 11)  # along the long and the short axis of the patch
 SLENDER = 4.0  # ratio of the axes above which a patch is not drawn to scale
@@ -193,7 +193,7 @@ def plot_case(ds: xr.Dataset, out_dir: Path) -> list[style.FigureInfo]:
         if ds.sizes["case"] != 1:
             raise InputError("ds", f"{ds.sizes['case']} cases", "one case at a time", "Use ds.isel(case=i).")
         ds = ds.isel(case=0)
-    with sealing(Path(out_dir)) as beside:
+    with replacing(Path(out_dir)) as beside:
         beside.mkdir()
         return style.draw_all(figures_of(ds), beside)
 

@@ -27,7 +27,7 @@ from trackroller.results.results import Results, shown_answer
 from trackroller.roller.dataset import solved_by
 from trackroller.roller.doubts import doubts
 from trackroller.roller.stored_inputs import NOT_GIVEN, as_material
-from trackroller.study.store.seal import put_text, sealing
+from trackroller.study.store.manifest import put_text, replacing
 
 OPTIONS = tuple(option.name for option in parameters.OPTIONS.values() if option.recorded)
 _ELSEWHERE = (
@@ -52,7 +52,7 @@ def write_report(results: Results, out_html: Path) -> Path:
         The path of the report.
     """
     text = report_text(results)
-    with sealing(Path(out_html).with_name("tables")) as beside:
+    with replacing(Path(out_html).with_name("tables")) as beside:
         export(tables_of(results), beside)
         write_answer(shown_answer(results), beside)
     put_text(Path(out_html), text)

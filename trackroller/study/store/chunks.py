@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import contextlib
 import hashlib
+import stat
 from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 
@@ -19,10 +20,9 @@ import xarray as xr
 from trackroller.files import memory
 from trackroller.parameters import REGIMES
 from trackroller.roller.dataset import file_attributes, joined
-from trackroller.study.store.digests import sums_up
 from trackroller.study.store.identity import chunk_name
+from trackroller.study.store.manifest import put_unlisted, sums_up
 from trackroller.study.store.netcdf import too_large
-from trackroller.study.store.ownership import write as write_own
 
 FAILED = REGIMES.index("failed")
 _ATTRIBUTES = file_attributes("Cases of a parameter study of track rollers, named by their fingerprints", "solved")
@@ -79,7 +79,7 @@ def write(path: Path, block: xr.Dataset, packed: bool = False) -> None:
         with open(beside, "ab") as stream:
             stream.write(digest)
 
-    write_own(path, save)
+    put_unlisted(path, save)
 
 
 @contextlib.contextmanager
@@ -89,6 +89,8 @@ def _opened(path: Path) -> Iterator[tuple[netCDF4.Dataset, np.ndarray]]:
     Raise `CorruptFile` if the file was altered or holds other cases than its name says: the name of a chunk and of its
     list is the hash of their cases.
     """
+    if not stat.S_ISREG(path.stat().st_mode):
+        raise CorruptFile(path, "it is no file")
     if path.stat().st_size > memory():
         raise CorruptFile(path, "it is larger than the memory")
     content = path.read_bytes()

@@ -22,12 +22,11 @@ import numpy as np
 from trackroller.errors import InputError
 from trackroller.files import sha256
 from trackroller.roller.differences import Difference, compare
-from trackroller.study.store import ownership
-from trackroller.study.store.digests import METADATA, crate_graph
-from trackroller.study.store.folder import StudyFolder
+from trackroller.study.store.folder import StudyFolder, check_readable
 from trackroller.study.store.inputs import study_of_folder
+from trackroller.study.store.manifest import CRATE, REPORT, check_unaltered, crate_graph, digests_of, put_text
+from trackroller.study.store.netcdf import read_result
 from trackroller.study.store.provenance import versions
-from trackroller.study.store.seal import REPORT, check_sealed, is_sealed, put_text, read_result, recorded
 
 if TYPE_CHECKING:
     from trackroller.study.file.study import Study
@@ -60,15 +59,16 @@ def write_crate(root: Path) -> Path:
     study = study_of_folder(StudyFolder(root))
     # a user may delete what a report made: `trackroller report` makes it again
     kept = [*DATA, *(name for name in REPORT if (root / name).exists())]
-    inputs, *parts = (dict(sorted((recorded(check_sealed(root / name)) or {}).items())) for name in (INPUTS, *kept))
-    results = {name: digest for part in parts for name, digest in part.items()}
+    inputs = digests_of(check_unaltered(root / INPUTS))
+    results: dict[str, str] = {}
+    for name in kept:
+        results |= digests_of(check_unaltered(root / name))
     newest = str(np.datetime64(int(max((root / name).stat().st_mtime for name in results)), "s")) + "Z"
-    # a copy has other dates, and describes the same run
-    known, text = (_text(study, root, inputs, results, ended) for ended in (_end_of_run(root), newest))
-    path = root / METADATA
-    if path.is_file() and is_sealed(path) and path.read_text(encoding="utf-8") == known:
-        return path
-    return put_text(path, text)
+    path = root / CRATE
+    known = _text(study, root, inputs, results, _end_of_run(root))
+    if digests_of(path) and path.read_text(encoding="utf-8") == known:
+        return path  # a copy has other dates, and describes the same run
+    return put_text(path, _text(study, root, inputs, results, newest))
 
 
 def _end_of_run(root: Path) -> str:
@@ -110,7 +110,7 @@ def _graph(
     """
     programs, work = versions(), "CreativeWork"
     return [
-        _entry(METADATA, work, about={"@id": "./"}, conformsTo={"@id": "https://w3id.org/ro/crate/1.1"}),
+        _entry(CRATE, work, about={"@id": "./"}, conformsTo={"@id": "https://w3id.org/ro/crate/1.1"}),
         _entry(
             "./",
             "Dataset",
@@ -157,12 +157,12 @@ def read_crate(root: Path | str) -> dict[str, dict[str, Any]]:
     WorkError
         If the metadata file was altered after it was written.
     """
-    ownership.check_readable(Path(root))
-    check_sealed(Path(root) / METADATA)
+    check_readable(Path(root))
+    check_unaltered(Path(root) / CRATE)
     files = {str(entry.get("@id")): entry for entry in crate_graph(Path(root)) if "File" in _kinds(entry)}
     if not files:
         remedy = "Give a folder results/NAME of a study that was run to its end."
-        wrong = f"holds no readable {METADATA}"
+        wrong = f"holds no readable {CRATE}"
         raise InputError("crate", str(root), "a study that was run to its end", remedy, wrong)
     for name in files:
         if Path(name).is_absolute() or ".." in Path(name).parts:

@@ -1,34 +1,111 @@
-"""Name the files of a study, lock them, and keep the record of what was planned."""
+"""Name the files of a study, mark its folder as ours, and keep the record of what was planned."""
 
 from __future__ import annotations
 
 import contextlib
 import errno
-import json
 import os
-import time
-import warnings
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
-from typing import IO, Any
+from typing import Any
 
 from trackroller.errors import InputError
-from trackroller.files import check_utf_8, disk_error, open_here, try_lock, why_not
-from trackroller.study.store import digests, ownership
-from trackroller.study.store.digests import record_digest
-from trackroller.study.store.ownership import MADE_BY
-from trackroller.study.store.seal import is_sealed, read_result
+from trackroller.files import (
+    check_utf_8,
+    disk_error,
+    disk_errors,
+    is_link,
+    locked,
+    open_here,
+    refuse_link,
+    refuse_links,
+    why_not,
+)
+from trackroller.study.store.manifest import (
+    BLOCK,
+    GATHERED,
+    MARK,
+    OURS,
+    SCRATCH,
+    WHAT,
+    Manifest,
+    files_below,
+    is_study,
+    put_unlisted,
+    read_mark,
+    remove_empty,
+    signed,
+    sweep,
+)
 from trackroller.study.store.sources import solver_digest
 from trackroller.yaml_file import parse_mapping
 
 Tell = Callable[[str], None]
 Count = Callable[[int, int], None]
-STORE_FORMAT = 1  # raise it when a file of the store gets another meaning; other formats are refused by name
 NO_FOLDER = (errno.ENOTDIR, errno.EEXIST, errno.ENAMETOOLONG, errno.ELOOP)
 
 
 def unheard(*facts: object) -> None:
     """Take what a run tells or counts where nobody listens."""
+
+
+def check_folder(root: Path) -> None:
+    """Refuse a folder of somebody else or of another version, and links inside a folder.
+
+    Raises
+    ------
+    InputError
+        If the folder exists, is not empty and does not bear our mark, or holds a link.
+    """
+    if not root.is_dir():
+        return
+    with disk_errors(root):
+        refuse_link(root / MARK, WHAT)
+        if is_study(root):
+            refuse_links(root, WHAT, inside=True)
+        elif not _is_empty(root):
+            raise _foreign_folder(root)
+
+
+def check_readable(root: Path) -> None:
+    """Refuse to read a folder with links inside, or with a damaged `plan.json`.
+
+    A copy of results may be without `plan.json`, and that of an earlier version may be read.
+    """
+    refuse_links(root, WHAT, inside=True)
+    if os.path.lexists(root / MARK) and not read_mark(root):
+        check_folder(root)
+
+
+def _is_empty(root: Path) -> bool:
+    """Return whether a folder holds no file and no link, at any level, but the empty mark of a killed process."""
+    for place, folders, names in os.walk(root):
+        if any(is_link(Path(place, name)) for name in folders):
+            return False
+        for path in (Path(place, name) for name in names):
+            if path != root / MARK or path.stat().st_size:
+                return False
+    return True
+
+
+def _foreign_folder(root: Path) -> InputError:
+    """Return the error for a folder without our mark."""
+    if read_mark(root):
+        wrong = "was made by another version of trackroller"
+        remedy = "Move the folder away and start again: its cases are solved anew."
+        return InputError(WHAT, str(root), "a folder of this version", remedy, wrong)
+    names = sorted(os.listdir(root))
+    wrong = f"was not made by trackroller and holds {', '.join(names[:4])}"
+    if len(names) > 4:
+        wrong += f" and {len(names) - 4} more"
+    if MARK in names:
+        wrong += f"; its {MARK} is damaged or somebody else's"
+    allowed = "a new or empty folder, or one that trackroller made"
+    remedy = (
+        "Give the study another name, choose another --results, or move the folder away. "
+        f"If it is the folder of a study, restore its {MARK} from a copy."
+    )
+    return InputError(WHAT, str(root), allowed, remedy, wrong)
 
 
 class StudyFolder:
@@ -50,8 +127,10 @@ class StudyFolder:
 
     def __init__(self, root: Path) -> None:
         self.root = root
-        self.design, self.gathered = root / "design.nc", root / "study.nc"
-        self.inputs, self.plan_file = root / "inputs", root / "plan.json"
+        self.design = root / "design.nc"
+        self.gathered = root / GATHERED
+        self.inputs = root / "inputs"
+        self.plan_file = root / MARK
         self.study_file = self.inputs / "study.yaml"
         self.lock = root / "plan" / ".lock"
 
@@ -74,7 +153,7 @@ class StudyFolder:
     def solved_files(self) -> list[Path]:
         """Return the files with results of solved cases; files with names that no chunk has do not count."""
         paths = sorted((self.root / "chunks").glob("*.nc"))
-        return [path for path in paths if ownership.CASES.fullmatch(f"chunks/{path.name}") and path.is_file()]
+        return [path for path in paths if BLOCK.fullmatch(f"chunks/{path.name}")]
 
     def lost_files(self) -> list[Path]:
         """Return the files with solved cases that the plan counts on and that are gone."""
@@ -98,46 +177,49 @@ class StudyFolder:
         WorkError
             If the folder cannot be written.
         """
-        check_utf_8(self.root.absolute(), "results folder")
-        ownership.check(self.root)
+        check_utf_8(self.root.absolute(), WHAT)
+        check_folder(self.root)
         try:
+            self.root.mkdir(parents=True, exist_ok=True)
+            self._mark()
             for name in ("plan", "chunks"):
-                (self.root / name).mkdir(parents=True, exist_ok=True)
-            with open_here(self.lock, "a"):
+                (self.root / name).mkdir(exist_ok=True)
+            with open_here(self.lock, "ab"):
                 pass
         except OSError as exc:
             if exc.errno in NO_FOLDER:
                 wrong = f"cannot be a folder ({why_not(exc, self.root)})"
                 remedy = "Choose another with --results."
-                raise InputError("results folder", str(self.root), "the path of a folder", remedy, wrong) from None
+                raise InputError(WHAT, str(self.root), "the path of a folder", remedy, wrong) from None
             raise disk_error(exc, self.root) from None
-        self._mark()
         return self
 
     def _mark(self) -> None:
-        """Write the mark of a new folder; give a folder of an earlier version its mark and records.
+        """Write the mark as the first file of the folder, unless it has one.
 
-        Only the sole holder of the lock does so, unless a process of an earlier version holds it.
+        An empty `plan.json`, as a process leaves it that is killed here, counts as none. The lock lets one of several
+        processes write the mark.
         """
-        for _ in range(100):
-            known = digests.mark(self.root)
-            if MADE_BY.items() <= known.items():
+        if is_study(self.root):
+            return
+        with locked(self.plan_file), open_here(self.plan_file, "ab") as stream:
+            if os.fstat(stream.fileno()).st_size:
                 return
-            with open(self.lock, "rb+") as lock:
-                if not try_lock(lock):
-                    time.sleep(0.05)
-                    continue
-                ownership.adopt(self.root)
-                if known.get("store_format") == STORE_FORMAT:
-                    self.write_record({key: value for key, value in known.items() if key != "store_format"})
-                elif not os.path.lexists(self.plan_file):
-                    self.write_record({})
-                return
+            try:
+                stream.write(signed({}).encode())
+                stream.flush()
+                os.fsync(stream.fileno())
+            except OSError:
+                stream.truncate(0)
+                raise
+        if not is_study(self.root):
+            raise _foreign_folder(self.root)
 
     def record(self) -> dict[str, Any]:
-        """Return the record of the plan; {} if there is none, it was altered, or its format is not this version's."""
-        record = digests.mark(self.root)
-        return record if record.pop("store_format", None) == STORE_FORMAT else {}
+        """Return the record of the plan; {} if there is none, it was altered, or it is that of another version."""
+        if not is_study(self.root):
+            return {}
+        return {key: value for key, value in read_mark(self.root).items() if key not in OURS}
 
     @property
     def of_another_solver(self) -> bool:
@@ -145,38 +227,14 @@ class StudyFolder:
         return bool(self.record().get("solver_digest", solver_digest()) != solver_digest())
 
     def earlier(self) -> dict[str, Any]:
-        """Return the study as it was planned or gathered last, {} if neither record is sound."""
+        """Return the study as it was planned last, {} if it was not planned."""
         text = self.record().get("study")
-        if text is None and self.gathered.is_file() and is_sealed(self.gathered):
-            text = read_result(self.gathered).attrs.get("study")
         return {} if text is None else parse_mapping(text, str(self.plan_file))
 
-    def write_record(self, record: Mapping[str, Any], tell: Tell = warnings.warn) -> None:
+    def write_record(self, record: Mapping[str, Any]) -> None:
         """Write the record of the plan with its digest, and the mark that the folder is ours."""
-        stored = {"store_format": STORE_FORMAT, **MADE_BY, **record}
-        text = json.dumps({**stored, "digest": record_digest(stored)}) + "\n"
-        ownership.write(self.plan_file, lambda beside: beside.write_text(text, encoding="utf-8", newline="\n"), tell)
-
-
-def wait_for_lock(stream: IO[bytes], shared: bool = False, tell: Tell | None = None) -> None:
-    """Wait until `try_lock` succeeds; call `tell` once if another process holds the lock."""
-    if try_lock(stream, shared):
-        return
-    if tell is not None:
-        tell(f"{Path(stream.name).stem.lstrip('.')}: another process works on this, waiting for it")
-    while not try_lock(stream, shared):
-        time.sleep(0.05)
-
-
-@contextlib.contextmanager
-def locked(path: Path, shared: bool = False, tell: Tell | None = None) -> Iterator[None]:
-    """Hold the lock of an empty file; the system releases the lock when the process ends, however it ends.
-
-    A file with content is never locked: on Windows a lock keeps every reader out, even the process that holds it.
-    """
-    with open_here(path, "ab") as stream:
-        wait_for_lock(stream, shared, tell)
-        yield
+        text = signed(record)
+        put_unlisted(self.plan_file, lambda beside: beside.write_text(text, encoding="utf-8", newline="\n"))
 
 
 @contextlib.contextmanager
@@ -184,3 +242,51 @@ def reporting(folder: StudyFolder, tell: Tell | None = None) -> Iterator[None]:
     """Keep others from making a report, gathering results and changing the plan."""
     with locked(folder.create().lock, shared=True), locked(folder.lock.with_name(".report"), tell=tell):
         yield
+
+
+def check_for_workflow(root: Path) -> None:
+    """Refuse a folder in which Snakemake would delete a file that is not ours.
+
+    Snakemake removes the outputs and log files of a job without a look at them, and the folder `figures/` as a whole.
+    An empty file, as a mark is, holds nothing that could be lost.
+    """
+    figures = root / "figures"
+    paths = [root / name for name in ("design.nc", GATHERED, "sensitivity.nc", "report.html", "ro-crate-metadata.json")]
+    paths += (root / "plan").glob("*.solved")
+    paths += [file for place in ("figures", "logs", "looks") for file in files_below(root / place)]
+    if not figures.is_dir():
+        paths.append(figures)
+    Manifest(root).check(*filter(_holds_something, paths))
+
+
+def _holds_something(path: Path) -> bool:
+    """Return whether anything but an empty file stands at a path."""
+    return os.path.lexists(path) and (not path.is_file() or path.stat().st_size > 0)
+
+
+def delete_study(root: Path) -> None:
+    """Delete the folder of a study with everything in it.
+
+    Raises
+    ------
+    InputError
+        If the folder is not that of a study, or holds a file of somebody else; nothing is deleted then.
+    """
+    check_folder(root)
+    manifest = Manifest(root)
+    listed = manifest.contents()
+    files = [path for path in files_below(root) if root / SCRATCH not in path.parents]
+    ours = [path for path in files if not _holds_something(path) or manifest.owns(path, listed=listed)]
+    foreign = [path for path in files if path not in ours]
+    if foreign:
+        names = ", ".join(map(manifest.name_of, foreign[:4]))
+        if len(foreign) > 4:
+            names += f" and {len(foreign) - 4} more"
+        remedy = "Move these files away, or delete the folder yourself."
+        wrong = f"holds files that trackroller did not write: {names}"
+        raise InputError(WHAT, str(root), "a folder with files that trackroller wrote", remedy, wrong)
+    sweep(root)
+    # manifest and mark prove what the other files are, so they go last
+    for path in sorted(ours, key=lambda path: (path == root / MARK, path == manifest.path)):
+        path.unlink(missing_ok=True)
+    remove_empty(root)

@@ -12,14 +12,14 @@ import numpy as np
 import xarray as xr
 
 from trackroller.errors import WorkError
-from trackroller.files import reserve, sha256
+from trackroller.files import reserve
 from trackroller.roller.dataset import file_attributes, united
 from trackroller.study.store import chunks
 from trackroller.study.store.folder import Tell, reporting, unheard
 from trackroller.study.store.labels import labelled
 from trackroller.study.store.ledger import Ledger
+from trackroller.study.store.manifest import digests_of, put
 from trackroller.study.store.provenance import DATE
-from trackroller.study.store.seal import forget_report, is_sealed, put, recorded
 
 MOST_MEMORY = 10_000_000  # bytes of a result in memory; a larger one lies in a temporary file
 
@@ -61,7 +61,7 @@ def gather(ledger: Ledger, tell: Tell = unheard, attrs: Mapping[str, str] | None
     file in the study's folder.
     """
     study, folder, ledger = ledger.study, ledger.folder, ledger.anew()
-    if not is_sealed(folder.design):
+    if not digests_of(folder.design):
         write_design(ledger)
     count = len(ledger.place)
     if missing := int((ledger.place < 0).sum()):
@@ -73,11 +73,8 @@ def gather(ledger: Ledger, tell: Tell = unheard, attrs: Mapping[str, str] | None
         results.attrs.pop(DATE)  # equal results are equal files; the plan keeps the date
         results.assign_attrs(attrs or {}).to_netcdf(beside, engine="netcdf4")
 
-    before = recorded(folder.gathered) or {}
     with reporting(folder):
         put(folder.gathered, save)
-        if sha256(folder.gathered) not in before.values():
-            forget_report(folder.root)
     tell(f"gathered {count} cases into {folder.gathered}")
     return folder.gathered
 

@@ -25,16 +25,15 @@ from trackroller.parameters import MATERIAL_FIELDS
 from trackroller.study.design.growth import as_planned
 from trackroller.study.file.load import load_study
 from trackroller.study.file.study import Study
-from trackroller.study.store import ownership
-from trackroller.study.store.folder import StudyFolder
-from trackroller.study.store.seal import altered, recorded, sealing
+from trackroller.study.store.folder import StudyFolder, check_readable
+from trackroller.study.store.manifest import replacing
 
 MATERIALS = "materials.yaml"
 LIMITS_FOLDER = "limits/"  # in `inputs/`: the files of a user's own limits
 
 
 def store_inputs(study: Study, folder: StudyFolder, cases: xr.Dataset) -> dict[str, dict[str, str]]:
-    """Write the inputs of a study into its folder, and remove the inputs of an earlier version.
+    """Write the inputs of a study into its folder, and remove the inputs of an earlier plan.
 
     Parameters
     ----------
@@ -54,7 +53,7 @@ def store_inputs(study: Study, folder: StudyFolder, cases: xr.Dataset) -> dict[s
     Raises
     ------
     InputError
-        If a file of somebody else stands in the place of an input.
+        If a file of somebody else, or a changed one, stands in the place of an input.
     WorkError
         If an input was edited after the study was loaded, or the folder cannot be written.
     """
@@ -70,14 +69,11 @@ def store_inputs(study: Study, folder: StudyFolder, cases: xr.Dataset) -> dict[s
             contents |= {f"{FITS}/{fit.name}": read_bytes(fit, "fit") for fit in fits}
     table = None if study.config.table is None else Path(study.config.table).name
     contents[folder.study_file.name] = study.merged(table=table).encode()
-    stored = {name: hashlib.sha256(content).hexdigest() for name, content in contents.items()}
-    known = {f"{folder.inputs.name}/{name}": digest for name, digest in stored.items()}
-    if recorded(folder.inputs) != known or altered(folder.inputs):
-        with sealing(folder.inputs) as beside:
-            for name, content in contents.items():
-                (beside / name).parent.mkdir(parents=True, exist_ok=True)
-                (beside / name).write_bytes(content)
-    return {name: {"sha256": digest} for name, digest in stored.items()}
+    with replacing(folder.inputs) as beside:
+        for name, content in contents.items():
+            (beside / name).parent.mkdir(parents=True, exist_ok=True)
+            (beside / name).write_bytes(content)
+    return {name: {"sha256": hashlib.sha256(content).hexdigest()} for name, content in contents.items()}
 
 
 def check_inputs(folder: StudyFolder, inputs: Reads) -> None:
@@ -118,24 +114,19 @@ def study_of_folder(folder: StudyFolder) -> Study:
     Raises
     ------
     WorkError
-        If a stored input or the record of the plan was altered.
+        If a stored input was altered.
     InputError
-        If the study file is not accepted.
+        If the study file is not accepted, or the folder is not that of a study.
     """
+    check_readable(folder.root)
     record = folder.record()
-    ownership.check(folder.root)
-    if not record and folder.plan_file.exists():
-        raise WorkError(
-            f"{folder.plan_file} was altered or damaged (its digest differs), or another version wrote it. Start "
-            "`trackroller run` with the study file: it plans anew and keeps every case that is still valid."
-        )
     for name, stored in record.get("inputs", {}).items():
         path = folder.inputs / name
         now = sha256(path) if path.is_file() else "no file"
         if now != stored["sha256"]:
             raise WorkError(
-                f"{path} was altered after it was written: its SHA-256 was {stored['sha256']} and is {now}. Start "
-                "`trackroller run` with the study file: it stores its inputs again."
+                f"{path} was altered after it was written: its SHA-256 was {stored['sha256']} and is {now}. Move or "
+                "remove it, then start `trackroller run` with the study file: it stores its inputs again."
             )
     _check_limits(folder, record.get("inputs", {}))
     materials = folder.inputs / MATERIALS

@@ -24,7 +24,7 @@ import numpy as np
 import xarray as xr
 
 from trackroller.errors import InputError, WorkError
-from trackroller.files import sha256, try_lock
+from trackroller.files import sha256, try_lock, wait_for_lock
 from trackroller.methods import METHODS
 from trackroller.numerics.numbers import all_equal
 from trackroller.study.cost import study_rate
@@ -32,13 +32,12 @@ from trackroller.study.design.build import case_columns
 from trackroller.study.design.growth import sample_of
 from trackroller.study.design.levels import in_words
 from trackroller.study.file.config import check_name
-from trackroller.study.store import chunks, digests, ownership
-from trackroller.study.store.folder import StudyFolder, Tell, unheard, wait_for_lock
+from trackroller.study.store import chunks
+from trackroller.study.store.folder import StudyFolder, Tell, unheard
 from trackroller.study.store.identity import Cases, chunk_name, solver_and_materials
 from trackroller.study.store.inputs import store_inputs
-from trackroller.study.store.ownership import MADE_BY
+from trackroller.study.store.manifest import CRATE, Manifest, sweep
 from trackroller.study.store.provenance import now
-from trackroller.study.store.seal import discard
 from trackroller.study.store.sources import solver_digest
 from trackroller.yaml_file import parse_mapping
 
@@ -153,7 +152,7 @@ class Ledger:
             solved = block.isel(case=(block["regime"] != chunks.FAILED).values)
             if solved.sizes["case"]:
                 chunks.write(self.folder.chunk(chunk_name(solved["case"].values)), solved, packed=True)
-            ownership.remove(self.paths[number], self.folder.root)
+            Manifest(self.folder.root).unlink([self.paths[number]])
         return len(failed)
 
 
@@ -295,7 +294,6 @@ def _levels_of(study: Study, rows: np.ndarray) -> list[str]:
 def record_of(ledger: Ledger, inputs: Mapping[str, Any]) -> dict[str, Any]:
     """Return the record of a ledger, which `read_ledger` reads: what it was made from, and its chunks."""
     return {
-        **MADE_BY,
         "key": plan_key(ledger.study),
         "solver_digest": solver_digest(),
         "name": ledger.study.name,
@@ -361,9 +359,9 @@ def _plan(study: Study, folder: StudyFolder, tell: Tell, rerun_failed: bool) -> 
     if folder.of_another_solver:
         tell(f"the solver's code has changed since {folder.root} was planned: all its cases are solved anew")
     _check_same_study(study, folder)
-    for path in (folder.design, folder.gathered, folder.root / digests.METADATA):
-        ownership.make_way(path, folder.root, lambda line: tell(f"{line}, and made anew"))
-    _set_damaged_aside(found := Ledger(Cases(study), folder), tell)
+    found = Ledger(Cases(study), folder)
+    _check_files(found)
+    sweep(folder.root)
     if rerun_failed:
         tell(f"{found.forget_failed()} failed cases are solved again")
         found = found.anew()
@@ -374,8 +372,8 @@ def _plan(study: Study, folder: StudyFolder, tell: Tell, rerun_failed: bool) -> 
         ledger = planned(found)
         if found.paths and (unused := unused_cases(found)):
             tell(unused)
-        discard(folder.design)
-    _keep(ledger, tell)
+        Manifest(folder.root).discard(folder.design)
+    _keep(ledger)
     return ledger.anew()
 
 
@@ -389,29 +387,32 @@ def _check_same_study(study: Study, folder: StudyFolder) -> None:
         raise InputError("results folder", str(folder.root), "a folder of this study", remedy, wrong)
 
 
-def _set_damaged_aside(ledger: Ledger, tell: Tell) -> None:
-    """Move damaged files of solved cases away, and remove temporary files."""
-    for path, why in ledger.corrupt.items():
-        kept = ownership.set_aside(ledger.folder.root, path)
-        tell(f"corrupt results, their cases are solved again, and the file is kept as {kept}: {why}")
-    ownership.sweep(ledger.folder.root)
+def _check_files(found: Ledger) -> None:
+    """Refuse damaged files of solved or planned cases, and what stands in the place of a result."""
+    folder = found.folder
+    manifest = Manifest(folder.root)
+    results = [folder.design, folder.gathered, folder.root / CRATE]
+    results += [folder.root / name for name in manifest.current(folder.inputs)]
+    lists = [folder.case_list(name) for name in folder.record().get("chunks", {})]
+    manifest.check(*results, *lists, damaged=found.corrupt)
 
 
-def _keep(ledger: Ledger, tell: Tell) -> None:
+def _keep(ledger: Ledger) -> None:
     """Write the record of a ledger after its inputs, and remove the files of earlier plans."""
-    folder, earlier = ledger.folder, ledger.folder.record()
+    folder = ledger.folder
+    manifest = Manifest(folder.root)
+    earlier = folder.record()
     record = record_of(ledger, store_inputs(ledger.study, folder, ledger.cases.design))
     record["planned"] = earlier.get("planned", now()) if earlier.get("study") == record["study"] else now()
     if record != earlier:
-        folder.write_record(record, tell)
+        folder.write_record(record)
     for path in folder.lock.parent.iterdir():
         of_chunk = path.suffix in (".nc", ".solved", ".lock") and not path.name.startswith(".")
         if of_chunk and path.stem not in ledger.chunks:
-            ownership.remove(path, folder.root)
+            manifest.unlink([path])
     for name in ledger.chunks:
         mark = folder.mark(name)
-        ownership.make_way(mark, folder.root)
         if not folder.chunk(name).is_file():
-            mark.unlink(missing_ok=True)
+            manifest.unlink([mark])
         elif not mark.is_file():  # a mark keeps its date, on which the workflow's rules depend
             mark.touch()

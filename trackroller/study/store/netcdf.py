@@ -12,6 +12,7 @@ import xarray as xr
 
 from trackroller.errors import InputError
 from trackroller.files import memory
+from trackroller.study.store.manifest import check_unaltered
 
 ANY_BYTES = 1_000_000_000  # any file may declare so many bytes
 MOST_PACKED = 200  # bytes declared for each byte of a larger file; results of a study pack 2 to 20 times
@@ -55,6 +56,22 @@ def read_netcdf(path: Path, what: str, remedy: str) -> xr.Dataset:
         reason = " ".join(str(exc).split())[:200]
         raise InputError(what, str(path), "a netCDF file", remedy, f"cannot be read as netCDF ({reason})") from None
     raise InputError(what, str(path), "a netCDF file that fits the memory", remedy, excess)
+
+
+def read_result(path: Path | str) -> xr.Dataset:
+    """Return a netCDF result in memory, after its content was compared with its digest.
+
+    Raises
+    ------
+    InputError
+        If the file is missing, is not a netCDF file, or declares more values than it can hold.
+    WorkError
+        If the file was altered or damaged after it was written.
+    """
+    path = Path(path)
+    if not path.is_file():
+        raise InputError("results", str(path), "the path of a netCDF file", "Run the study first.", "does not exist")
+    return read_netcdf(check_unaltered(path), "results", "Run the study again.")
 
 
 def _check_attributes(ds: xr.Dataset) -> None:

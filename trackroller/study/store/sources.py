@@ -33,7 +33,7 @@ from functools import cache
 from pathlib import Path
 
 from trackroller.damage.own import digests
-from trackroller.study.store.ownership import write_text
+from trackroller.study.store.manifest import put_text
 
 PACKAGE = Path(__file__).resolve().parents[2]
 SOLVER = "roller"  # the last room that decides the numbers of a case
@@ -142,5 +142,5 @@ def digest_file(folder: str | Path, last: str, *beside: str, leave_out: Iterable
     path = Path(folder) / f"{'.'.join([last, *(Path(name).stem for name in beside[:1])])}.txt"
     digest = code_digest(last, *beside, leave_out=leave_out) + "\n"
     if not path.is_file() or path.read_text(encoding="utf-8") != digest:
-        write_text(path, digest)
+        put_text(path, digest)
     return str(path)

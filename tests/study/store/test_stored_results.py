@@ -12,17 +12,18 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from trackroller.errors import WorkError
+from trackroller.errors import InputError, WorkError
 from trackroller.report.build import build_report
 from trackroller.results.stored_study import open_as_reported
 from trackroller.study.file.load import load_study
 from trackroller.study.run import run_study
-from trackroller.study.store import chunks
+from trackroller.study.store import chunks, manifest
 from trackroller.study.store.crate import damaged_files, read_crate, write_crate
 from trackroller.study.store.folder import StudyFolder
 from trackroller.study.store.identity import Cases, chunk_name
 from trackroller.study.store.ledger import Ledger
-from trackroller.study.store.seal import altered, put_text, recorded, sealing
+from trackroller.study.store.manifest import put_text, replacing, why_altered
+from trackroller.study.store.netcdf import read_result
 
 MATERIALS = "materials:\n  own steel: {like: 42CrMo4, tensile_strength: {value: 1500, unit: MPa, source: sheet}}\n"
 TABLE = "axial_force,friction_coefficient\n" + "".join(f"{20 + i},0.1\n" for i in range(12))
@@ -116,19 +117,37 @@ def grown(tmp_path_factory):
         return Path.cwd()
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("victim", ["inputs/study.yaml", "plan.json", "study.nc", "design.nc"])
-@pytest.mark.parametrize("damage", [Path.unlink, lambda path: path.write_bytes(path.read_bytes()[:-9])])
-def test_a_grown_sample_keeps_its_cases_when_a_file_of_the_study_is_damaged(
-    tmp_path, monkeypatch, solved, grown, victim, damage
+@pytest.mark.parametrize("victim", ["inputs/study.yaml", "study.nc", "design.nc"])
+@pytest.mark.parametrize("altered", [True, False])
+def test_a_grown_sample_keeps_its_cases_when_a_file_of_the_study_is_altered_or_lost(
+    tmp_path, monkeypatch, solved, grown, victim, altered
 ):
     monkeypatch.chdir(shutil.copytree(grown, tmp_path, dirs_exist_ok=True))
     before = xr.load_dataset("results/grown/study.nc")
-    damage(Path("results/grown") / victim)
+    path = Path("results/grown") / victim
+    if altered:
+        path.write_bytes(path.read_bytes()[:-9])
+        with pytest.raises(InputError, match=rf"{victim}' was altered.*Move or remove it, then start again"):
+            _grow(13)
+    path.unlink()
     again = _grow(13)
     np.testing.assert_array_equal(again["axial_force"], before["axial_force"])
     assert _grow(20)["axial_force"].values[:13].tolist() == before["axial_force"].values.tolist()
     assert set(solved().values()) == {1} and sum(solved().values()) == 7, "the 13 cases of before are kept"
+
+
+def test_solved_cases_that_are_copied_into_another_folder_count_there(tmp_path, monkeypatch, solved, grown):
+    """What a damaged `plan.json` leaves to do: the folder is moved away, and its chunks go into a new one."""
+    monkeypatch.chdir(shutil.copytree(grown, tmp_path, dirs_exist_ok=True))
+    root = Path("results/grown")
+    before = (root / "study.nc").read_bytes()
+    (root / "plan.json").write_text((root / "plan.json").read_text()[:-9])
+    with pytest.raises(InputError, match=r"its plan\.json is damaged.*move the folder away"):
+        _grow(13)
+    root.rename("results/old")
+    shutil.copytree("results/old/chunks", StudyFolder(root).create().root / "chunks", dirs_exist_ok=True)
+    _grow(13)
+    assert sum(solved().values()) == 0 and (root / "study.nc").read_bytes() == before
 
 
 def _draw(results, out_dir: Path) -> list[str]:
@@ -166,7 +185,7 @@ def test_results_written_just_before_an_interrupt_do_not_look_altered(tmp_path, 
     _grow(7)
     folder = StudyFolder(Path("results/grown"))
     build_report(folder)
-    with pytest.raises(KeyboardInterrupt), sealing(folder.gathered) as beside:
+    with pytest.raises(KeyboardInterrupt), replacing(folder.gathered) as beside:
         data = xr.load_dataset(folder.gathered)
         data.assign_attrs(date="later").to_netcdf(beside)
         raise KeyboardInterrupt
@@ -210,14 +229,12 @@ def test_a_crate_without_the_plan_still_notices_an_altered_result(tmp_path, monk
     build_report(StudyFolder(Path("results/grown")))
     shutil.copytree("results/grown", "posted", ignore=shutil.ignore_patterns("plan", "plan.json", "chunks"))
     shutil.copy("posted/design.nc", "posted/study.nc")
-    from trackroller.study.store.seal import read_result
-
     with pytest.raises(WorkError, match=r"study\.nc was altered.*ro-crate-metadata"):
         read_result("posted/study.nc")
 
 
 @pytest.mark.slow
-def test_a_report_of_earlier_results_leaves_the_crate_and_the_figures(tmp_path, monkeypatch):
+def test_a_report_of_earlier_results_leaves_the_crate_and_stays_in_the_folder(tmp_path, monkeypatch):
     monkeypatch.setattr("trackroller.report.figures.study.draw_all", _draw)
     monkeypatch.chdir(tmp_path)
     _grow(7)
@@ -232,16 +249,23 @@ def test_a_report_of_earlier_results_leaves_the_crate_and_the_figures(tmp_path, 
     _grow(13)
     write_crate(folder.root)
     assert {"study.nc"} == {name for name in read_crate(folder.root) if not name.startswith(("inputs", "design"))}
+    assert (folder.root / "report.html").is_file() and not manifest.digests_of(folder.root / "report.html")
     assert open_as_reported(folder.root).analysis is None
     build_report(folder)
     assert "report.html" in read_crate(folder.root) and damaged_files(folder.root) == {}
 
 
 def test_a_result_that_is_written_while_it_is_checked_does_not_look_altered(tmp_path, monkeypatch):
-    path = tmp_path / "study.nc"
-    for text in ("old", "new"):
-        put_text(path, text)
-    now = recorded(path)
-    records = iter([{"study.nc": "0" * 64}, now, now])
-    monkeypatch.setattr("trackroller.study.store.seal.recorded", lambda path: next(records))
-    assert altered(path) is None
+    folder = StudyFolder(tmp_path / "s").create()
+    put_text(folder.gathered, "old")
+    read = manifest.digest_of_file
+
+    def slow(path):
+        if not written:  # another process replaces the file after the manifest was read
+            written.append(folder.gathered)
+            put_text(folder.gathered, "new")
+        return read(path)
+
+    written: list[Path] = []
+    monkeypatch.setattr(manifest, "digest_of_file", slow)
+    assert why_altered(folder.gathered) is None and written

@@ -22,16 +22,15 @@ from test_edits import STUDY, command, draw_one
 
 import trackroller as tr
 from trackroller.app import studies
-from trackroller.errors import InputError, WorkError
+from trackroller.errors import InputError
 from trackroller.files import sha256
 from trackroller.report.build import build_report
 from trackroller.study.file.load import load_study
 from trackroller.study.run import run_study
-from trackroller.study.store import digests, ownership
-from trackroller.study.store.digests import record_digest
-from trackroller.study.store.folder import StudyFolder
+from trackroller.study.store import manifest
+from trackroller.study.store.folder import StudyFolder, check_for_workflow, delete_study
 from trackroller.study.store.ledger import working_ledger
-from trackroller.study.store.seal import put_text
+from trackroller.study.store.manifest import CHANGING, OUTDATED, Manifest, digest_of_text, put_text
 from trackroller.yaml_file import parse_mapping
 
 ROOT = Path("results/edited")
@@ -108,14 +107,6 @@ def plant(path: Path, content: bytes = FOREIGN) -> None:
     path.write_bytes(content)
 
 
-def kept(path: Path, told: str, content: bytes = FOREIGN) -> bool:
-    """Return whether a planted file is where it was, or was moved to `aside/` and named."""
-    if path.is_file() and path.read_bytes() == content:
-        return True
-    aside = [file for file in (ROOT / "aside").rglob(f"{path.name}*") if file.read_bytes() == content]
-    return bool(aside) and str(aside[0]) in told and str(path) in told
-
-
 @pytest.mark.slow
 def test_no_command_touches_a_folder_that_somebody_else_filled(tmp_path, monkeypatch, written, original):
     solve_quickly(monkeypatch)
@@ -180,35 +171,36 @@ def run_into(name: Path) -> tuple[int, str]:
 @pytest.mark.parametrize(
     ("state", "step"), [("begun", 1), ("finished", 4), pytest.param("finished", 1, marks=pytest.mark.long)]
 )
-def test_a_file_at_any_path_in_a_study_is_refused_or_moved_aside_and_never_lost(
+def test_a_file_at_any_path_in_a_study_stops_the_command_that_would_write_there(
     finished, original, written, state, step
 ):
-    """In a study that has begun no record names the file; in a finished one, its record has another digest."""
+    """In a study that has begun the manifest does not list the file; in a finished one, with another digest."""
     if state == "begun":
         shutil.rmtree(ROOT)
         StudyFolder(ROOT).create()
     else:
         Path("study.yaml").write_text(BIGGER)  # so that everything is written again
     before = Path(shutil.copytree(ROOT, "before"))
-    seen = {"refused": 0, "aside": 0, "left": 0}
+    seen = {"refused": 0, "left": 0}
     for name in list(written)[::step]:
-        if (original / ROOT / name).is_dir() or (state == "begun" and str(name) == "plan.json"):
+        if (original / ROOT / name).is_dir():
             continue
         path = ROOT / name
         plant(path)
         code, told = run_into(name)
-        if path.is_file() and path.read_bytes() == FOREIGN:
-            seen["refused" if code else "left"] += 1
-            named = "was altered" if code == 1 else "Move the file away"
-            assert code in (0, 1, 2) and (not code or (str(path) in told and named in told)), (name, told)
-        else:
-            files = [file for file in (ROOT / "aside").rglob("*") if file.is_file()]
-            (aside,) = [file for file in files if file.read_bytes() == FOREIGN]
-            seen["aside"] += 1
-            assert str(aside) in told and path.name in told, (name, told)
+        assert path.read_bytes() == FOREIGN, name
+        assert code in (0, 2), (name, told)
+        if code:
+            remedy = "restore its plan.json" if str(name) == "plan.json" else "Move or remove it, then start again"
+            assert name.name in told and remedy in told, (name, told)
+            path.unlink()
+        seen["refused" if code else "left"] += 1
+        if code and name.name != "plan.json" and not (name.name == "files.jsonl" and state == "finished"):
+            code, told = run_into(name)
+            assert code == 0, ("the remedy works", name, told)
         shutil.rmtree(ROOT)
         shutil.copytree(before, ROOT)
-    assert seen["refused"] and seen["aside"], seen
+    assert seen["refused"] >= 4, seen
 
 
 @pytest.mark.slow
@@ -219,7 +211,6 @@ def test_files_beside_ours_stay_where_they_are(finished, written):
     extra += [Path("plan", f"0123456789abcdef{end}") for end in (".nc", ".lock", ".solved")]
     extra += [Path(place, ".study.nc.4711-0123456789abcdef.tmp") for place in ("", "plan", "chunks")]
     extra += [Path("unfinished", name) for name in ("report.html", "figures/mine.png", "notes.txt")]
-    extra += [Path("aside", name) for name in ("study.nc", "chunks/notes.txt")]
     extra += map(Path, (".other.tmp/inside.txt", "figures/mine.png", "inputs/limits/mine.py"))
     for name in extra:
         plant(ROOT / name)
@@ -238,7 +229,7 @@ def test_links_inside_a_study_are_refused(finished, written, words):
     Path("study.yaml").write_text(BIGGER)
     before = Path(shutil.copytree(ROOT, "before"))
     chosen = [Path(name) for name in ("inputs", "plan", "chunks", "figures", "study.nc", "report.html", "plan.json")]
-    chosen += [name for name in written if name.suffix in (".lock", ".sha256", ".yaml")][:4]
+    chosen += [name for name in written if name.suffix in (".lock", ".yaml")][:4]
     for name in [*chosen, Path("new-link"), Path("chunks", "new-link.nc"), Path("figures", "new-link")]:
         path = ROOT / name
         if path.is_dir():
@@ -285,6 +276,7 @@ def test_a_link_that_leads_nowhere_is_named(tmp_path, monkeypatch):
 @pytest.mark.parametrize("name", ["study.nc", "design.nc", "ro-crate-metadata.json", "chunk", "link", "folder link"])
 def test_a_file_that_comes_during_the_run_is_kept(tmp_path, monkeypatch, name):
     """Ownership is asked again just before a file is replaced or removed, not only when the run begins."""
+    solve_quickly(monkeypatch)
     monkeypatch.chdir(tmp_path)
     Path("study.yaml").write_text(STUDY)
     study, outside = load_study("study.yaml"), tmp_path / "outside"
@@ -304,60 +296,114 @@ def test_a_file_that_comes_during_the_run_is_kept(tmp_path, monkeypatch, name):
             plant(path)
         return fake_solver.solve(design)
 
-    with pytest.raises(WorkError if name == "chunk" else InputError), warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        run_study(study, solver=solver)
-    if name == "chunk":  # the files that came stand where other chunks should be
-        lines: list[str] = []
-        run_study(study, solver=fake_solver.solve, tell=lines.append)
-        assert any("corrupt" in line and "aside/chunks" in line for line in lines)
+    with pytest.raises(InputError):
+        build_report(run_study(study, solver=solver).folder)
     assert snapshot(outside) == {str(outside / "study.nc"): (stat.S_IFREG, FOREIGN)}
     if "link" not in name:
         found = [path for path in ROOT.rglob("*") if path.is_file() and path.read_bytes() == FOREIGN]
-        assert found, "in its place, or aside"
+        assert found, "in its place"
 
 
-def test_only_noted_temporary_files_are_swept(tmp_path, monkeypatch):
+def test_only_the_scratch_folder_is_swept(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     folder = StudyFolder(ROOT).create()
-    noted, other = (ROOT / f".{name}.nc.99-0123456789abcdef.tmp" for name in ("study", "mine"))
-    ownership.note(ROOT, noted)
-    for path in (noted, other):
-        path.write_bytes(FOREIGN)
-    with open(ROOT / ownership.NOTES, "a") as stream:
-        stream.write("../../outside/.x.1-0123456789abcdef.tmp\n")
-    plant(tmp_path / "outside/.x.1-0123456789abcdef.tmp")
-    plant(folder.gathered)
-    ownership.sweep(ROOT)
-    assert not noted.exists() and other.exists() and (tmp_path / "outside/.x.1-0123456789abcdef.tmp").exists()
-    assert folder.gathered.read_bytes() == FOREIGN
+    ours = Manifest(ROOT).scratch(folder.gathered)
+    other = ROOT / ".mine.nc.99-0123456789abcdef.tmp"
+    for path in (ours, other, folder.gathered):
+        plant(path)
+    manifest.sweep(ROOT)
+    assert not ours.exists() and other.read_bytes() == folder.gathered.read_bytes() == FOREIGN
 
 
-def test_what_a_killed_process_left_is_ours_and_can_be_deleted(tmp_path, monkeypatch):
-    """Before its first mark, and in the folders that it fills for later."""
+@pytest.mark.parametrize("left", ["no mark", "an empty mark", "the mark", "an empty list"])
+def test_what_a_killed_process_left_is_ours_and_can_be_deleted(tmp_path, monkeypatch, left):
+    """Before its mark is whole, and in the folders that it fills for later."""
     monkeypatch.chdir(tmp_path)
-    folder, end = StudyFolder(ROOT).create(), "99-0123456789abcdef.tmp"
-    folder.plan_file.rename(ROOT / f".plan.json.{end}")
-    ownership.note(ROOT, ROOT / f".plan.json.{end}")
-    assert ownership.is_study(ROOT)
-    ownership.note(ROOT, ROOT / f".figures.{end}")
-    plant(ROOT / f".figures.{end}" / "one.svg")
+    folder = StudyFolder(ROOT)
+    ROOT.mkdir(parents=True)
+    if left == "an empty mark":
+        folder.plan_file.touch()
+    elif left == "the mark":
+        folder.create()
+    elif left == "an empty list":
+        folder.create()
+        Manifest(ROOT).path.touch()
     folder.create()
-    ownership.delete_study(ROOT)
+    Manifest(ROOT).note({"study.nc": "0"})
+    assert Manifest(ROOT).contents() == {"plan/files.jsonl": [CHANGING], "study.nc": ["0"]}
+    assert manifest.is_study(ROOT)
+    plant(Manifest(ROOT).scratch(ROOT / "figures") / "one.svg")
+    delete_study(ROOT)
     assert not ROOT.exists()
 
 
-@pytest.mark.long
+def test_a_kill_between_the_digest_and_the_file_leaves_a_file_of_ours(finished, monkeypatch):
+    """The manifest has both digests, so the old and the new file are ours, and the next run replaces either."""
+    page = ROOT / "explorer.html"
+    real = os.replace
+
+    def killed(source, goal):
+        if Path(goal) == page:
+            raise SystemExit
+        real(source, goal)
+
+    monkeypatch.setattr(os, "replace", killed)
+    for text in ("new page", "newer page"):  # killed twice
+        with pytest.raises(SystemExit):
+            put_text(page, text)
+    monkeypatch.setattr(os, "replace", real)
+    listed = Manifest(ROOT).contents()["explorer.html"]
+    assert listed[-2:] == [digest_of_text("new page"), digest_of_text("newer page")]
+    assert not manifest.digests_of(page) and manifest.why_altered(page) is None
+    for content in (page.read_bytes(), b"new page", b"newer page"):
+        page.write_bytes(content)
+        Manifest(ROOT).check(page)
+    plant(page)
+    with pytest.raises(InputError, match=r"explorer\.html.*altered.*Move or remove it"):
+        put_text(page, "newest page")
+    assert page.read_bytes() == FOREIGN
+    page.unlink()
+    put_text(page, "newest page")
+    assert manifest.digests_of(page) == {"explorer.html": digest_of_text("newest page")}
+
+
+def test_a_line_of_the_manifest_that_was_cut_off_spoils_no_other(finished):
+    folder = Manifest(ROOT)
+    before = folder.contents()
+    with open(folder.path, "ab") as stream:
+        stream.write(b'{"file": "study.nc", "sha25')
+    assert folder.contents() == before
+    put_text(ROOT / "explorer.html", "new page")
+    listed = folder.contents()
+    assert listed.pop("explorer.html")[-1] == digest_of_text("new page")
+    assert listed == {name: known for name, known in before.items() if name != "explorer.html"}
+
+
+def test_without_its_manifest_a_study_is_refused_by_its_files(finished):
+    """A file of somebody else in place of the manifest is named; without any, so are the files that it listed."""
+    plant(Manifest(ROOT).path)
+    before = snapshot(ROOT)
+    code, _, err = command(("run", "study.yaml", "-q"))
+    assert code == 2 and "files.jsonl' was not written by trackroller" in err and snapshot(ROOT) == before
+    Manifest(ROOT).path.unlink()
+    code, _, err = command(("run", "study.yaml", "-q"))
+    assert code == 2 and "design.nc" in err and "study.nc" in err and "Move or remove these files" in err
+    for name in ("design.nc", "study.nc", "ro-crate-metadata.json"):  # what the message says
+        (ROOT / name).unlink()
+    code, _, err = command(("run", "study.yaml", "-q"))
+    assert code == 0, err
+
+
 @pytest.mark.parametrize("name", ["figures/../../../victim", "/victim"])
-def test_a_record_that_names_a_file_outside_removes_nothing_there(finished, tmp_path, name):
-    """Somebody may send an archive of results whose records name other files of ours, with the right digests."""
+def test_a_manifest_that_names_a_file_outside_removes_nothing_there(finished, tmp_path, name):
+    """Somebody may send an archive of results whose manifest names other files of ours, with the right digests."""
     plant(tmp_path / "victim")
-    known = tmp_path / "victim" if name.startswith("/") else name
-    record = ROOT / "plan" / "figures.sha256"
-    record.write_text(f"{sha256(tmp_path / 'victim')}  ../{known}\n{record.read_text()}")
+    known = str(tmp_path / "victim") if name.startswith("/") else name
+    Manifest(ROOT).note({known: sha256(tmp_path / "victim")})
     command(("report", "edited"))
     run(BIGGER)
-    assert (tmp_path / "victim").read_bytes() == FOREIGN
+    studies.delete("edited", "edited")
+    assert (tmp_path / "victim").read_bytes() == FOREIGN and not ROOT.exists()
 
 
 def test_devices_and_pipes_in_the_place_of_files_stop_no_command_for_ever(finished):
@@ -366,8 +412,11 @@ def test_devices_and_pipes_in_the_place_of_files_stop_no_command_for_ever(finish
         path.unlink()
         os.mkfifo(path)
     code, _, err = command(("run", "study.yaml", "-q"))
+    assert code == 2 and str(name) in err and "study.nc" in err and "Move or remove these files" in err, err
+    for path in (ROOT / "study.nc", name):
+        path.unlink()
+    code, _, err = command(("run", "study.yaml", "-q"))
     assert code == 0 and (ROOT / "study.nc").is_file() and name.is_file(), err
-    assert sum(stat.S_ISFIFO(path.stat().st_mode) for path in (ROOT / "aside").rglob("*")) == 2
 
 
 # a study is found by its path
@@ -477,19 +526,13 @@ def test_a_rerun_that_was_stopped_goes_on(finished, solved):
     assert sum(solved().values()) == 12 and set(solved().values()) == {1}
 
 
-def test_each_record_is_that_of_a_result(finished):
-    """No temporary file or folder gets a record, which would stay when the file takes its place."""
-    names = {path.name for path in (ROOT / "plan").iterdir() if path.suffix == ".sha256"}
-    assert names == {f"{name}.sha256" for name in ownership.RESULTS if (ROOT / name).exists()}
-
-
 def test_the_plan_does_not_tell_where_the_study_file_lies(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     Path("study.yaml").write_text(STUDY)
     Path("elsewhere").mkdir()
     for study in (Path("study.yaml"), tmp_path / "study.yaml", Path("elsewhere/../study.yaml")):
         run_study(load_study(study), solver=fake_solver.solve)
-        for path in (ROOT / "plan.json", *(ROOT / "plan").iterdir()):
+        for path in (ROOT / "plan.json", *(path for path in (ROOT / "plan").iterdir() if path.is_file())):
             assert str(tmp_path).encode() not in path.read_bytes(), path
 
 
@@ -507,79 +550,80 @@ def test_a_run_on_a_copy_with_other_dates_changes_no_byte_of_it(finished, solved
     assert sum(solved().values()) == 0 and command(("verify", "results/edited"))[0] == 0
 
 
-def test_records_are_read_once_for_all_files(finished, monkeypatch):
-    read: list[Path] = []
-    known = digests.read_record
-
-    def noted(record):
-        read.append(record)
-        return known(record)
-
-    monkeypatch.setattr(digests, "read_record", noted)
-    ownership.free_for_workflow(ROOT, print)
-    assert len(read) == len({*read}) >= 5
-    read.clear()
-    ownership.delete_study(ROOT)
-    assert len(read) == len({*read}) >= 5 and not ROOT.exists()
+def test_the_manifest_lists_every_result(finished):
+    proved = ("plan/", "chunks/", "plan.json")
+    files = {path.relative_to(ROOT).as_posix() for path in ROOT.rglob("*") if path.is_file()}
+    results = {name for name in files if not name.startswith(proved)}
+    assert set(Manifest(ROOT).contents()) == results | {"plan/files.jsonl"}
+    for name in results:
+        assert manifest.digests_of(ROOT / name) == {name: sha256(ROOT / name)}
 
 
-# folders of earlier versions
-
-
-def as_earlier(root: Path, outdated: tuple[str, ...] = ()) -> None:
-    """Make the folder of a study look as an earlier version left it: without our mark and most records."""
-    record = {k: v for k, v in json.loads((root / "plan.json").read_text()).items() if k not in ("digest", "made_by")}
-    for name, one in record["inputs"].items():
-        one["path"] = f"/home/somebody/{name}"
-    (root / "plan.json").write_text(json.dumps({**record, "digest": record_digest(record)}))
-    for name in ("inputs", "explorer.html", *outdated):
-        (root / "plan" / f"{name}.sha256").unlink()
-
-
-@pytest.mark.long
-def test_a_folder_of_an_earlier_version_stays_ours(finished, solved):
-    as_earlier(ROOT)
-    assert command(("status", "edited"))[0] == 0
-    run(STUDY)
-    assert sum(solved().values()) == 0 and not (ROOT / "aside").exists()
+def test_results_that_grow_leave_an_outdated_report_which_is_still_ours(finished):
+    run(BIGGER, report=False)
+    for name in ("report.html", "sensitivity.nc", "figures"):
+        assert (ROOT / name).exists() and not manifest.digests_of(ROOT / name)
+    assert not (ROOT / "ro-crate-metadata.json").exists(), "it listed earlier results"
+    assert Manifest(ROOT).contents()["report.html"][-1] == OUTDATED
     run(BIGGER)
-    assert sum(solved().values()) == 24 and not (ROOT / "aside").exists()
-    assert command(("explore", "results/edited"))[0] == 0 and command(("verify", "results/edited"))[0] == 0
-    assert "/home/somebody" not in (ROOT / "plan.json").read_text()
+    assert manifest.digests_of(ROOT / "report.html") and command(("verify", "results/edited"))[0] == 0
 
 
-def test_an_outdated_report_of_an_earlier_version_is_replaced_and_what_is_unsure_is_kept(finished):
-    as_earlier(ROOT, outdated=("figures", "tables", "report.html", "sensitivity.nc", "ro-crate-metadata.json"))
-    plant(ROOT / "tables" / "tables.xlsx")
-    with pytest.warns(UserWarning, match="kept as results/edited/aside"):
-        assert command(("report", "edited"))[0] == 0
-    assert (ROOT / "aside/tables/tables.xlsx").read_bytes() == FOREIGN
-    assert not (ROOT / "aside/report.html").exists(), "its title tells that it is ours"
-    assert command(("verify", "results/edited"))[0] == 0
+def test_a_log_is_ours_by_its_name_once_it_is_listed(finished):
+    log = ROOT / "logs" / "gather.log"
+    log.parent.mkdir()
+    assert manifest.claim(log) == log and Manifest(ROOT).contents()["logs/gather.log"] == [CHANGING]
+    for text in ("one line\n", "another\n"):
+        log.write_text(text)
+        manifest.claim(log)
+        check_for_workflow(ROOT)
+    plant(ROOT / "logs" / "report.log")
+    with pytest.raises(InputError, match=r"report\.log.*was not written by trackroller"):
+        manifest.claim(ROOT / "logs" / "report.log")
+    with pytest.raises(InputError, match=r"report\.log.*was not written by trackroller"):
+        check_for_workflow(ROOT)
 
 
-@pytest.mark.parametrize("left", ["a lock", "a list", "half a list"])
-def test_what_a_killed_run_of_an_earlier_version_left_is_ours(tmp_path, monkeypatch, original, left):
-    monkeypatch.chdir(tmp_path)
-    (ROOT / "plan").mkdir(parents=True)
-    (ROOT / "chunks").mkdir()
-    (ROOT / "plan" / ".lock").touch()
-    cases = next((original / ROOT / "plan").glob("*.nc"))
-    if left == "a list":
-        shutil.copy(cases, ROOT / "plan")
-        (ROOT / "inputs").mkdir()
-        (ROOT / "inputs" / "study.yaml").write_text(STUDY)
-    elif left == "half a list":
-        (ROOT / "plan" / f".{cases.name}.4711.tmp").write_bytes(cases.read_bytes()[:100])
-    run(STUDY, report=False)
+# folders that are not of this version
 
 
-def test_a_folder_whose_mark_is_damaged_is_still_ours(finished, solved):
+def other_format(record: dict) -> dict:
+    return record | {"store_format": manifest.STORE_FORMAT + 1}
+
+
+def without_manifest(record: dict) -> dict:
+    """Return the record as earlier versions wrote it."""
+    return {key: value for key, value in record.items() if key != "manifest"}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("change", [other_format, without_manifest])
+def test_a_folder_of_another_version_is_read_and_not_written(finished, solved, change):
+    record = json.loads((ROOT / "plan.json").read_text())
+    record.pop("digest")
+    record = change(record)
+    (ROOT / "plan.json").write_text(json.dumps(record | {"digest": manifest._digest_of(record)}))
+    before = snapshot(Path("results"))
+    for words in (("verify", "results/edited"), ("best", "results/edited"), ("report", "edited", "-o", "cases.csv")):
+        code, out, err = command(words)
+        assert code == 0, (words, out, err)
+        assert snapshot(Path("results")) == before, words
+    for words in (("run", "study.yaml"), ("report", "edited"), ("status", "edited"), ("plot", "edited")):
+        code, _, err = command(words)
+        last = err.strip().splitlines()[-1]
+        assert code == 2 and "was made by another version" in last and "Move the folder away" in last, (words, err)
+        assert snapshot(Path("results")) == before, words
+    ROOT.rename("results/old")  # what the message says
+    assert command(("run", "study.yaml", "-q"))[0] == 0 and sum(solved().values()) == 12
+
+
+def test_a_folder_whose_mark_is_damaged_is_refused(finished, solved):
+    plan = (ROOT / "plan.json").read_bytes()
     plant(ROOT / "plan.json")
-    lines: list[str] = []
-    run_study(load_study("study.yaml"), solver=fake_solver.solve, tell=lines.append)
-    assert sum(solved().values()) == 0 and (ROOT / "aside/plan.json").read_bytes() == FOREIGN
-    assert any("plan.json was altered" in line and "aside/plan.json" in line for line in lines)
+    code, _, err = command(("run", "study.yaml"))
+    assert code == 2 and "plan.json is damaged or somebody else's" in err and "restore its plan.json" in err
+    (ROOT / "plan.json").write_bytes(plan)  # what the message says
+    assert command(("run", "study.yaml", "-q"))[0] == 0 and sum(solved().values()) == 0
 
 
 # other folders that the program writes
@@ -651,12 +695,3 @@ def test_an_explorer_beside_a_lone_file_replaces_only_an_explorer(finished):
     plant(Path("explorer.html"))
     code, _, err = command(("explore", "study.nc"))
     assert code == 2 and "-o" in err and Path("explorer.html").read_bytes() == FOREIGN
-
-
-def test_a_record_that_is_not_ours_is_not_overwritten(finished):
-    plant(ROOT / "plan" / "explorer.html.sha256")
-    page = (ROOT / "explorer.html").read_bytes()
-    with pytest.warns(UserWarning, match="kept as"):
-        put_text(ROOT / "explorer.html", "new")
-    assert (ROOT / "aside" / "plan" / "explorer.html.sha256").read_bytes() == FOREIGN
-    assert (ROOT / "aside" / "explorer.html").read_bytes() == page, "nothing proves any more that it is ours"
