@@ -13,7 +13,7 @@ from command_line import trackroller
 from typer.testing import CliRunner
 
 from trackroller.cli.main import app
-from trackroller.errors import InputError, WorkError
+from trackroller.errors import InputError
 from trackroller.study.store.crate import CRATE, compare_results, damaged_files, read_crate
 from trackroller.study.store.folder import StudyFolder
 from trackroller.study.store.inputs import study_of_folder
@@ -139,7 +139,7 @@ def test_a_plan_whose_inputs_are_a_list_is_refused(crate, tmp_path):
     record["inputs"] = list(record["inputs"])
     del record["digest"]
     (copy / MARK).write_text(signed(record))
-    with pytest.raises(WorkError, match=r"plan\.json was altered or damaged"):
+    with pytest.raises(InputError, match=r"plan\.json is damaged"):
         study_of_folder(StudyFolder(copy))
 
 
