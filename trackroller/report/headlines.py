@@ -44,7 +44,7 @@ of the curve), `at_from`, `at_to` [unit of the output]; `asked`: the same of a f
 `best`, by `Answer.kind` (`one`, `front`, `front_required`; `solve_finer`, `open`, `none` with
 `nearest`): `designs`, a list of dict: `name` (as one of `names`),
 `at` (`corner`, `knee` or ''), `goals` and `required` (lists of {words, units, value}; `required` holds outputs of
-requirements that are no goals), `stopped` (search stopped before this end);
+requirements that are no goals; a goal with `is_choice` stands in the name), `stopped` (search stopped before this end);
 `binds` (requirement, limit or end of a range in words), `accuracy` (of these numbers), `extrapolated`,
 `exceeded`, `second`.
 
@@ -400,9 +400,9 @@ def best(answer: Answer) -> Headline:
     if answer.kind == "front":
         return _front(answer, designs)
     first = designs[0]
-    goals = listing([_goal(one) for one in (*first["goals"], *first["required"])])
+    values = [one for one in (*first["goals"], *first["required"]) if not one.get("is_choice")]
     accuracy = f" at {head['accuracy']}" if head.get("accuracy") else ""
-    clauses = [f"{goals}{_beyond(head)}{accuracy}"]
+    clauses = [f"{listing([_goal(one) for one in values])}{_beyond(head)}{accuracy}"] if values else []
     binds = _short(head.get("binds"))
     if binds:
         clauses.append(f"bound by {binds}")

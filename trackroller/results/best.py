@@ -271,13 +271,15 @@ def _design(found: _Found, number: int) -> dict[str, Any]:
     goals = []
     for goal, value in zip(found.goals, found.optima[number]["reference"], strict=True):
         _, units, words = goal_column(found.results, goal)
-        goals.append({"words": words, "units": units, "value": float(value)})
+        is_choice = judged_by(goal)[1] in found.results.design.meta["outer"]
+        goals.append({"words": words, "units": units, "value": float(value), "is_choice": is_choice})
     required = []
     for (_, own), value in zip(found.judges, found.optima[number]["required"][1], strict=True):
         if own.output[0] not in {judged_by(goal)[1] for goal in found.goals} and not _is_drawn(found):
             required.append({"words": own.output[1], "units": own.output[2], "value": float(value)})
     stopped = _is_stopped(found, number)
-    return {"name": _name(found, number), "at": at, "goals": goals, "required": required, "stopped": stopped}
+    name = {choice: _level(choice, value) for choice, value in choices_of(found.results, number).items()}
+    return {"name": name, "at": at, "goals": goals, "required": required, "stopped": stopped}
 
 
 def _nearest(found: _Found, number: int) -> dict[str, Any]:
