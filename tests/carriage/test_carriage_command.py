@@ -246,12 +246,12 @@ def run(*words):
 def test_tables_and_page(folder):
     done = run("shuttle.yaml", "--report", "page.html")
     assert done.exit_code == 0, done.output
-    assert "is the worst one" in done.output
-    assert "By the maker's catalogue" in done.output
+    assert "ends first" in done.output
+    assert "By the catalogue" in " ".join(done.output.split())
     page = (folder / "page.html").read_text(encoding="utf-8")
     for words in ("Margins", "Load factor", "own radius", "data:image/svg+xml"):
         assert words.lower() in page.lower()
-    assert page.count("<table>") == 5
+    assert page.count("<table") >= 5
 
 
 def test_the_spectrum_is_read_as_it_is(folder):

@@ -18,6 +18,7 @@ import pytest
 import xarray as xr
 
 from trackroller.cli.main import app, run_app
+from trackroller.errors import InputError
 from trackroller.report.build import build_report
 from trackroller.study.file.load import load_study
 from trackroller.study.run import run_study
@@ -168,6 +169,9 @@ def test_altered_results_are_refused_by_name_and_never_sealed_again(finished, na
     code, out, err = command(COMMANDS[name])
     assert code == 1 and "study.nc" in out + err
     assert (finished / "ro-crate-metadata.json").read_bytes() == before
+    with pytest.raises(InputError, match=r"study\.nc' was altered or damaged"):
+        run_study(load_study("study.yaml"), solver=fake_solver.solve)
+    (finished / "study.nc").unlink()  # as the message says
     run_study(load_study("study.yaml"), solver=fake_solver.solve)
     assert command(COMMANDS["report"])[0] == 0 and command(COMMANDS["verify"])[0] == 0
 

@@ -103,7 +103,7 @@ def _of_body(
     curve = SNCurve.of(material, str(ds.attrs["life_rule"]))
     stress = ds.get("fatigue_stress", ds.get("peak_stress"))
     by_contact = ds["life_cycles"].sel(body=body)
-    contact = int(by_contact.idxmin("contact"))
+    contact = float(by_contact.idxmin("contact"))  # NaN where the contacts have no lives
     lives = {MEDIAN: float(by_contact.min())}
     if curve.scatters and stress is not None:
         own = stress.sel(body=body).values
