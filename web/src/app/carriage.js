@@ -55,7 +55,7 @@ export function carriageView(state, { changed }) {
     paint();
   });
   const picture = carriagePicture({ moved: move });
-  const loads = el("div", { class: "wide", tabindex: "0", role: "region", "aria-label": "Loads of the rollers" });
+  const loads = el("div", { class: "wide", tabindex: "0", role: "region", "aria-label": "Loads of the rollers by statics" });
   const lives = el("div", { class: "wide", tabindex: "0", role: "region", "aria-label": "Lives and margins" });
   const sentences = el("ul", { class: "sentences" });
   let [places, forces] = [null, null];

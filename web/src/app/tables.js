@@ -22,7 +22,7 @@ export function limitTable({ heads, rows, bars, axis }, complete = true) {
   const used = heads.findIndex(({ name }) => name === "used_low");
   const now = heads.findIndex(({ name }) => name === "value");
   const shown = heads.map((_, i) => i).filter((i) => i !== now);
-  const head = shown.flatMap((i) => [el("th", { scope: "col", title: heads[i].meaning, class: heads[i].kind }, unit(heads[i])), i === used && axis ? el("th", { class: "bars" }, drawn(axis)) : null]);
+  const head = shown.flatMap((i) => [el("th", { scope: "col", title: heads[i].meaning, class: heads[i].kind }, unit(heads[i])), i === used && axis ? el("td", { class: "bars" }, drawn(axis)) : null]);
   const body = rows.map((row, at) =>
     el(
       "tr",
