@@ -54,6 +54,9 @@ MOST_ON_RIDGE, OF_GRID = 128, 84  # points on the line where sliding begins, for
 STICKS = 1.0 - 1e-4  # square of the traction over its bound below which an element sticks
 NEAR_RIM = 0.98  # distance from the centre up to which the ridge is followed
 SEED_WORTH = 0.85  # least stress of a seed over the largest
+# The highest stress of the other kind, at the surface or below it, may lie this many times as far behind. Coarse rules
+# and few elements lower a ridge at the surface by some per cent, and hardly a summit below it.
+RIVAL_LAG = 2.0
 
 SPLIT = (0.02, 0.06)  # distances from the pole over the semi-axis at which a spike begins to count, and counts in full
 
@@ -177,16 +180,37 @@ def along_turn(patch, u, out):
 
 
 @compiled
+def best_rival(depth, values):
+    """Return the index of the largest of `values` (m,) among the points of the other kind; -1 without such a point.
+
+    The kinds are points at the surface, with `depth` (m,) zero, and points below it. The other kind is the one to
+    which the point with the largest value does not belong.
+    """
+    shallow = depth[values.argmax()] == 0.0
+    best = -1
+    for k in range(values.size):
+        if (depth[k] == 0.0) != shallow and (best < 0 or values[k] > values[best]):
+            best = k
+    return best
+
+
+@compiled
 def best_seeds(points, values, count, apart):
     """Return the indices of up to `count` scan points (m, 3) with the largest `values` (m,).
 
-    The points are `apart` from each other; they have at least the share SEED_WORTH of the largest value.
+    They have at least the share SEED_WORTH of the largest value. The second one is the best of the other kind, see
+    `best_rival`: the highest stress at the surface and the highest below it are separate hills. The others are `apart`
+    from each other.
     """
     left, chosen, number = values.copy(), np.empty(count, np.int64), 0
-    enough = SEED_WORTH * values.max()
+    enough, rival = SEED_WORTH * values.max(), best_rival(points[:, 2], values)
+    if rival >= 0 and values[rival] <= enough:
+        rival = -1
     while number < count:
         best = left.argmax()
-        if not left[best] > enough:
+        if number == 1 and rival >= 0:
+            best = rival
+        elif not left[best] > enough:
             break
         chosen[number] = best
         number += 1
@@ -447,19 +471,26 @@ def polish(target, climbs, k, rules, smallest, sweeps):
 
 @compiled
 def standing(climbs, share, gap, most):
-    """Return which climbs stand, (m,): up to `most` of each body; the others are given up.
+    """Return which climbs stand, (m,): up to `most` of each body, or two; the others are given up.
 
-    The highest climb and those above its `share` stand. Of points closer than `gap` only the highest stands.
+    The highest climb and those above its `share` stand. The best of the other kind, see `best_rival`, is the second of
+    them: it may lie RIVAL_LAG times as far behind. Of points closer than `gap` only the highest stands.
     """
     count = climbs.f.size // 2
     stand = np.zeros(climbs.f.size, np.bool_)
     for body in range(2):
         first = body * count
         left = climbs.f[first : first + count].copy()
+        rival = best_rival(climbs.u[first : first + count, 2], left)
+        if rival >= 0 and left[rival] < (1.0 - RIVAL_LAG * (1.0 - share)) * left.max():
+            rival = -1
         enough = share * left.max()
-        for _ in range(min(most, count)):
+        slots = max(most, 2) if rival >= 0 else most
+        for number in range(min(slots, count)):
             best = left.argmax()
-            if not left[best] >= enough:
+            if number == 1 and rival >= 0 and left[rival] > 0.0:
+                best = rival
+            elif not left[best] >= enough:
                 break
             stand[first + best] = True
             left[best] = -1.0
