@@ -102,6 +102,11 @@ class InputErrors(InputError):
         """Return the single errors in the order of the file."""
         return self._errors
 
+    def named(self, field: str) -> InputError:
+        """Return these errors with another name of the field; one of another field keeps its name behind it."""
+        new = {self.field: field}
+        return InputErrors([one.named(new.get(one.field, f"{field}: {one.field}")) for one in self._errors])
+
     @property
     def shown(self) -> list[str]:
         """Return the messages of the first errors, and how many there are further."""

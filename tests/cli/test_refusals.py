@@ -12,6 +12,7 @@ from examples import EXAMPLES
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+import trackroller as tr
 from trackroller.cli.main import app, run_app
 from trackroller.errors import InputError
 from trackroller.numerics.units import split_quantity
@@ -239,3 +240,15 @@ def test_a_remedy_is_named_only_where_it_is_meant(word, remedy, capsys):
 )
 def test_a_usage_error_is_one_line_that_names_the_help(words, capsys):
     assert "--help`." in _refused(capsys, *words)
+
+
+def test_several_wrong_keys_of_a_mapping_are_named_together():
+    study = {
+        "name": "t",
+        "base": {"bearing": {"rowz": 1, "row_distanze": 8}},
+        "factors": {"axial_force": {"values": [1]}},
+    }
+    with pytest.raises(tr.InputError) as refused:
+        tr.load_study(study)
+    assert "base.bearing: key = 'rowz'" in str(refused.value)
+    assert "base.bearing: key = 'row_distanze'" in str(refused.value)

@@ -147,6 +147,7 @@ class Answer:
     required : what is wanted
     curves : effects, the largest first
     ends : counts of cases by what ends them (columns) at each level of a factor (columns `factor` and `level`)
+    outputs : range of each usual output over the cases that are held, see `trackroller.results.output_ranges`
     picture : arrays of the picture of the first screen that `table` and `curves` do not hold
     not_checked : limits that were not checked for each body
     not_used : values that were given and changed nothing
@@ -165,6 +166,7 @@ class Answer:
     required: tuple[Required, ...] = ()
     curves: tuple[Curve, ...] = ()
     ends: pd.DataFrame = field(default_factory=pd.DataFrame)
+    outputs: pd.DataFrame = field(default_factory=pd.DataFrame)
     picture: Mapping[str, Any] = field(default_factory=dict)
     not_checked: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     not_used: Mapping[str, str] = field(default_factory=dict)
@@ -200,6 +202,7 @@ class Answer:
             "required": [vars(one) for one in self.required],
             "effects": [vars(curve) for curve in self.curves],
             "ends": self.ends.to_dict("records"),
+            "outputs": self.outputs.to_dict("records"),
             "not_checked": self.not_checked,
             "not_used": self.not_used,
             "not_given": self.not_given,

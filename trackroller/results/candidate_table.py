@@ -66,7 +66,7 @@ def candidate_columns(own: Comparison, table: pd.DataFrame) -> tuple[Column, ...
         Column("best", "Best", units, f"{words}: best condition that is held", role="bar"),
         Column("worst", "Worst condition", "", "the levels of the condition at the low end", "text"),
         Column("ends", "Ended by", "", "what ends the candidate at the low end of its worst condition", "text"),
-        Column("ends_high", "At the high end", "", "what ends the candidate at the high end of its range", "text"),
+        *_ends_apart(table),
         Column("holds", "Holds", "", "conditions in which the roller rolls inside all limits", "count"),
         Column("judged", "Judged", "", "conditions that the model can judge", "count"),
     ]
@@ -118,6 +118,13 @@ def candidate_columns(own: Comparison, table: pd.DataFrame) -> tuple[Column, ...
             Column("edge", "At the end of", "", "choices at the smallest or largest of their levels", "text")
         )
     return tuple(columns)
+
+
+def _ends_apart(table: pd.DataFrame) -> list[Column]:
+    """Return the column of what ends candidates at the high end; none if it is the same as at the low end."""
+    if (table["ends"] == table["ends_high"]).all():
+        return []
+    return [Column("ends_high", "At the high end", "", "what ends the candidate at the high end of its range", "text")]
 
 
 def _ends(own: Comparison) -> dict[str, Any]:
@@ -231,8 +238,8 @@ def states_of(own: Comparison, table: pd.DataFrame, exact: bool = False) -> list
     if not own.required or (own.drawn and not np.isfinite(own.wanted_share)):
         return ["none" if gone else "" for gone in never]
     if own.drawn:
-        short, long = _share_ends(table) if not exact else (table["share"], table["share"])
-        surely, perhaps = np.asarray(short >= own.wanted_share), np.asarray(long >= own.wanted_share)
+        ends = ("share", "share") if exact else ("share_short", "share_long")
+        surely, perhaps = (table[name].to_numpy() >= own.wanted_share for name in ends)
     else:
         sure, may = own.met(exact)
         surely = _everywhere(own, sure)
@@ -273,14 +280,6 @@ def _shares(own: Comparison) -> dict[str, Any]:
         "median_low": middle[:, 0],
         "median_high": middle[:, 1],
     }
-
-
-def _share_ends(table: pd.DataFrame) -> tuple[np.ndarray, np.ndarray]:
-    """Return the ends of the share of each candidate by both of its ranges together, shape (candidates,) each."""
-    size = table["n"].to_numpy()
-    low = wilson(table["share_short"].to_numpy() * size, size)[0]
-    high = wilson(table["share_long"].to_numpy() * size, size)[1]
-    return low, high
 
 
 def _fails(own: Comparison, table: pd.DataFrame) -> list[str]:

@@ -20,7 +20,7 @@ from trackroller.results.answer_parts import (
     lost_by_missing_input,
     not_given_words,
 )
-from trackroller.results.candidate_table import candidate_columns, candidate_table, names_of, states_of
+from trackroller.results.candidate_table import candidate_columns, candidate_table, names_of, states_of, title_of
 from trackroller.results.comparison import EQUAL, Comparison
 from trackroller.results.effect_curves import Effects
 from trackroller.results.first_ends import ends_by_factor
@@ -153,8 +153,6 @@ class Decider:
             return Decision("cannot_tell", order, [], "model")
         leader = known[0]
         order = [leader, *(n for n in order if n != leader)]
-        if self.own.drawn:
-            return Decision("solve_finer", order, [leader], "sample")
         if states_of(self.own, self.table, exact=True)[leader] != "open":
             return Decision("solve_finer", order, [leader], "error")
         least = max((one.least for one in self.own.required if one.output in OF_PAIR), default=np.nan)
@@ -167,8 +165,9 @@ class Decider:
         order = self.nearest_first(every)
         judged = (table["judged"] == table["of"]).to_numpy()
         counts = own.counted(np.isin(own.pairs[1], np.unique(own.use[own.reachable])))
-        holds_all = (table["holds"].to_numpy() >= counts) if not own.drawn else (self.score > 0) | (table["holds"] > 0)
-        pool = every[judged & np.asarray(holds_all)] if not own.drawn else every[np.asarray(holds_all)]
+        pool = every[judged & (table["holds"].to_numpy() >= counts)]
+        if own.drawn:  # nine of ten drawn conditions have to be held
+            pool = every[self.score > own.ranges.sign * own.ranges.worst_value]
         if not len(pool):
             unknown = (~judged & (table["holds"] == 0)).any() and (table["holds"] == 0).all()
             return Decision("cannot_tell" if unknown else "none", order, [], "model" if unknown else "")
@@ -317,8 +316,15 @@ def not_held_by_any(own: Comparison) -> dict[str, Any]:
     names = [name for name in own.conditions if table[name].nunique() > 1]
     place = places_of(table.iloc[first], names, lost, np.ones(len(first), dtype=bool))
     judged = own.ranges.judged[rows]
-    told = {"count": int(lost.sum()), "of": len(first), "where": places_text(place)}
+    where = places_text(place) or causes_text(own, rows)
+    told = {"count": int(lost.sum()), "of": len(first), "where": where}
     return {"not_held" if judged.any() else "not_judged": told}
+
+
+def causes_text(own: Comparison, rows: np.ndarray) -> str:
+    """Return the causes by which some cases are not held, the most frequent one first."""
+    words = pd.Series(own.ranges.reason[rows]).map(lambda word: title_of(str(word).removeprefix("limit ")))
+    return " or ".join(words.value_counts().index[:2])
 
 
 def _level_reached(own: Comparison, table: pd.DataFrame) -> dict[str, Any]:
@@ -329,7 +335,8 @@ def _level_reached(own: Comparison, table: pd.DataFrame) -> dict[str, Any]:
     met = (table["state"] == "met").to_numpy()
     order = np.argsort(levels)
     hits = np.flatnonzero(met[order])
-    if not len(hits) or len(hits) == len(levels) or hits[-1] - hits[0] + 1 != len(hits):
+    contiguous = len(hits) > 1 and hits[-1] - hits[0] + 1 == len(hits)
+    if not contiguous or len(hits) == len(levels):
         return {}
     told = {}
     if hits[0] > 0:

@@ -118,9 +118,9 @@ class Effects:
         others = self.fit.whole - part
         middle, ends = np.median(others), np.quantile(others, BAND)
         if self.results.ordered(name):
-            order = np.argsort(own, kind="stable")
-            step = np.unique(np.linspace(0, len(order) - 1, PLACES).astype(int))
-            at = order[step]
+            first = np.unique(own, return_index=True)[1]
+            step = np.unique(np.linspace(0, len(first) - 1, PLACES).astype(int))
+            at = first[step]
         else:
             at = np.array([int(np.flatnonzero(own == level)[0]) for level in dict.fromkeys(own.tolist())])
         levels = [own[i] for i in at]

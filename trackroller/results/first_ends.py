@@ -12,6 +12,7 @@ from trackroller.results.case_ranges import CaseRanges
 from trackroller.results.groups import BINS, classes
 from trackroller.results.places import level_text
 from trackroller.results.results import Results
+from trackroller.roller.output_names import is_life
 from trackroller.study.design.entries import OPTION_FACTORS
 
 NOTHING = "nothing ends it"
@@ -20,6 +21,9 @@ UNKNOWN = "not known"
 
 def end_of_case(ranges: CaseRanges) -> np.ndarray:
     """Return what ends each case in words, shape (n,): a limit of a body, or why the case is not held or judged."""
+    life = ranges.results.life
+    if not is_life(ranges.output[0]) and life is not None:
+        return end_of_case(CaseRanges(ranges.results, life, True))
     names, guide = ranges.first
     out = np.empty(len(names), dtype=object)
     for row, (reason, name) in enumerate(zip(ranges.reason, names, strict=True)):

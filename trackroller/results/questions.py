@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import dataclasses
+
 from trackroller.parameters import REGIMES
 from trackroller.results.answer import Answer
 from trackroller.results.best import answer_of_search
+from trackroller.results.case_ranges import CaseRanges
 from trackroller.results.comparison import Comparison, compared_output
 from trackroller.results.decide import answer_decide
 from trackroller.results.how_it_behaves import answer_how_it_behaves
 from trackroller.results.how_sure import answer_how_sure
 from trackroller.results.judging import optimum_of
+from trackroller.results.output_ranges import output_ranges
 from trackroller.results.requirement import required_of
 from trackroller.results.results import Results
 from trackroller.results.what_matters import answer_what_matters, shown_ranges
@@ -95,4 +99,10 @@ def answer_of(results: Results) -> Answer | None:
         "which model": answer_which_model,
         "how it behaves": answer_how_it_behaves,
     }
-    return makers[question](results)
+    return _with_outputs(makers[question](results), results)
+
+
+def _with_outputs(answer: Answer, results: Results) -> Answer:
+    """Return an answer with the range of each usual output of the study."""
+    ranges = CaseRanges(results, answer.output, is_life(answer.output[0]))
+    return dataclasses.replace(answer, outputs=output_ranges(results, ranges))

@@ -31,6 +31,7 @@ from trackroller.study.design.entries import OPTION_FACTORS
 from trackroller.study.outputs import default_names
 
 PAIRED = ("S2", "interaction_share", "interaction")  # indices of pairs of factors, the most exact first
+ROUNDING = 1e-12  # of the largest effect: a smaller one is 0 but for rounding
 WORTH = 0.02  # of the variance: a smaller interaction is not named
 
 
@@ -136,7 +137,10 @@ def _index(sens: xr.Dataset, output: str, name: str) -> dict[str, Any]:
     if name not in names:
         return {"index": np.nan, "index_low": np.nan, "index_high": np.nan, "interacts": ""}
     value, low, high = estimate(part, index)[:, names.index(name)]
-    if index not in SIZED:
+    if index in SIZED:
+        largest = float(np.nanmax(np.abs(estimate(part, index)[0])))
+        value = 0.0 if abs(value) < ROUNDING * largest else value
+    else:
         value, low, high = (float(np.clip(one, 0.0, 1.0)) for one in (value, low, high))
     return {
         "index": float(value),
@@ -230,10 +234,17 @@ def _columns(ranges: CaseRanges, table: pd.DataFrame, sens: xr.Dataset | None) -
         index = headline(sens)
         share = index not in SIZED
         meaning = str(sens[index].attrs.get("long_name", index))
-        unit = "1" if share else ""
+        scale = str(sens["scale"].sel(output=ranges.output[0]).item()) if "scale" in sens.coords else ""
+        unit = "1" if share else "decades" if scale == "log10" else units
         kind = "share" if share else "number"
         columns += [
-            Column("index", "Index", unit, meaning + (", cut to 0 to 100 %" if share else ""), kind),
+            Column(
+                "index",
+                "Index" if share else "Main effect",
+                unit,
+                meaning + (", cut to 0 to 100 %" if share else ""),
+                kind,
+            ),
             Column("index_low", "95 %", unit, "interval of the index", kind, until="index_high"),
         ]
         if table["interacts"].any():

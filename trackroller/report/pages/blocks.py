@@ -15,7 +15,7 @@ from typing import Any
 from markupsafe import Markup
 
 from trackroller.report.headlines import WARNING_HEADS, headline_of, warning_rows
-from trackroller.report.numbers import count, long_name, on_duty, plain
+from trackroller.report.numbers import count, long_name, on_duty, plain, rounded, unit_text
 from trackroller.report.pictures import curves
 from trackroller.report.pictures.bars import Bars
 from trackroller.report.pictures.first_screen import map_of, picture_of, row_names
@@ -75,7 +75,7 @@ def screen_of(answer: Answer) -> dict[str, Any]:
     dict
         `title`, `description`, `facts`, `headline`, `table`, `others` (columns that do not fit), `transposed`,
         `shared`, `picture`, `effects`, `effects_first`, `effects_caption`, `map`, `not_checked`, `not_used`,
-        `not_given`, `warnings`, `ends`, `definitions`, `download`.
+        `not_given`, `warnings`, `ends`, `outputs`, `definitions`, `download`.
     """
     with on_duty(answer.facts.get("duty")):
         picture = picture_of(answer)
@@ -102,9 +102,23 @@ def screen_of(answer: Answer) -> dict[str, Any]:
             "not_given": {long_name(name): value for name, value in answer.not_given.items()},
             "warnings": warnings_of(answer),
             "ends": ends_table(answer),
+            "outputs": _outputs(answer),
             "definitions": list(definitions(answer)),
             "download": download_of(answer),
+            "output_heads": OUTPUT_HEADS,
         }
+
+
+OUTPUT_HEADS = ("Output", "Unit", "Smallest", "Median", "Largest")
+
+
+def _outputs(answer: Answer) -> list[tuple[str, ...]]:
+    """Return the ranges of the outputs as texts; none where the table of the answer shows them."""
+    if answer.question == "how it behaves" or answer.outputs.empty:
+        return []
+    rows = answer.outputs.to_dict("records")
+    numbers = ("smallest", "median", "largest")
+    return [(row["output"], unit_text(row["units"]), *(rounded(row[name]) for name in numbers)) for row in rows]
 
 
 def transposed_names(answer: Answer) -> list[str]:

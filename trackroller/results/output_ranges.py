@@ -1,0 +1,72 @@
+"""The range of each usual output of a study over the cases that are held."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from trackroller.results.answer import Column
+from trackroller.results.case_ranges import CaseRanges
+from trackroller.results.places import levels_of, place_text
+from trackroller.results.results import Results
+from trackroller.roller.output_names import is_life
+from trackroller.study.outputs import default_names
+
+MOST_OUTPUTS = 8  # rows of the table
+COLUMNS = (
+    Column("output", "Output", "", "result of the study", "text", role="name"),
+    Column("units", "Unit", "", "unit of the result", "text"),
+    Column("smallest", "Smallest", "", "smallest value over the cases that are held"),
+    Column("median", "Median", "", "median over the cases that are held"),
+    Column("largest", "Largest", "", "largest value over the cases that are held"),
+    Column("at_smallest", "Smallest at", "", "levels of the case with the smallest value", "text"),
+    Column("at_largest", "Largest at", "", "levels of the case with the largest value", "text"),
+    Column("cases", "Cases", "", "cases that are held and have a value", "count"),
+    Column("error", "Error", "1", "median of the told 95 % errors", "error"),
+)
+
+
+def output_ranges(results: Results, ranges: CaseRanges) -> pd.DataFrame:
+    """Return one row an output with its range over the cases that are held, the columns of `COLUMNS`.
+
+    Parameters
+    ----------
+    results : the solved study
+    ranges : the output that comes first; the other usual ones follow
+    """
+    found = [ranges]
+    for name in default_names(results.data, results.design.factors, results.dims):
+        if name != ranges.output[0] and len(found) < MOST_OUTPUTS:
+            _, units, words = results.quantity(name)
+            found.append(CaseRanges(results, (name, words, units), is_life(name)))
+    return pd.DataFrame([_row(results, own) for own in found])
+
+
+def _row(results: Results, ranges: CaseRanges) -> dict[str, Any]:
+    """Return the range of one output with its cases."""
+    rows = np.flatnonzero(results.of_one_model(ranges.held) & ~np.isnan(ranges.value))
+    _, words, units = ranges.output
+    row: dict[str, Any] = {"output": words, "name": ranges.output[0], "units": units, "cases": len(rows)}
+    if not len(rows):
+        empty = {"smallest": np.nan, "median": np.nan, "largest": np.nan, "error": np.nan}
+        return row | empty | {"at_smallest": "", "at_largest": "", "row_smallest": -1, "row_largest": -1}
+    values = ranges.value[rows]
+    least, most = int(rows[values.argmin()]), int(rows[values.argmax()])
+    names = list(results.labels) or list(results.factors)  # labels name the rows of a table
+    return row | {
+        "smallest": float(values.min()),
+        "median": float(np.quantile(values, 0.5, method="inverted_cdf")),
+        "largest": float(values.max()),
+        "at_smallest": _levels_text(results, names, least),
+        "at_largest": _levels_text(results, names, most),
+        "row_smallest": least,
+        "row_largest": most,
+        "error": float(np.median(ranges.error[rows])),
+    }
+
+
+def _levels_text(results: Results, names: list[str], row: int) -> str:
+    levels = levels_of(results.table, names, row)
+    return place_text({name: (level,) for name, level in levels.items()})
