@@ -58,6 +58,9 @@ SEED_WORTH = 0.85  # least stress of a seed over the largest
 # and few elements lower a ridge at the surface by some per cent, and hardly a summit below it.
 RIVAL_LAG = 2.0
 
+# Relative change on coarser elements at the place of a peak above which the top of its hill is sought there, in sweeps.
+FALLEN, TOP_SWEEPS = 0.03, 3
+
 SPLIT = (0.02, 0.06)  # distances from the pole over the semi-axis at which a spike begins to count, and counts in full
 
 
@@ -567,7 +570,7 @@ class Peak(Rows):
     """Peak von Mises stress and its place; arrays (n, 2), second axis roller and guide.
 
     `stress` per unit p_max (in MPa below solved patches), `x`, `y`, `z` [mm], `error` the estimated relative error, and
-    `change` its part by the elements: the relative change of the stress with tractions on a coarser grid.
+    `change` the relative change of the stress at this place with tractions on a coarser grid.
     """
 
     stress: np.ndarray
@@ -602,7 +605,25 @@ def _search_rows(first, last, patches, rules, effort, room, out):
             for body in range(2):
                 other = stress_at(coarse, body, out[i, body, 1:4], rules.summit)
                 out[i, body, 5] = abs(other / out[i, body, 0] - 1.0)
-                out[i, body, 4] += out[i, body, 5]
+                if out[i, body, 5] > FALLEN:
+                    other = _top_beside(coarse, body, out[i, body, 1:4], other, rules)
+                out[i, body, 4] += abs(other / out[i, body, 0] - 1.0)
+
+
+@woven
+def _top_beside(coarse, body, u, height, rules):
+    """Return the stress at the top of the hill of a coarse grid beside a point u (3,), where the stress is `height`.
+
+    A narrow hill lies elsewhere on coarse elements, and the stress at its place on finer ones says little of its top.
+    """
+    climbs = no_climbs(1, 0.1)
+    assign(climbs.u[body], u)
+    climbs.f[body] = height
+    along_turn(coarse.patch, u, climbs.along[body])
+    rule = rules.ridge if u[2] == 0.0 else rules.polish
+    for number in range(TOP_SWEEPS):
+        sweep(coarse, climbs, body, rule, 0.01, int(number > 0))
+    return climbs.f[body]
 
 
 @woven
@@ -713,7 +734,8 @@ def find_peaks(
     Notes
     -----
     Valid for any ellipticity and 0 <= nu <= 0.5. The estimated error contains the change from the quadrature of the
-    climb to that of the summit, the last gain of the climb, and with `fields` the change on elements of twice the size.
+    climb to that of the summit, the last gain of the climb, and with `fields` the change on elements of twice the size:
+    at the place of the peak, or from top to top of the hill where the stress at this place changes much.
     """
     patches = np.ascontiguousarray(patches)
     out = Peak.empty(len(patches))
