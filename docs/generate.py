@@ -18,7 +18,7 @@ from trackroller import parameters as p
 from trackroller.materials import builtin_database
 from trackroller.materials.properties import ALTERNATIVES, PROPERTIES
 from trackroller.parameters.accuracy import PRESETS
-from trackroller.parameters.of_carriage import OF_LOAD_CASE, OF_ROLLER, OF_WHOLE
+from trackroller.parameters.carriage_fields import OF_LOAD_CASE, OF_ROLLER, OF_WHOLE
 from trackroller.parameters.validity import VALIDITY
 from trackroller.roller.dataset import COMMENTS, VARIABLES
 from validation.pages import TEMPLATES

@@ -1,9 +1,8 @@
 """The structure of the package: rooms in one order, no import circles, and unique names of files.
 
 Each room of the package is a folder or a file at its top. A room imports from the rooms before it only, and no files
-import each other in a circle, inside a room either. The two classes that a user holds, `Results` and `Fit`, are the
-exception: their methods import what takes such an object. ruff limits complexity, the number of arguments and late
-imports.
+import each other in a circle, inside a room either. Imports inside functions and those for type checking count.
+ruff limits complexity, the number of arguments and late imports.
 """
 
 from __future__ import annotations
@@ -20,7 +19,6 @@ from trackroller.study.store.sources import ROOMS
 ROOT = Path(__file__).parents[1]
 PACKAGE = "trackroller"
 ORDER = (*ROOMS, "__init__")  # the top of the package holds public names and may import all rooms
-HELD = ("trackroller.results.results", "trackroller.fit.fitted")  # imports inside of their functions do not count
 
 
 @dataclass
@@ -59,19 +57,6 @@ def module_of(path: Path, root: Path) -> str:
     return ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
 
 
-def at_the_top(tree: ast.Module) -> ast.Module:
-    """Return a file without its functions and without what only a type check imports."""
-
-    class Top(ast.NodeTransformer):
-        def visit_FunctionDef(self, node: ast.FunctionDef) -> None:
-            return None
-
-        def visit_If(self, node: ast.If) -> ast.If | None:
-            return None if ast.unparse(node.test) == "TYPE_CHECKING" else node
-
-    return Top().visit(tree)
-
-
 def imported(tree: ast.AST, module: str, is_package: bool, known: set[str]) -> list[tuple[str, int]]:
     """Return the modules of the package that a file imports, each with its line; `__version__` is no module."""
     found: list[tuple[str, int]] = []
@@ -93,7 +78,6 @@ def survey(root: Path) -> House:
     paths = {module_of(path, root): path for path in sorted((root / PACKAGE).rglob("*.py"))}
     for module, path in paths.items():
         tree = ast.parse(path.read_text(encoding="utf-8"))
-        tree = at_the_top(tree) if module in HELD else tree
         place = ORDER.index(room_of(module))
         found = imported(tree, module, path.name == "__init__.py", set(paths))
         house.imports[module] = {other for other, _ in found} - {module}
@@ -149,7 +133,6 @@ def test_the_survey_finds_what_it_looks_for(tmp_path):
     assert house.upward == ["trackroller/contact/hertz.py:2 imports trackroller.roller.case"]
     circle = {"trackroller.contact.hertz", "trackroller.roller.case"}
     assert set(house.circle()) == circle
-    assert not imported(at_the_top(ast.parse((lower / "hertz.py").read_text())), "", False, circle)
     (upper / "stages").mkdir()
     (upper / "stages" / "case.py").write_text("")
     assert repeated(tmp_path) == {"case.py": ["roller/case.py", "roller/stages/case.py"]}

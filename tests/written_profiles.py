@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 Curve = Callable[[np.ndarray], np.ndarray]
-UNITS = {"mm": 1.0, "um": 1e-3, "µm": 1e-3, "cm": 10.0, "in": 25.4, "inch": 25.4, "mil": 0.0254, "m": 1e3, "nm": 1e-6}
+UNITS = {"mm": 1.0, "um": 1e-3, "µm": 1e-3, "cm": 10.0, "in": 25.4, "inch": 25.4, "thou": 0.0254, "m": 1e3, "nm": 1e-6}
 LOST = ("0", "-9999", "9999", "1e30", "NaN", "", "*****", "---", "#N/A")
 
 
@@ -145,7 +145,7 @@ def _in_style(
     separator = str(r.choice([";", "; ", "\t", ",", ", ", "  ", " ", "|"]))
     comma = bool(r.random() < 0.4)
     quote = str(r.choice(["", "", "", '"']))
-    clear = not (comma and separator == "," and not quote)
+    clear = not (comma and separator.strip() == "," and not quote)
     stated = (unit_x, unit_z) != ("mm", "mm") or r.random() < 0.3
     thousands = str(r.choice(["", "", "", ".", "'", "\u202f"])) if comma else str(r.choice(["", "", "", ",", "'"]))
     thousands = "" if separator.strip() in ("", thousands) else thousands
@@ -181,10 +181,10 @@ def _in_style(
         names = {"index": ["no", *head], "y": [head[0], "y", head[1]], "quality": [*head, "q"]}[extra] if head else []
         clear &= bool(names)
         head = names
-    remarks = ["# Profile 7, probe 2 um", "# 2024-05-01", "; measured on Monday", "% by hand"]
+    remarks = ["# Profile 7, probe 2 um", "# 2024-05-01", "# measured on Monday", "# by hand"]
     remarks = [str(remark) for remark in r.permutation(remarks)[: r.integers(0, 3)]]
     block, scale = _block(r, separator)
-    clear &= len(block) < 5 and scale == 1.0
+    clear &= not block
     top = [separator.join(f"{quote}{name}{quote}" for name in head)] if head else []
     text = str(r.choice(["\n", "\r\n", "\r"])).join([*remarks, *block, *top, *_loosened(r, lines, separator), ""])
     if r.random() < 0.2:
@@ -223,11 +223,9 @@ def _head(r: np.random.Generator, separator: str, units: tuple[str, str] | None)
     """Return the names of the columns with their units in one of many ways, and whether this is clear."""
     if units is None:
         return [["x", "z"], ["X", "Z"], []][int(r.integers(0, 3))], True
-    ways = ["{} [{}]", "{} ({})", "{}({})", "{}/{}", "{} / {}", "{}_{}", "{} in {}", "{}, {}", "{} {}"]
+    clear_ways = ["{} [{}]", "{} ({})", "{}({})", "{}/{}"]
+    ways = [*clear_ways, *clear_ways, "{} / {}", "{}_{}", "{} in {}", "{}, {}", "{} {}"]
     way = ways[int(r.integers(0, len(ways)))]
     names = r.choice([["x", "z"], ["X", "Z"], ["x-axis", "z-axis"]])
-    blanks = separator.strip(" ") == ""
-    clear = way != "{}, {}" or separator in (";", "; ", "\t")
-    return [way.format(name, unit) for name, unit in zip(names, units, strict=True)], clear and not (
-        blanks and " " in way
-    )
+    clear = way in clear_ways and names[0] in "xX"
+    return [way.format(name, unit) for name, unit in zip(names, units, strict=True)], clear

@@ -7,13 +7,18 @@ imported when they are first used.
 from __future__ import annotations
 
 import importlib
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
+
+from trackroller.fit import SHOWN as _SHOWN_OF_FIT
+from trackroller.results import SHOWN as _SHOWN_OF_RESULTS
 
 __version__ = "0.1.0"
 
 _WHERE = {
     "Case": "trackroller.roller.case",
     "InputError": "trackroller.errors",
+    "explore": "trackroller.report.show",
     "find": "trackroller.roller.find",
     "fit_bench": "trackroller.fit.bench",
     "fit_sn": "trackroller.fit.coupons",
@@ -23,6 +28,7 @@ _WHERE = {
     "open_study": "trackroller.results.stored_study",
     "run": "trackroller.results.solving",
     "wear": "trackroller.roller.wear",
+    "workbook": "trackroller.report.show",
     "load_database": "trackroller.materials",
     "stress_from_tractions": "trackroller.halfspace.stress",
     "stress_on_grid": "trackroller.halfspace.stress",
@@ -46,6 +52,8 @@ if TYPE_CHECKING:
     from trackroller.halfspace.stress import stress_on_grid as stress_on_grid
     from trackroller.halfspace.stress import von_mises as von_mises
     from trackroller.materials import load_database as load_database
+    from trackroller.report.show import explore as explore
+    from trackroller.report.show import workbook as workbook
     from trackroller.results.solving import run as run
     from trackroller.results.stored_study import open_study as open_study
     from trackroller.roller.case import Case as Case
@@ -62,6 +70,38 @@ def __getattr__(name: str) -> Any:
     if name in _WHERE:
         return getattr(importlib.import_module(_WHERE[name]), name)
     raise AttributeError(f"module 'trackroller' has no attribute {name!r}")
+
+
+def _report(result: Any, path: Path | str) -> Path:
+    """Write the page of a result, see `trackroller.report`."""
+    from trackroller.report import write
+
+    return write(result, path)
+
+
+def _explore(results: Any, path: Path | str | None = None) -> Any:
+    """Show the explorer of a study, see `trackroller.explore`."""
+    from trackroller.report.show import explore
+
+    return explore(results, path)
+
+
+def _workbook(results: Any, path: Path | str) -> Path:
+    """Write the cases of a study as a file, see `trackroller.workbook`."""
+    from trackroller.report.show import workbook
+
+    return workbook(results, path)
+
+
+def _notebook_view(results: Any) -> str:
+    """Show the answer to a study in a notebook."""
+    from trackroller.report.show import view
+
+    return view(results)._repr_html_()
+
+
+_SHOWN_OF_FIT.update(report=_report)
+_SHOWN_OF_RESULTS.update(report=_report, explore=_explore, export=_workbook, _repr_html_=_notebook_view)
 
 
 def __dir__() -> list[str]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import difflib
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import Any
 
@@ -302,4 +302,6 @@ def check_names(kind: str, names: Iterable[object], options: Iterable[str]) -> N
         If a name is unknown.
     """
     known = tuple(options)
-    raise_all(unknown_name(kind, str(name), known) for name in names if name not in known)
+    # an array compares by its elements, and no known name is an array or a list
+    unknown = [name for name in names if not isinstance(name, Hashable) or name not in known]
+    raise_all(unknown_name(kind, str(name), known) for name in unknown)

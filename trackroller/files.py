@@ -335,6 +335,44 @@ def write_whole(path: Path, write: Callable[[Path], object], ready: Callable[[],
             beside.unlink()
 
 
+@contextmanager
+def all_or_none(*paths: Path) -> Iterator[None]:
+    """Write several files together: if one of them fails, each is again what it was before, or is away again.
+
+    Parameters
+    ----------
+    *paths : pathlib.Path
+        The files that are written within this context.
+
+    Notes
+    -----
+    The previous content stands in a copy beside each file, so that putting it back needs no space on the disk.
+    """
+    copies: dict[Path, Path] = {}
+    lacking = [folder for path in paths for folder in path.parents if not folder.exists()]
+    try:
+        for path in paths:
+            if path.exists():
+                copies[path] = scratch_name(path).with_suffix(".before")
+                with disk_errors(path):
+                    shutil.copy2(path, copies[path])
+        try:
+            yield
+        except BaseException:
+            for path in paths:
+                if path in copies:
+                    os.replace(copies[path], path)
+                else:
+                    path.unlink(missing_ok=True)
+            for folder in lacking:
+                with contextlib.suppress(OSError):
+                    folder.rmdir()
+            raise
+    finally:
+        for copy in copies.values():
+            copy.unlink(missing_ok=True)
+
+
 def flush(path: Path) -> None:
     """Flush a file to the disk."""
     with open(path, "rb+") as stream:

@@ -255,6 +255,9 @@ def test_a_material_of_ones_own_is_written_and_solved(tmp_path, monkeypatch):
     [
         ("our steel", {"tensile_strength": "-3"}, "test", "tensile_strength"),
         ("our steel", {"tensile_strength": "strong"}, "test", "tensile_strength"),
+        ("our steel", {"source": "x"}, "test", "source"),
+        ("our steel", {"path": "elsewhere.yaml"}, "test", "path"),
+        ("our steel", {"replace": "no"}, "test", "replace"),
         ("our steel", {}, "test", "material"),
         ("our steel", {"tensile_strength": "800"}, " ", "source"),
         (" ", {"tensile_strength": "800"}, "test", "material name"),

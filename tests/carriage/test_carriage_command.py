@@ -16,7 +16,7 @@ from trackroller.carriage.solve import doubts_of_rollers, forces_of, with_lives
 from trackroller.cli.main import app
 from trackroller.errors import InputError
 from trackroller.report.words.carriage import sentences
-from trackroller.roller.record import doubts_of
+from trackroller.roller.stored_inputs import doubts_of
 from trackroller.study.spectrum.file import Spectrum, load_spectrum
 from trackroller.study.spectrum.solve import solve_spectrum
 from trackroller.yaml_file import write_yaml

@@ -9,17 +9,17 @@ import xarray as xr
 from reference_cases import solve_sliding
 
 import trackroller as tr
-from trackroller.contact.common import Elastic, Ellipse, Resultants
 from trackroller.contact.friction_laws import constant, exponential_falling, law_of, linear_falling, table
 from trackroller.contact.hertz import HertzShape
 from trackroller.contact.models import contact_model
+from trackroller.contact.quantities import Elastic, Ellipse, Resultants
 from trackroller.contact.sliding import integrals
 from trackroller.contact.slip import Slip
 from trackroller.errors import InputError
 from trackroller.parameters.accuracy import PRESETS
 from trackroller.roller.case import to_table
 from trackroller.roller.dataset import validity_bit
-from trackroller.roller.equilibrium import Loads, solve_equilibrium
+from trackroller.roller.equilibrium import RollerLoads, solve_equilibrium
 from trackroller.study.file.load import parse_study
 
 MAPPINGS = [
@@ -364,7 +364,7 @@ class ContactJump:
     def __init__(self) -> None:
         angle = np.full(1, 0.7)
         shape = HertzShape(*(np.full(1, v) for v in (0.05, 0.03, 1.5 / (np.pi * 0.05 * 0.03))))
-        self.loads = Loads(
+        self.loads = RollerLoads(
             np.full(1, -200.0),
             np.zeros(1),
             np.full(1, -12.0),

@@ -11,12 +11,12 @@ from scipy.optimize import root
 
 import trackroller as tr
 from trackroller.contact import kalker, sliding
-from trackroller.contact.common import Elastic, Ellipse
 from trackroller.contact.friction_laws import exponential_falling, linear_falling, table
 from trackroller.contact.hertz import contact_modulus, shape
 from trackroller.contact.kalker import Creepage, KalkerSettings, extrapolation, solve_patch, subgrid
 from trackroller.contact.kalker.cells import unit_cells
 from trackroller.contact.kalker.law import KalkerLaw
+from trackroller.contact.quantities import Elastic, Ellipse
 from trackroller.contact.slip import Slip, turning_of
 from trackroller.parameters.accuracy import PRESETS
 from trackroller.roller.geometry import curvatures, rolling_radius

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from trackroller.contact import kalker, linear
-from trackroller.contact.common import Elastic, Ellipse
+from trackroller.contact.quantities import Elastic, Ellipse
 from trackroller.errors import InputError
 from validation.derivations.linear_creepage import LinearTheory
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from trackroller.contact.common import Elastic, Ellipse
+from trackroller.contact.quantities import Elastic, Ellipse
 from validation.exact.shift import shift_patch
 
 CIRCLE = Ellipse(np.array([0.25]), np.array([0.25]), np.array([800.0]))

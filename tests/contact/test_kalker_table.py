@@ -9,7 +9,7 @@ import pytest
 
 import trackroller as tr
 from trackroller.contact import linear, table
-from trackroller.contact.common import Elastic, Ellipse
+from trackroller.contact.quantities import Elastic, Ellipse
 from trackroller.contact.slip import Creepage
 from validation.benchmarks.samples import random_designs
 from validation.exact.full_sliding import complete_sliding

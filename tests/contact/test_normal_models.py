@@ -12,7 +12,6 @@ from reference_cases import solve_sliding
 
 import trackroller as tr
 from trackroller.contact import kalker, sliding
-from trackroller.contact.common import Elastic
 from trackroller.contact.friction_laws import linear_falling
 from trackroller.contact.grid_patch import GridPatch
 from trackroller.contact.hertz import exact_shape
@@ -22,6 +21,7 @@ from trackroller.contact.kalker.cells import unit_cells
 from trackroller.contact.normal import lift
 from trackroller.contact.normal import patch_models as normal_models
 from trackroller.contact.normal import patch_sliding as normal_sliding
+from trackroller.contact.quantities import Elastic
 from trackroller.contact.slip import Slip
 from trackroller.halfspace.grid_peak import GridLoad, find_grid_peaks
 from trackroller.halfspace.stress import body_stress, stress_from_tractions

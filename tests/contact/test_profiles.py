@@ -301,7 +301,7 @@ def test_order_duplicates_and_gaps_are_named_by_row(tmp_path, monkeypatch):
                 tr.Case(roller_profile={"points": rows})
     monkeypatch.chdir(tmp_path)
     (tmp_path / "picture.csv").write_bytes(b"\x89PNG\r\n\xff\xfe")
-    with pytest.raises(tr.InputError, match=r"guide_profile\.file.*text"):
+    with pytest.raises(tr.InputError, match=r"guide_profile\.file.*neither a point nor the names"):
         tr.Case(guide_profile={"file": "picture.csv"})
 
 

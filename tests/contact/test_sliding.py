@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from trackroller.contact.common import Ellipse
+from trackroller.contact.quantities import Ellipse
 from trackroller.contact.sliding import integrals, slip_field, tractions
 from trackroller.contact.slip import Slip
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numba import njit
 
-from trackroller.contact.common import Ellipse
+from trackroller.contact.quantities import Ellipse
 from trackroller.contact.sliding import slip_field
 from trackroller.contact.slip import (
     Slip,

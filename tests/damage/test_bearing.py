@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import trackroller as tr
-from trackroller.damage.bearing import Loads, equivalent, life_at, rating_life, row_forces
+from trackroller.damage.bearing import BearingLoads, equivalent, life_at, rating_life, row_forces
 from trackroller.damage.catalogue import catalogue_km
 from trackroller.errors import InputError
 
@@ -53,7 +53,7 @@ def test_half_of_the_ball_bearings_reach_545_times_the_rating_life():
 
 
 def test_the_rows_carry_forces_and_moments_in_balance():
-    loads = Loads(column(-200), column(-30), column(50), column(900), column(-400))
+    loads = BearingLoads(column(-200), column(-30), column(50), column(900), column(-400))
     radial, axial = row_forces(loads, column(2), column(8))
     pressing, driving = (-100 + 900 / 8, -100 - 900 / 8), (-15 + 400 / 8, -15 - 400 / 8)
     assert radial[0] == pytest.approx([math.hypot(*row) for row in zip(pressing, driving, strict=True)])
@@ -62,7 +62,7 @@ def test_the_rows_carry_forces_and_moments_in_balance():
 
 
 def test_axial_force_alone_loads_one_row_by_y():
-    loads = Loads(*(column(v) for v in (0, 0, 100, 0, 0)))
+    loads = BearingLoads(*(column(v) for v in (0, 0, 100, 0, 0)))
     load, static = equivalent(
         *row_forces(loads, column(2), column(8)), {k: BEARING[k] for k in ("e", "X", "Y", "X0", "Y0")}
     )

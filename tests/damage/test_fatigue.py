@@ -14,7 +14,7 @@ from trackroller.damage.sn_curve import CONVENTIONS, SNCurve
 from trackroller.errors import InputError
 from trackroller.materials import builtin_database
 from trackroller.parameters import LIFE_RULES
-from trackroller.roller.table import MaterialArrays
+from trackroller.roller.case_table import MaterialArrays
 
 STEEL = SNCurve(tensile_strength=720.0, fatigue_limit=360.0, n_rm=1e4, n_k=5e6)
 K = math.log(500) / math.log(2)

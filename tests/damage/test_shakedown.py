@@ -6,7 +6,7 @@ from scipy.optimize import minimize
 
 import trackroller as tr
 from trackroller.damage.ball import GAP, ball_of_plane, shakedown_shears, smallest_ball
-from trackroller.damage.histories import DEPTHS, Tractions, deep_planes, planes
+from trackroller.damage.histories import DEPTHS, RollerTractions, deep_planes, planes
 from trackroller.damage.shakedown import shears
 from trackroller.halfspace.stress import stress_from_tractions, stress_on_grid, von_mises
 
@@ -16,7 +16,7 @@ def ellipse(a, b, mu=0.0, nodes=36):
     unit = (2 * np.arange(nodes) + 1) / nodes - 1
     p = np.sqrt(np.maximum(1 - unit[None, :] ** 2 - unit[:, None] ** 2, 0))
     fields = [np.stack([f, np.nan * f])[None] for f in (a * unit, b * unit, p, 0 * p, mu * p, 0 * p, 0 * p)]
-    return Tractions(*fields, np.zeros(1, bool))
+    return RollerTractions(*fields, np.zeros(1, bool))
 
 
 @pytest.mark.parametrize(
@@ -121,7 +121,7 @@ def test_deep_planes_converge_with_the_fourth_order(a, b):
         unit = (2 * np.arange(nodes) + 1) / nodes - 1
         p = np.maximum(1 - unit[None, :] ** 2 - unit[:, None] ** 2, 0) ** 2
         fields = [f[None, None] for f in (a * unit, b * unit, p, -0.1 * p, 0.3 * p, 0 * p, 0 * p)]
-        return Tractions(*fields, np.zeros(1, bool))
+        return RollerTractions(*fields, np.zeros(1, bool))
 
     errors, exact = [], load(112)
     for nodes in (14, 28):

@@ -8,7 +8,7 @@ import pytest
 from scipy.integrate import quad
 
 import trackroller as tr
-from trackroller.contact.common import Ellipse
+from trackroller.contact.quantities import Ellipse
 from trackroller.damage.wear import deepest, mass_loss, sunk_area, wear_depth
 from trackroller.parameters.accuracy import PRESETS
 from trackroller.roller.dataset import validity_bit

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import re
 from pathlib import Path
 
@@ -11,6 +12,7 @@ from typer.testing import CliRunner
 from trackroller.cli.main import app
 from trackroller.errors import InputError
 from trackroller.fit.examples import FILES
+from trackroller.report import html
 
 COUPONS = (
     "amplitude [MPa],cycles,failed\n900,90000,yes\n900,130000,yes\n800,200000,yes\n800,350000,yes\n700,800000,yes\n"
@@ -47,6 +49,32 @@ def test_a_wrong_row_is_told_by_file_and_line(place):
     done = CliRunner().invoke(app, SN)
     assert isinstance(done.exception, InputError)
     assert str(done.exception).startswith("coupons.csv, line 2: failed = 'perhaps'")
+
+
+@pytest.mark.slow
+def test_a_page_that_cannot_be_written_leaves_no_material_and_a_refused_material_no_page(place, monkeypatch):
+    named = [*SN, "--like", "1.7225-normalised"]
+
+    def full(*args, **more):
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    with monkeypatch.context() as patch:
+        patch.setattr(html, "write_page", full)
+        assert CliRunner().invoke(app, named).exit_code != 0
+    assert [path.name for path in place.rglob("*") if path.is_file()] == ["coupons.csv"]
+    assert CliRunner().invoke(app, named).exit_code == 0
+    before = {path: path.read_bytes() for path in place.rglob("*") if path.is_file()}
+    assert len(before) == 4
+    (place / "coupons.csv").write_text(COUPONS.replace("90000", "95000"))
+    refused = CliRunner().invoke(app, named)
+    assert isinstance(refused.exception, InputError)
+    assert "--replace" in str(refused.exception)
+    own = place / "coupons.csv"
+    assert {path: path.read_bytes() for path in before if path != own} == {
+        path: content for path, content in before.items() if path != own
+    }
+    assert CliRunner().invoke(app, [*named, "--replace"]).exit_code == 0
+    assert all(path.read_bytes() != content for path, content in before.items())
 
 
 PAGES = ("tests.md", "tutorial/from-bench-to-life.md")

@@ -6,10 +6,12 @@ import shutil
 
 import numpy as np
 import pytest
+import xarray as xr
 
 import trackroller as tr
 from trackroller.fit.stored import stored_fit
 from trackroller.materials import load_database
+from trackroller.materials.file import find_user_file, posterior_path
 from trackroller.report.numbers import rounded
 from trackroller.report.pages.sheet import collect
 from trackroller.report.words.by_tests import by_tests
@@ -129,3 +131,15 @@ def test_a_design_without_random_rows_takes_no_scatter_of_a_fit(rig, design):
     given = {"values": [-180, -120]} if design["design"] == "grid" else {"uniform": [-180, -120]}
     with pytest.raises(tr.InputError, match=r"analysis\.material_scatter = 'fitted'.*a random sample"):
         parse_study(study(factors={"radial_force": given}, **design))
+
+
+def test_a_stored_fit_with_other_values_is_refused(rig):
+    """A file of a fit that lacks what this version reads is refused, and the tests are to be fitted again."""
+    values = vars(load_database().material("rig steel"))
+    path = posterior_path(find_user_file(), "rig steel")
+    with xr.open_dataset(path) as opened:
+        data = opened.load()
+    del data.attrs["tested_cycles"]
+    data.to_netcdf(path)
+    with pytest.raises(tr.InputError, match=r"lacks 'tested_cycles'.*Fit the tests again"):
+        stored_fit("rig steel", values)

@@ -83,5 +83,5 @@ def test_a_campaign_ends_at_the_number_that_the_fit_confirms():
 @pytest.mark.parametrize("factor", [1.0, 0.5, math.nan])
 def test_a_factor_that_is_none_is_refused(factor):
     fit = tr.fit_sn(ROWS, slope=8, scatter_in_cycles=4, **UNDER)
-    with pytest.raises(tr.InputError, match=r"until = .*a number above 1.*Give 2"):
+    with pytest.raises(tr.InputError, match=r"until = .*a finite number above 1.*Give 2"):
         until(fit, planned(fit), factor)

@@ -5,7 +5,7 @@ import pytest
 from reference_cases import case_of, published_cases, solve_sliding
 
 import trackroller as tr
-from trackroller.contact.common import Ellipse
+from trackroller.contact.quantities import Ellipse
 from trackroller.contact.slip import Slip
 from trackroller.halfspace.ellipse import patch_rows, stress_parts
 from trackroller.halfspace.peak import MOST_ON_RIDGE, find_peaks, ridge_points

@@ -724,3 +724,10 @@ def test_the_list_counts_the_guesses_of_limits_too():
     rows = {row["name"]: row["placeholders"] for row in material_rows(load_database(None))}
     marked = [row for row in material_details(load_database(None), "POM") if row["placeholder"]]
     assert rows["POM"] == str(len(marked)) == "7"
+
+
+@pytest.mark.parametrize("key", ["path", "name", "paht"])
+def test_a_value_that_is_none_of_a_material_is_refused(tmp_path, key):
+    with pytest.raises(InputError, match=f"'{key}' is not known"):
+        add_material(tmp_path / "m.yaml", "new", like="PA6", **{key: 5})
+    assert not (tmp_path / "m.yaml").exists()

@@ -47,6 +47,12 @@ from trackroller.study.spectrum.file import load_spectrum
         ("0.9 kg/dm3", "kg/m3", 900.0),
         ("0.25 W/(m*K)", "W/(m K)", 0.25),
         ("3 a", "h", 3 * 365.25 * 24),
+        ("300 HBW", "HB", 300.0),
+        ("30 Msi", "MPa", 30e6 * 4.4482216152605 / 645.16),
+        ("50 ksi", "MPa", 50e3 * 4.4482216152605 / 645.16),
+        ("5 kp", "N", 49.03325),
+        ("0.2 g", "m/s2", 1.96133),
+        ("-2g", "m/s2", -19.6133),
     ],
 )
 def test_a_unit_is_converted(text, unit, number):
@@ -89,6 +95,7 @@ def test_a_standard_deviation_has_no_offset():
         ("1 kNm", "N"),
         ("2 W/(m", "N"),
         ("3 HV", "HB"),
+        ("0.2 g", "N"),  # neither a mass nor an acceleration is a force
     ],
 )
 def test_a_wrong_unit_is_refused_by_name(text, unit):

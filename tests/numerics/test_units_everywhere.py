@@ -21,7 +21,7 @@ HEAD = {"name": "t", "factors": {"axial_force": {"values": [0, 10]}}, "outputs":
     ("head", "rows"),
     [
         ("x [µm], z [mm]", "-1500, 5.8\n0, 6\n"),
-        ("# measured\nProbe 7\nx [um];z [cm]", "-1500;0,58\n0;0,6\n"),
+        ("# measured\n# Probe 7\nx [um];z [cm]", "-1500;0,58\n0;0,6\n"),
         ("x[mm] z[mm]", "-1.5 5.8\n0 6\n"),
         ("x, z", "-1.5, 5.8\n0, 6\n"),
         ("x [in]\tz [μm]", f"{-1.5 / 25.4!r}\t5800\n0\t6000\n"),
@@ -38,7 +38,7 @@ def test_the_head_of_a_point_file_states_the_units(head, rows, tmp_path, monkeyp
 )
 def test_a_wrong_unit_in_the_head_of_a_point_file_is_refused_with_its_line(head, named, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    (tmp_path / "p.csv").write_text(f"Probe\n{head}\n1 2\n", encoding="utf-8")
+    (tmp_path / "p.csv").write_text(f"# Probe\n{head}\n1, 2\n", encoding="utf-8")
     with pytest.raises(tr.InputError, match=f"p.csv, line 2: .*{named}"):
         read_points("p.csv", "guide_profile.file")
 

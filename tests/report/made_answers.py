@@ -282,6 +282,7 @@ def best(kind: str = "front") -> Answer:
                 {"words": "Axis distance", "units": "mm", "value": distance},
                 {"words": "life", "units": "h", "value": life},
             ],
+            "required": [],
             "stopped": name == "Longest life",
         }
         for name, distance, life in zip(names, (14.0, 18.9, 25.0), (2_550.0, 27_900.0, 201_000.0), strict=True)

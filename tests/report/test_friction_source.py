@@ -8,7 +8,7 @@ import pytest
 import trackroller as tr
 from trackroller.materials import load_database
 from trackroller.report.pages.sheet import as_json
-from trackroller.roller.record import friction_records
+from trackroller.roller.stored_inputs import friction_records
 
 STEEL, POM, PA6 = "1.7225-normalised", "POM", "PA6"
 FACTORS = {

@@ -24,6 +24,7 @@ from trackroller.report.figures.contact_sections import sections, surface_stress
 from trackroller.report.figures.loads import forces_against_axial, stress_against_fit
 from trackroller.report.figures.maps import regime_map
 from trackroller.report.figures.panels import CLASSES, capped
+from trackroller.report.figures.sensitivity import morris_plane
 from trackroller.report.figures.study import OF_CASES, draw_all
 from trackroller.report.numbers import level_text, number, rounded
 from trackroller.results.columns import at_surface
@@ -341,3 +342,9 @@ def test_numbers_are_rounded_once():
 def test_no_material_has_the_colour_of_a_contact_or_of_a_body():
     names = [*builtin_database().names(), *(f"steel {i}" for i in range(200))]
     assert len(set(style.PAIR)) == 2 and not set(style.PAIR) & set(style.colours(names, True))
+
+
+def test_effects_of_one_trajectory_have_no_spread_and_no_figure():
+    effects = {"mu_star": [[1.0, 2.0]], "sigma": [[np.nan, np.nan]]}
+    indices = {name: (("output", "factor"), values) for name, values in effects.items()}
+    assert morris_plane(xr.Dataset(indices, coords={"output": ["slip"]}), "slip") is None

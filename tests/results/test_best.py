@@ -115,10 +115,21 @@ def test_where_no_design_meets_the_nearest_one_is_named_and_none_is_built():
     assert near["name"] == {"axis_distance": 30.0}
 
 
+def test_a_smallest_design_says_what_it_lasts_at_reference():
+    """The required life of the headline is that of the design solved alone at `reference`, at its worst load."""
+    _, _, answer = searched(goals={"axis_distance": "min"}, requirement={LIFE: {"min": 100}})
+    design = answer.headline["designs"][0]
+    cases = [BASE | {"axis_distance": design["name"]["axis_distance"], "radial_force": load} for load in (-200, -320)]
+    lives = tr.solve(cases, outputs=STUDY["outputs"], contact_model="sliding", accuracy="reference")[LIFE]
+    assert design["required"][0]["value"] == pytest.approx(float(lives.min()), rel=1e-9)
+    assert answer.table["required_1"].iloc[0] == design["required"][0]["value"]
+    assert "goal_1" not in {column.name for column in answer.columns}  # the size stands in the column of the choice
+
+
 def test_a_requirement_within_the_error_of_the_solution_is_solved_finer():
-    _, frame, answer = searched(goals={LIFE: "max"})
-    longest = frame.groupby("design")[LIFE].min().max()
-    _, _, close = searched(goals={LIFE: "max"}, requirement={LIFE: {"min": float(longest) * 0.999}})
+    _, _, answer = searched(goals={LIFE: "max"})
+    longest = answer.headline["designs"][0]["goals"][0]["value"]
+    _, _, close = searched(goals={LIFE: "max"}, requirement={LIFE: {"min": longest * (1 - 1e-6)}})
     assert answer.kind == "one" and close.kind == "solve_finer" and close.headline["designs"] == []
     assert close.headline["nearest"]["verdict"] == "open"
 

@@ -224,5 +224,7 @@ def test_of_equal_goals_the_longer_life_is_recommended():
 
     nothing = np.zeros(3)
     lives = np.array([1790.0, 18600.0, 4000.0])
-    tied = Judged(np.zeros((3, 1)), np.full((3, 1), 9.0), np.full((3, 1), 9.0), nothing, nothing, lives)
+    tied = Judged(
+        np.zeros((3, 1)), np.full((3, 1), 9.0), np.full((3, 1), 9.0), nothing, nothing, lives, nothing, np.zeros((3, 0))
+    )
     assert recommended(tied) == 1

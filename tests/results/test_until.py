@@ -20,7 +20,7 @@ from trackroller.methods.given_data import first_indices
 from trackroller.methods.replicates import jackknife
 from trackroller.results.growing import grow_study
 from trackroller.results.looks import looks_of
-from trackroller.results.results import OUTSIDE
+from trackroller.results.solved_cases import OUTSIDE
 from trackroller.study.design.growth import doubled
 from trackroller.study.design.sampling import sample
 from trackroller.study.file.load import load_study

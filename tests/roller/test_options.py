@@ -38,19 +38,10 @@ def test_every_word_of_an_option_is_explained_and_every_option_is_in_the_help():
 
 
 def test_contact_models_keep_their_numbers():
-    """New models come at the end, and a file of an earlier version states the meaning of its own numbers."""
+    """New models come at the end, and a data set states the meaning of its own numbers."""
     assert CONTACT_MODELS[:3] == ["sliding", "kalker", "kalker_table"]
-    older = xr.Dataset({"contact_model_used": ("case", [2, 0], {"flag_meanings": "sliding fastsim kalker"})})
-    assert solved_by(older).tolist() == ["kalker", "sliding"]
-
-
-def test_the_simplified_theory_is_refused_with_what_to_take_instead():
-    for refused in (
-        lambda: tr.solve(tr.Case(), contact_model="fastsim"),
-        lambda: parse_study({"name": "s", "contact_model": ["fastsim"], "factors": {"axial_force": {"values": [0.0]}}}),
-    ):
-        with pytest.raises(tr.InputError, match=r"contact_model = 'fastsim'.*kalker_table, which is cheaper and more"):
-            refused()
+    used = xr.Dataset({"contact_model_used": ("case", [2, 0], {"flag_meanings": "sliding film kalker"})})
+    assert solved_by(used).tolist() == ["kalker", "sliding"]
 
 
 def test_the_table_serves_the_exact_theory_at_preview_only():

@@ -8,7 +8,7 @@ import xarray as xr
 
 import trackroller as tr
 from trackroller.roller.dataset import VARIABLES
-from trackroller.roller.output_names import PARTS, body_of, is_life, pair_first, parts_of, present_names
+from trackroller.roller.output_names import PARTS, body_of, is_life, pair_first, parts_of
 
 CASES = [{"friction_coefficient": mu, "axial_force": force} for mu in (0.1, 0.3) for force in (0.0, 30.0)]
 
@@ -67,48 +67,6 @@ def test_words_name_body_and_contact():
     assert PARTS["peak_stress_roller_2"].words == "peak stress of the roller in contact 2"
     assert PARTS["friction_power"].words == "friction power of both contacts"
     assert PARTS["bulk_temperature_rise_guide"].words.startswith("mean temperature rise of the guide by")
-
-
-@pytest.mark.parametrize(
-    ("former", "now"),
-    [
-        ("peak_stress[1,guide]", "peak_stress_guide_1"),
-        ("utilisation[heat, roller] < 1", "utilisation_roller_heat < 1"),
-        ("b10(roller_life_cycles)", "b10(life_cycles_roller)"),
-        ("friction_energy", "friction_energy_per_distance"),
-        ("roller_life_hours > 5", "roller_life_hours > 5"),
-    ],
-)
-def test_names_of_earlier_versions_have_a_name_of_today(former, now):
-    assert present_names(former) == now
-
-
-@pytest.mark.parametrize(
-    "keys",
-    [
-        {"analysis": {"outputs": ["roller_peak_stress"]}},
-        {"analysis": {"target": {"roller_wear_life_hours": {"min": 5}}}},
-        {"pareto": {"peak_stress[1,roller]": "min", "slip": "min"}},
-        {"constraints": ["max_pressure[2] < 900"]},
-    ],
-)
-def test_a_study_with_former_names_is_refused_with_the_name_to_write(keys):
-    study = {"name": "former", "factors": {"axial_force": {"values": [0, 30]}}} | keys
-    with pytest.raises(tr.InputError, match=r"Write (peak_stress_roller|wear_life_hours_roller|max_pressure_2 < 900)"):
-        tr.load_study(study)
-
-
-def test_a_stored_study_with_former_names_is_read(tmp_path):
-    text = (
-        "name: old\nfactors: {axial_force: {values: [0, 30]}}\ncontact_model: sliding\noutputs: [forces, peak_stress]\n"
-    )
-    (tmp_path / "old.yaml").write_text(text + "analysis: {outputs: [peak_stress_roller]}\n")
-    results = tr.run(tmp_path / "old.yaml", results=tmp_path / "results")
-    data = results.data.assign_attrs(
-        study=results.data.attrs["study"].replace("peak_stress_roller", "roller_peak_stress")
-    )
-    assert "roller_peak_stress" in data.attrs["study"]
-    assert tr.open_study(data).config.analysis.outputs == ("peak_stress_roller",)
 
 
 def test_the_declaration_says_what_is_a_life_and_whose():

@@ -6,7 +6,7 @@ from reference_cases import solve_sliding
 
 import trackroller as tr
 from trackroller import parameters
-from trackroller.roller.blocks import Block, join
+from trackroller.roller.block_results import Block, join
 from trackroller.roller.dataset import VARIABLES, validity_bit
 
 

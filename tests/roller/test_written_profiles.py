@@ -50,4 +50,4 @@ def test_profiles_are_read_right_or_refused(block, tmp_path, monkeypatch):
         if said:
             wrong[seed] = file.fault, said
     assert not wrong, json.dumps(wrong, indent=1)
-    assert accepted > 0.25 * FILES / BLOCKS, "most files are refused, so that the test shows little"
+    assert accepted > 0.15 * FILES / BLOCKS, "most files are refused, so that the test shows little"

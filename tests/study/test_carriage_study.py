@@ -11,7 +11,7 @@ from tests.carriage.carts import ROLLER, shuttle
 from trackroller.carriage.fields import changed, fields_of
 from trackroller.carriage.file import carriage_of
 from trackroller.errors import InputError
-from trackroller.parameters.of_carriage import field_of, long_name_of
+from trackroller.parameters.carriage_fields import field_of, long_name_of
 
 LIFE = "pair_life_to_first_limit_hours"
 OVERROLLED = ROLLER | {"guide_overrollings_per_hour": 60}

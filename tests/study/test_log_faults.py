@@ -283,6 +283,20 @@ def test_a_clipped_sensor_is_told(tmp_path):
 NAMES = names_of(("time", "speed"))
 
 
+def test_a_frozen_sensor_is_told(tmp_path):
+    whole = truth()
+    whole["radial_force"][150:230] = whole["radial_force"][150]
+    found = read(write(tmp_path / "log.csv", whole, NAMES))
+    doubt = next(doubt for doubt in found.doubts if doubt.code == "frozen")
+    assert doubt.count == 80 and doubt.line == 152 and "in 80 lines on end, the first line 152" in doubt.text
+    steps = truth()
+    steps["radial_force"] = np.repeat(steps["radial_force"][::20], 20)  # a load that changes now and then
+    stopped = truth()
+    stopped["radial_force"][150:230] = 0.0  # told as travel without a load
+    for columns in (truth(), steps, stopped):
+        assert "frozen" not in codes(read(write(tmp_path / "log.csv", columns, NAMES)))
+
+
 def test_few_lines_that_carry_the_life_are_told(tmp_path):
     whole = truth()
     radial = whole["radial_force"].copy()
@@ -367,7 +381,8 @@ def test_a_long_log_with_decimal_commas_comments_and_empty_lines(tmp_path, monke
         ("1,2,3,4,5", "4 cells, one for each name"),
         ("1,2,3,4,5,6", "lines of 4 cells"),
         ("1,2,3", "line 301: axial_force = ''.*a finite number"),
-        ('1,2,3,"4', "quotation marks that close"),
+        ('1,2,3,"4', "line 301: axial_force = '\"4'.*a finite number"),
+        ('1,2,3,"4"5', "line 301: axial_force = '\"4\"5'.*a finite number"),
         ("1,2,3,1_0", "line 301: axial_force = '1_0'"),
     ],
 )

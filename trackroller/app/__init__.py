@@ -78,7 +78,7 @@ def frame(
     >>> page.close()
     """
     from trackroller.roller.case import Case  # the worker of a study starts faster without the solver
-    from trackroller.roller.record import given_inputs, setting_text
+    from trackroller.roller.stored_inputs import given_inputs, setting_text
 
     checked = case if isinstance(case, Case) else Case.from_dict({} if case is None else case)
     words = {name: setting_text(value) for name, value in given_inputs(checked).items()}

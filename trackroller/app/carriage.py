@@ -28,7 +28,7 @@ from trackroller.report.pages.carriage import tables
 from trackroller.report.tables.table import Table, cell
 from trackroller.report.words.carriage import sentences, worst_place
 from trackroller.roller.aliases import ALIASES
-from trackroller.roller.record import doubts_of
+from trackroller.roller.stored_inputs import doubts_of
 from trackroller.study.store import ownership
 from trackroller.study.store.digests import read_record
 from trackroller.yaml_file import change_yaml, errors_by_line, parse_mapping, write_yaml

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from trackroller.errors import InputError
+from trackroller.errors import InputError, check_names
 from trackroller.materials import add_material, load_database
 from trackroller.materials.file import find_user_file
 from trackroller.materials.properties import ALTERNATIVES, PROPERTIES
@@ -74,6 +74,8 @@ def save_material(name: str, like: str, values: dict[str, str], source: str) -> 
     if not source.strip():
         raise InputError("source", source, "where the values come from", "Name the data sheet or the test.")
     database, file = load_database(), find_user_file(None) or FILE
+    check_names("material value", values, (*PROPERTIES, *ALTERNATIVES))
+    values = {field: str(text) for field, text in values.items()}
     changed = {field: typed(text) for field, text in values.items() if text.strip()}
     base = {} if name in database or like == name else {"like": database.material(like, "like").name}
     if not changed:

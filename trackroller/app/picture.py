@@ -25,10 +25,10 @@ from trackroller.report.pages.sheet import collect, render, write_sheet
 from trackroller.report.workbook import write_roller
 from trackroller.roller.case import Case
 from trackroller.roller.find import find
-from trackroller.roller.record import given_inputs, solve_command
 from trackroller.roller.regime_limits import Limits
 from trackroller.roller.settings import checked_case, with_beside
 from trackroller.roller.solver import solve
+from trackroller.roller.stored_inputs import given_inputs, solve_command
 from trackroller.study.outputs import every_name, outputs
 from trackroller.yaml_file import parse_yaml, write_yaml
 

@@ -13,8 +13,8 @@ from trackroller.errors import InputError
 from trackroller.report.numbers import lives_in_years
 from trackroller.report.pages.spectrum import block_table, limit_table, warnings
 from trackroller.report.words.spectrum import sentences
-from trackroller.roller.record import given_inputs
 from trackroller.roller.settings import LOADS, parts_for_spectrum
+from trackroller.roller.stored_inputs import given_inputs
 from trackroller.study.spectrum.file import TRAVEL, Spectrum
 from trackroller.study.spectrum.solve import solve_spectrum
 from trackroller.yaml_file import write_yaml

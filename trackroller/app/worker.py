@@ -94,6 +94,7 @@ def run(name: str) -> None:
 
 def _work(name: str, progress: Progress) -> None:
     from trackroller.report.build import build_report  # heavy: SALib; the page shows "starting" meanwhile
+    from trackroller.report.explorer.page import write_explorer
     from trackroller.results.solving import run_any  # heavy: analysis
     from trackroller.results.stored_study import open_study
     from trackroller.study.status import find_study, status_of
@@ -105,7 +106,7 @@ def _work(name: str, progress: Progress) -> None:
     progress.say(step="making the report", total=status.total, done=status.done, failed=status.failed)
     build_report(ledger.folder, lambda line: progress.say(step=line))
     progress.say(step="making the explorer")
-    open_study(ledger.folder.root).explore(ledger.folder.root / "explorer.html")
+    write_explorer(open_study(ledger.folder.root), ledger.folder.root / "explorer.html")
     progress.say(step="done")
 
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from trackroller.carriage.file import Carriage, LoadCase, PointMass, Preload, check_curves
 from trackroller.errors import unknown_name
-from trackroller.parameters.of_carriage import AXES, OF_LOAD_CASE, OF_ROLLER, OF_WHOLE, PREFIX, split_field, word_of
+from trackroller.parameters.carriage_fields import AXES, OF_LOAD_CASE, OF_ROLLER, OF_WHOLE, PREFIX, split_field, word_of
 
 
 def fields_of(whole: Carriage) -> list[str]:
@@ -42,7 +42,7 @@ def changed(whole: Carriage, values: Mapping[str, float]) -> Carriage:
     whole : Carriage
         The carriage.
     values : mapping of str to float
-        Values by the names of `fields_of`, in the units of `trackroller.parameters.of_carriage`.
+        Values by the names of `fields_of`, in the units of `trackroller.parameters.carriage_fields`.
 
     Raises
     ------

@@ -36,8 +36,8 @@ from trackroller.roller.dataset import file_attributes, validity_bit
 from trackroller.roller.doubts import doubts, ratings
 from trackroller.roller.duty import with_duty, years
 from trackroller.roller.geometry import contact_geometry
-from trackroller.roller.record import DOUBTS
 from trackroller.roller.settings import LOADS
+from trackroller.roller.stored_inputs import DOUBTS
 
 LIFE = "pair_life_to_first_limit_hours"
 CONVENTIONS = (

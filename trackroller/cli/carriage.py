@@ -42,7 +42,7 @@ def run_carriage(
     from trackroller.carriage.solve import doubts_of_rollers, forces_of, solve_carriage  # heavy: scipy
     from trackroller.report.pages.carriage import print_carriage, write_carriage  # heavy: jinja2
     from trackroller.report.pages.sheet import as_json as text_of
-    from trackroller.roller.record import doubts_of
+    from trackroller.roller.stored_inputs import doubts_of
 
     whole = load_carriage(file)
     if (spectrum is not None or study) and page is None and not as_json:

@@ -50,17 +50,19 @@ def fit_sn(  # noqa: PLR0913 - one argument for each option of the command
 def _finish(made: Fit, file: Path, replace: bool, page: Path | None) -> None:
     """Print what was fitted, and write material, posterior and page."""
     from trackroller.cli.case import writable_page
+    from trackroller.files import all_or_none
     from trackroller.materials.file import slug
-    from trackroller.report.pages.fit import sentences
+    from trackroller.report.pages.fit import sentences, write_fit
 
     target = writable_page(page or Path(f"fit-{slug(made.name)}.html"))
-    for text in [*sentences(made), *made.not_given]:
+    for text in [*sentences(made), *made.notes, *made.not_given]:
         print(text)
-    if set(made.material) - {"name", "like"} and not made.unidentified:
-        file.parent.mkdir(parents=True, exist_ok=True)
-        made.write(file, replace=replace)
-        print(f"material '{made.name}' is in {file}")
-    made.report(target)
+    written = bool(set(made.material) - {"name", "like"}) and not made.unidentified
+    with all_or_none(target):
+        write_fit(made, target)
+        if written:
+            made.write(file, replace=replace)
+            print(f"material '{made.name}' is in {file}")
     print(f"page: {target}")
 
 

@@ -72,10 +72,13 @@ def materials_add(
 ) -> None:
     """Write a material into your own file; comments in the file stay. sn_points takes the name of a table, too."""
     from trackroller.cli.case import settings_of
+    from trackroller.errors import check_names
     from trackroller.materials import add_material
+    from trackroller.materials.edit import FIELDS
     from trackroller.roller.doubts import doubts
 
     values = settings_of(settings)
+    check_names(f"material '{name}': field", values, FIELDS)
     if isinstance(values.get("sn_points"), str):
         values["sn_points"] = _points_of(Path(values["sn_points"]))
     material = add_material(file, name, replace=replace, **values)

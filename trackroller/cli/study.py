@@ -101,6 +101,7 @@ def _report(folder: StudyFolder) -> Path:
 def print_explorer(study: str, results: Path, out: Path | None) -> None:
     """Write the explorer of a study from its folder or its `study.nc`, and print where it is."""
     from trackroller.report.build import place_of_pages  # heavy: SALib
+    from trackroller.report.explorer.page import write_explorer
     from trackroller.results.stored_study import open_study
 
     found = find_folder(study, results)
@@ -113,7 +114,7 @@ def print_explorer(study: str, results: Path, out: Path | None) -> None:
         folder.create()
     elif out is None:
         free_for_page(folder.root / EXPLORER)
-    print(solved.explore(target or place_of_pages(solved, folder) / EXPLORER))
+    print(write_explorer(solved, target or place_of_pages(solved, folder) / EXPLORER))
 
 
 def print_best(study: str, results: Path, out: Path | None, as_json: bool = False) -> None:

@@ -16,7 +16,7 @@ from importlib import resources
 import numpy as np
 from numpy.polynomial.chebyshev import chebpts1, chebval, chebvander
 
-from trackroller.contact.common import Resultants
+from trackroller.contact.quantities import Resultants
 from trackroller.contact.slip import Creepage
 from trackroller.errors import InputError
 from trackroller.numerics.compiled import compiled

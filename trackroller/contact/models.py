@@ -13,11 +13,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from trackroller.contact.common import Elastic
 from trackroller.contact.friction_laws import FrictionLaw, constant
 from trackroller.contact.kalker.kalker_model import KalkerModel
-from trackroller.contact.normal.patches import Patches
+from trackroller.contact.normal.patches import NormalSolver
 from trackroller.contact.protocol import ContactModel
+from trackroller.contact.quantities import Elastic
 from trackroller.contact.rollers import Rollers
 from trackroller.contact.sliding_model import SlidingModel
 from trackroller.contact.table.table_model import TableModel
@@ -77,7 +77,7 @@ def contact_model(
     law: FrictionLaw | None = None,
     travel_speed: np.ndarray | float = 1000.0,
     slip_terms: Collection[str] = (),
-    patches: Patches | None = None,
+    patches: NormalSolver | None = None,
 ) -> ContactModel:
     """Return the contact model `name` for n rollers.
 
@@ -98,7 +98,7 @@ def contact_model(
     slip_terms : collection of str
         With 'profile' the rigid slip follows the guide's profile instead of its tangent; 'sliding' always does.
         'curve' changes the slip that a model is given, see `slip.Slip`.
-    patches : Patches, optional
+    patches : NormalSolver, optional
         Solver of the normal problem of the rollers; Hertz's ellipses if not given.
 
     Returns

@@ -1,7 +1,7 @@
 """Interface of a contact model: the methods of every model, and the capabilities that it declares.
 
 The solver uses this interface and that of a `Patch` only, and never asks for the class of a model or of a patch.
-Arrays, units and the contact frame are those of `trackroller.contact.common`.
+Arrays, units and the contact frame are those of `trackroller.contact.quantities`.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from trackroller.contact.common import Patch, Resultants, SurfaceTractions, Works
+from trackroller.contact.quantities import Patch, Resultants, SurfaceTractions, Works
 from trackroller.contact.slip import Slip
 from trackroller.parameters.contact_models import ModelDeclaration
 
@@ -26,7 +26,7 @@ class ContactModel:
     """
 
     declaration: ModelDeclaration  # name, options, cost and promised accuracy
-    on_solved_patches: ClassVar[type[ContactModel] | None] = None  # the model on solved patches, made with `Patches`
+    on_solved_patches: ClassVar[type[ContactModel] | None] = None  # the model on solved patches
     elastic = True  # the surfaces move elastically along the patch, so that parts of it can adhere
     full_sliding = False  # the shear follows from an ellipse and a slip field in closed form; it needs no grid
     knows_tractions = True  # forces and `surface` come from one solution
@@ -37,7 +37,7 @@ class ContactModel:
     peak_error = 0.0  # relative error of the peak stress that the model adds, per unit friction coefficient
 
     def __init__(self, given: Rollers, settings: Any) -> None:
-        """Keep what is known of n rollers, and the `Accuracy`, or the `Patches` of a model on solved patches."""
+        """Keep what is known of n rollers, and the `Accuracy`, or the `NormalSolver` of a model on solved patches."""
         self.given, self.settings = given, settings
 
     @property

@@ -10,8 +10,8 @@ import numpy as np
 from trackroller.parameters.contact_models import DECLARED
 
 if TYPE_CHECKING:  # these modules load numba, which a plan does not need
-    from trackroller.contact.common import Elastic
     from trackroller.contact.friction_laws import FrictionLaw
+    from trackroller.contact.quantities import Elastic
 
 CONVERGED_PRESSURE = 1e-7  # largest residual of the normal problem of patches that are no ellipses
 

@@ -12,9 +12,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from trackroller.contact.common import Ellipse, Patch, Resultants, SurfaceTractions
 from trackroller.contact.friction_laws import FrictionLaw, constant
-from trackroller.contact.sliding_kernels import Patches, Rule, Sums, integrate
+from trackroller.contact.quantities import Ellipse, Patch, Resultants, SurfaceTractions
+from trackroller.contact.sliding_kernels import Rule, SlidingPatches, Sums, integrate
 from trackroller.contact.slip import (
     Slip,
     lateral_slip,
@@ -80,7 +80,7 @@ def integrals(
     """
     n = np.size(friction)
     law = constant() if law is None or law.is_constant else law  # a law that stays at 1 is constant
-    patches = Patches(*np.array((*_geometry(ellipse, slip), travel_speed / slip.rolling_radius)))
+    patches = SlidingPatches(*np.array((*_geometry(ellipse, slip), travel_speed / slip.rolling_radius)))
     sums = np.empty((4, n))
     out = Sums(*sums)
     model, table, rule = spin_model_index(spin_model), law.knots, Rule(*clustered_rule(nodes))
@@ -90,7 +90,7 @@ def integrals(
 
 
 def _geometry(patch: Patch, slip: Slip) -> tuple[np.ndarray, ...]:
-    """Return a, b, sine and cosine of the contact angle, r_C,G and r_Delta0, the fields of `Patches` but the speed."""
+    """Return a, b, sine and cosine of the contact angle, r_C,G and r_Delta0: `SlidingPatches` without speed."""
     axes = patch.semi_axis_lateral, patch.semi_axis_rolling
     return *axes, slip.sine, slip.cosine, slip.guide_profile_radius, slip.shift
 

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from trackroller.contact import sliding
-from trackroller.contact.common import Works
 from trackroller.contact.normal.patch_models import GridSlidingModel
 from trackroller.contact.protocol import ContactModel
+from trackroller.contact.quantities import Works
 from trackroller.contact.rollers import Rollers
 from trackroller.parameters.accuracy import Accuracy
 from trackroller.parameters.contact_models import DECLARED

@@ -22,7 +22,7 @@ LIFE_EXPONENT = {"ball": 3.0, "roller": 10.0 / 3.0}
 WEIBULL = {"ball": 10.0 / 9.0, "roller": 9.0 / 8.0}  # slope of the lives, also of rows that run together
 
 
-class Loads(NamedTuple):
+class BearingLoads(NamedTuple):
     """Loads on the bearing: radial force along and across the track normal [N], axial force [N], moments [N mm], (n,).
 
     `pressing` is F_rad and `driving` F_Motor; `tilting` is M_yR and `yawing` M_zR.
@@ -35,7 +35,7 @@ class Loads(NamedTuple):
     yawing: np.ndarray
 
     @classmethod
-    def of(cls, solved: SolvedRollers) -> Loads:
+    def of(cls, solved: SolvedRollers) -> BearingLoads:
         """Return the loads of solved rollers."""
         c, v = solved.cases, solved.values
         forces = c["radial_force"], c["motor_force"], np.abs(c["axial_force"])
@@ -52,12 +52,12 @@ class Loads(NamedTuple):
         return np.asarray(np.hypot(self.tilting, self.yawing))
 
 
-def row_forces(loads: Loads, rows: np.ndarray, distance: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def row_forces(loads: BearingLoads, rows: np.ndarray, distance: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return the radial and axial force of each row.
 
     Parameters
     ----------
-    loads : Loads
+    loads : BearingLoads
         Loads of n bearings.
     rows : numpy.ndarray
         1 or 2, (n,).
@@ -121,7 +121,7 @@ def life_at(life: np.ndarray, probability: float, slope: np.ndarray) -> np.ndarr
 
 def evaluate(solved: SolvedRollers) -> Values:
     """Return `bearing_life_hours` (L10) [h], `bearing_static_safety` and `bearing_utilisation` [1], (n,)."""
-    loads, b = Loads.of(solved), FIELD.columns(solved.cases["bearing"])
+    loads, b = BearingLoads.of(solved), FIELD.columns(solved.cases["bearing"])
     each = {name: b[name][:, None] for name in ("e", "X", "Y", "X0", "Y0")}
     dynamic, static = equivalent(*row_forces(loads, b["rows"], b["row_distance"]), each)
     hours = 1e6 * rating_life(dynamic, b["dynamic_rating"], b["kind"]) / solved.overrollings_per_hour[:, 0]

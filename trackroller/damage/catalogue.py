@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from trackroller.damage.bearing import Loads
+from trackroller.damage.bearing import BearingLoads
 from trackroller.damage.limit import Limit, SolvedRollers, Values, Verdict, optional, variables
 from trackroller.damage.mapping import MappingField
 from trackroller.numerics.variable import LIFE
@@ -61,7 +61,7 @@ def catalogue_km(load_factor: np.ndarray, basic_life: np.ndarray, law: np.ndarra
 
 def evaluate(solved: SolvedRollers) -> Values:
     """Return `catalogue_load_factor` [1] and `catalogue_life_km` [km], (n,)."""
-    loads, c = Loads.of(solved), FIELD.columns(solved.cases["catalogue"])
+    loads, c = BearingLoads.of(solved), FIELD.columns(solved.cases["catalogue"])
     factor = loads.radial / c["radial"] + loads.axial / c["axial"] + loads.moment / c["moment"]
     return {
         "catalogue_load_factor": factor,

@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from trackroller.damage.histories import Tractions
+from trackroller.damage.histories import RollerTractions
 from trackroller.damage.limit import TRACTIONS, Limit, SolvedRollers, Values, Verdict, optional, variables, worst
 from trackroller.numerics.parameter import Parameter
 from trackroller.numerics.variable import LARGEST, SUM
@@ -67,20 +67,20 @@ def cell_temperature(steps: tuple[float, float], nodes: tuple[int, int], decay: 
     return np.concatenate([half[:, :0:-1], half], axis=1)
 
 
-def heat_density(t: Tractions, speed: np.ndarray) -> np.ndarray:
+def heat_density(t: RollerTractions, speed: np.ndarray) -> np.ndarray:
     """Return the heat of friction |tau . s| v of each element, (n, contact, y, x) [W/mm2], for v, (n,) [mm/s]."""
     work = np.abs(t.shear_lateral * t.slip_lateral + t.shear_rolling * t.slip_rolling)
     return np.asarray(1e-3 * work * speed[:, None, None, None])
 
 
 def flash(
-    t: Tractions, heat: np.ndarray, speed: np.ndarray, conductivity: np.ndarray, diffusivity: np.ndarray
+    t: RollerTractions, heat: np.ndarray, speed: np.ndarray, conductivity: np.ndarray, diffusivity: np.ndarray
 ) -> np.ndarray:
     """Return the largest temperature rise of each body if it took all heat of the contact.
 
     Parameters
     ----------
-    t, heat : Tractions and numpy.ndarray
+    t, heat : RollerTractions and numpy.ndarray
         The patches, and their heat density, (n, contact, y, x) [W/mm2].
     speed : numpy.ndarray
         v, (n,) [mm/s].

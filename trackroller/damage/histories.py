@@ -13,6 +13,8 @@ from typing import Any
 
 import numpy as np
 
+from trackroller.halfspace.tractions import Tractions
+
 PADDING = 0.18  # nodes beyond the patch along y over those of the patch, on each side
 # over the smaller half side of the patch; the stresses that decide lie at 0.3 to 0.8, or under high friction higher
 DEPTHS = np.array([0.05, 0.1, 0.17, 0.26, 0.37, 0.5, 0.66, 0.9])
@@ -20,28 +22,15 @@ RUNG = 0.07  # step of the logarithm of the ratio of sides
 
 
 @dataclass(frozen=True)
-class Tractions:
-    """Tractions on the roller over the patches of n cases, and the slip; NaN where a patch does not exist.
+class RollerTractions(Tractions):
+    """Tractions on the rollers of n cases, (n, contact, ...); NaN where there is no patch, slips in full slip as well.
 
-    Parameters
+    Attributes
     ----------
-    x, y : numpy.ndarray
-        Coordinates of the grids, (n, contact, nx) and (n, contact, ny) [mm].
-    pressure, shear_lateral, shear_rolling : numpy.ndarray
-        Tractions, (n, contact, ny, nx) [MPa].
-    slip_lateral, slip_rolling : numpy.ndarray
-        Slip velocity over travel speed, (n, contact, ny, nx) [1]; NaN in full slip.
     mirrored : numpy.ndarray of bool
         Cases whose contact 2 is the mirror image of contact 1, (n,).
     """
 
-    x: np.ndarray
-    y: np.ndarray
-    pressure: np.ndarray
-    shear_lateral: np.ndarray
-    shear_rolling: np.ndarray
-    slip_lateral: np.ndarray
-    slip_rolling: np.ndarray
     mirrored: np.ndarray
 
     def by_patch(self, values: Callable[[int, int], Any], *shape: int) -> np.ndarray:
@@ -57,15 +46,15 @@ class Tractions:
         out[self.mirrored, 1] = out[self.mirrored, 0]
         return out
 
-    def loads(self, case: int, contact: int) -> Loads:
+    def loads(self, case: int, contact: int) -> PatchLoads:
         """Return the loads of one patch."""
         at = case, contact
         step_x, step_y = ((axis[-1] - axis[0]) / (axis.size - 1) for axis in (self.x[at], self.y[at]))
-        return Loads(np.stack([self.shear_lateral[at], self.shear_rolling[at], self.pressure[at]]), step_x, step_y)
+        return PatchLoads(np.stack([self.shear_lateral[at], self.shear_rolling[at], self.pressure[at]]), step_x, step_y)
 
 
 @dataclass(frozen=True)
-class Loads:
+class PatchLoads:
     """Loads q_x, q_y, p of one patch as hats around nodes, (3, ny, nx) [MPa], and the spacings of the nodes [mm]."""
 
     tractions: np.ndarray
@@ -78,7 +67,7 @@ class Loads:
         _, ny, nx = self.tractions.shape
         return 0.5 * nx * self.step_x, 0.5 * ny * self.step_y
 
-    def on_ladder(self) -> Loads:
+    def on_ladder(self) -> PatchLoads:
         """Return loads on half as many nodes, in a larger box whose sides have a ratio of the ladder.
 
         Quadratic B-splines carry each load to three nodes along each axis. The resultants and first moments stay, and
@@ -91,7 +80,7 @@ class Loads:
         nodes = (nx + 1) // 2, (ny + 1) // 2
         step_x, step_y = 2.0 * max(wide, ratio * long) / nodes[0], 2.0 * max(long, wide / ratio) / nodes[1]
         across, along = _spread(nx, self.step_x, nodes[0], step_x), _spread(ny, self.step_y, nodes[1], step_y)
-        return Loads(along @ self.tractions @ across.T, step_x, step_y)
+        return PatchLoads(along @ self.tractions @ across.T, step_x, step_y)
 
 
 def _spread(points: int, spacing: float, nodes: int, step: float) -> np.ndarray:
@@ -130,12 +119,12 @@ def _smooth_kernels(ratio: float, nodes: tuple[int, int], inner: tuple[int, int]
     return np.asarray(kernels)
 
 
-def planes(loads: Loads, depths: np.ndarray, poisson_ratio: np.ndarray) -> np.ndarray:
+def planes(loads: PatchLoads, depths: np.ndarray, poisson_ratio: np.ndarray) -> np.ndarray:
     """Return the stresses of both bodies on planes at any depth below one patch.
 
     Parameters
     ----------
-    loads : Loads
+    loads : PatchLoads
         The loads on the roller, bilinear between the nodes; (-q_x, -q_y, p) act on the guide.
     depths : numpy.ndarray
         z >= 0 of the planes, (depth,) [mm].
@@ -156,12 +145,12 @@ def planes(loads: Loads, depths: np.ndarray, poisson_ratio: np.ndarray) -> np.nd
     return planes_below(padded, (loads.step_x, loads.step_y), depths, poisson_ratio, FRICTION_SIGNS)
 
 
-def deep_planes(loads: Loads, poisson_ratio: np.ndarray) -> np.ndarray:
+def deep_planes(loads: PatchLoads, poisson_ratio: np.ndarray) -> np.ndarray:
     """Return the stresses of both bodies on the planes `DEPTHS` below one patch, on half as many nodes.
 
     Parameters
     ----------
-    loads : Loads
+    loads : PatchLoads
         The loads on the roller.
     poisson_ratio : numpy.ndarray
         nu of roller and guide, (2,) [1].

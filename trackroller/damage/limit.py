@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from trackroller.damage.histories import Tractions
+from trackroller.damage.histories import RollerTractions
 from trackroller.damage.mapping import MappingField
 from trackroller.numerics.parameter import Parameter
 from trackroller.numerics.variable import BODIES, REGIMES, Variable
@@ -57,7 +57,7 @@ def skidding(regime: np.ndarray) -> np.ndarray:
     return np.asarray((np.asarray(regime) == REGIMES.index("full_slip"))[:, None])
 
 
-def _no_tractions() -> Tractions:
+def _no_tractions() -> RollerTractions:
     raise LookupError("a limit without the need 'tractions' asks for them")
 
 
@@ -99,7 +99,7 @@ class SolvedRollers:
     values: Mapping[str, np.ndarray]
     rolling_radius: np.ndarray
     options: Mapping[str, Any] = field(default_factory=dict)
-    tractions: Callable[[], Tractions] = _no_tractions
+    tractions: Callable[[], RollerTractions] = _no_tractions
     unworn_gap: Callable[[int, int, np.ndarray], np.ndarray] = _no_gap
     regime: np.ndarray | None = None
     ends: Mapping[str, np.ndarray] = field(default_factory=dict)

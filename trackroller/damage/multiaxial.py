@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from trackroller.damage.histories import Tractions, deep_planes, planes
+from trackroller.damage.histories import RollerTractions, deep_planes, planes
 from trackroller.damage.limit import TRACTIONS, Limit, SolvedRollers, Values, optional, variables
 from trackroller.numerics.variable import LARGEST
 
@@ -44,12 +44,12 @@ def _twice(values: np.ndarray) -> np.ndarray:
     return out
 
 
-def stress_paths(t: Tractions, case: int, contact: int, poisson_ratio: np.ndarray) -> np.ndarray:
+def stress_paths(t: RollerTractions, case: int, contact: int, poisson_ratio: np.ndarray) -> np.ndarray:
     """Return the stress paths of points at the surface and below one patch.
 
     Parameters
     ----------
-    t : Tractions
+    t : RollerTractions
         The patches.
     case, contact : int
         Place of the patch.

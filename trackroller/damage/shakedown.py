@@ -13,17 +13,17 @@ from __future__ import annotations
 
 import numpy as np
 
-from trackroller.damage.histories import DEPTHS, Tractions, deep_planes
+from trackroller.damage.histories import DEPTHS, RollerTractions, deep_planes
 from trackroller.damage.limit import TRACTIONS, Limit, SolvedRollers, Values, Verdict, variables, worst
 from trackroller.numerics.variable import LARGEST
 
 
-def shears(t: Tractions, poisson_ratio: np.ndarray) -> np.ndarray:
+def shears(t: RollerTractions, poisson_ratio: np.ndarray) -> np.ndarray:
     """Return the shear yield stress k at which the stresses below each patch just shake down.
 
     Parameters
     ----------
-    t : Tractions
+    t : RollerTractions
         The patches.
     poisson_ratio : numpy.ndarray
         nu of the bodies, (n, 2) [1].

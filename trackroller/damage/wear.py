@@ -24,7 +24,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from trackroller.damage.histories import Tractions
+from trackroller.damage.histories import RollerTractions
 from trackroller.damage.limit import TRACTIONS, Limit, SolvedRollers, Values, Verdict, optional, variables, worst
 from trackroller.damage.mapping import MappingField
 from trackroller.errors import InputError
@@ -126,7 +126,7 @@ def deepest(x: np.ndarray, depth: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return largest, np.where(largest > 0.0, place, np.nan)
 
 
-def _gaps_at_edges(solved: SolvedRollers, t: Tractions) -> np.ndarray:
+def _gaps_at_edges(solved: SolvedRollers, t: RollerTractions) -> np.ndarray:
     """Return the smaller gap of the unworn profiles at the two lateral edges of each patch, (n, contact) [mm]."""
     c = solved.cases
     if solved.options["normal"] == "hertz":
@@ -165,7 +165,7 @@ def energy_ratio(energy: np.ndarray, elements: np.ndarray) -> np.ndarray:
     return np.where(np.isfinite(ratio) & (ratio > 0.0), ratio, 1.0)
 
 
-def _rates(solved: SolvedRollers, t: Tractions, sliding: np.ndarray) -> list[np.ndarray]:
+def _rates(solved: SolvedRollers, t: RollerTractions, sliding: np.ndarray) -> list[np.ndarray]:
     """Return `local_rates` of each case, (n, contact, y, x) of roller and guide; NaN without a table."""
     shear = np.hypot(t.shear_lateral, t.shear_rolling)
     if solved.options["wear_law"] == "archard":

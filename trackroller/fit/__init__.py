@@ -1,1 +1,6 @@
 """Values of materials from tests: S-N lines of coupons and rollers, wear and friction, how sure, and the next test."""
+
+from collections.abc import Callable
+from typing import Any
+
+SHOWN: dict[str, Callable[..., Any]] = {}  # methods of `Fit`; trackroller/__init__ adds what shows it

@@ -21,23 +21,24 @@ from typing import Any
 
 import numpy as np
 
-from trackroller.damage.limit import roller_overrollings
 from trackroller.damage.wear import KM_PER_HOUR
 from trackroller.errors import Collector, InputError, check_names, listing
 from trackroller.files import files_beside, find_beside
 from trackroller.fit.coupons import check_falls, check_held, deviation_of, priors_of
-from trackroller.fit.fitted import Fit, Group
+from trackroller.fit.fitted import Fit, Group, check_texts
 from trackroller.fit.line import Line, Tests
 from trackroller.fit.posterior import ln_range
+from trackroller.fit.solved_rollers import DEFAULTS, Solved, solved_rollers
 from trackroller.fit.table import LEAST, TestTable, read_tests
 from trackroller.materials import Material, load_database
-from trackroller.numerics.units import in_unit, split_quantity
+from trackroller.numerics.numbers import finite_number
+from trackroller.numerics.plain import plain
+from trackroller.numerics.units import split_quantity
 from trackroller.parameters import BODIES, LIMITS, MATERIAL_FIELDS, PARAMETERS, REGIMES
 from trackroller.parameters.example import not_given_text
 from trackroller.parameters.validity import VALIDITY
 from trackroller.roller.aliases import ALIASES, overridden
 from trackroller.roller.case import FIELDS, Case
-from trackroller.roller.geometry import rolling_radius
 from trackroller.roller.settings import BESIDE, checked_case
 from trackroller.roller.solver import solve
 from trackroller.yaml_file import read_mapping
@@ -51,7 +52,7 @@ FRICTIONS = (0.01, 0.03, 0.06, 0.1, 0.15, 0.2, 0.3, 0.4, 0.55, 0.7, 0.9)  # at w
 UNIT_WEAR = 1e-6  # wear coefficient with which travels to a depth are computed [mm3/(N m)]
 LONGEST = 50_000.0  # h: nearly six years without a stop
 FLAG = {name: 1 << place for place, name in enumerate(VALIDITY)}
-FARTHEST = 1e6  # km, how far a depth is followed
+DEEPEST = 100.0  # mm, a wear depth above it is a mistake
 
 
 @dataclass(frozen=True)
@@ -61,31 +62,6 @@ class End:
     mode: str
     body: str = ""
     depth: float = math.nan
-
-
-@dataclass(frozen=True)
-class Solved:
-    """What the model says of rollers, arrays of shape (n, contact, body).
-
-    Attributes
-    ----------
-    stress : numpy.ndarray
-        Stress that enters the S-N line [MPa].
-    per_km : numpy.ndarray
-        Overrollings of a travel of 1 km [1/km].
-    per_hour : numpy.ndarray
-        Overrollings of an hour [1/h].
-    regime : list of str
-        Regime of each roller, (n,).
-    flags : numpy.ndarray
-        Validity flags of each body, (n, body).
-    """
-
-    stress: np.ndarray
-    per_km: np.ndarray
-    per_hour: np.ndarray
-    regime: list[str]
-    flags: np.ndarray
 
 
 def fit_bench(  # noqa: PLR0913 - one argument for each choice of a fit
@@ -148,9 +124,13 @@ def fit_bench(  # noqa: PLR0913 - one argument for each choice of a fit
     >>> low < fit.material["fatigue_limit"] < high
     True
     """
-    wanted = [part.strip() for part in fit.split(",")] if isinstance(fit, str) else list(fit)
+    wanted = [part.strip() for part in fit.split(",")] if isinstance(fit, str) else plain(fit, "fit")
+    if not isinstance(wanted, list):
+        raise InputError("fit", fit, f"a list of {', '.join(FITTED)}")
+    check_texts(name=name, like=like)
+    check_base(base)
     check_names("fit", wanted, FITTED)
-    check_held(slope, scatter_in_cycles)
+    slope, scatter_in_cycles = check_held(slope, scatter_in_cycles)
     held = {"slope": slope, "scatter": scatter_in_cycles}
     wanted = [name for name in wanted if held.get(name) is None]
     if not wanted:
@@ -191,32 +171,10 @@ def fit_bench(  # noqa: PLR0913 - one argument for each choice of a fit
     return Fit("bench", name, tuple(groups), rows, like or material.name, given, notes, not_given_notes(cases))
 
 
-DEFAULTS = {"contact_model": "kalker", "life_criterion": "von_mises_peak", "accuracy": "standard"}
-
-
-def check_same(given: Mapping[str, str], options: Mapping[str, Any], name: str) -> None:
-    """Refuse options under which values of a fit do not hold.
-
-    Parameters
-    ----------
-    given : mapping of str to str
-        Contact model, life criterion and accuracy of the fit; others do not count.
-    options : mapping
-        Options of the solution that would use the values.
-    name : str
-        Name of the fit, for the message.
-
-    Raises
-    ------
-    InputError
-        If one of them differs.
-    """
-    for key, default in DEFAULTS.items():
-        used = str(options.get(key, default))
-        if key in given and used != given[key]:
-            remedy = f"Set {key}: {given[key]}, or fit the tests anew with {used}."
-            wrong = f"differs from the {given[key]} of '{name}', whose values hold for it alone"
-            raise InputError(key, used, "", remedy, wrong)
+def check_base(base: Any) -> None:
+    """Refuse a base that is no mapping; None stands for the paper's example."""
+    if base is not None and not isinstance(base, Mapping):
+        raise InputError("base", base, "a mapping with fields of a case and options", "Give the values themselves.")
 
 
 def _check_names_once(rows: TestTable) -> None:
@@ -254,18 +212,19 @@ def _end(rows: TestTable, row: int) -> End:
     if parts is None:
         raise rows.error(row, "end", "wear, body and depth", remedy)
     try:
-        depth = in_unit(float(parts[0]), parts[1], "mm", "end")
+        depth = finite_number(" ".join(parts), "mm", "end")
     except InputError:
         raise rows.error(row, "end", "a depth as a length", remedy) from None
-    if not depth > 0:
-        raise rows.error(row, "end", "a depth above 0", remedy)
+    if not 0 < depth <= DEEPEST:
+        raise rows.error(row, "end", f"a finite depth above 0 and of at most {DEEPEST:g} mm", remedy)
     return End(mode, body, depth)
 
 
 def _travel(rows: TestTable, row: int, end: End) -> tuple[float, float]:
     """Return the travels between which a test ended [km]; the second is inf for a suspension."""
     low = rows.number(row, "travel_from", 0.0)
-    high = rows.number(row, "travel_to", LEAST)
+    whole = "Write the travel of the end, or end = none and an empty travel_to for a roller that was stopped whole."
+    high = rows.number(row, "travel_to", LEAST, remedy=whole)
     if math.isnan(low):
         raise rows.error(row, "travel_from", "a travel [km]; the cell is empty", "Fill the cell.")
     if end.mode == "none":
@@ -356,71 +315,16 @@ def _material_of(rows: TestTable, cases: Sequence[Case], body: str) -> Material:
     return load_database().material(used[0], field)
 
 
-def solved_rollers(cases: Sequence[Case], options: Mapping[str, Any]) -> Solved:
-    """Solve rollers, and return what a life by any S-N line needs.
-
-    Parameters
-    ----------
-    cases : sequence of Case
-        The rollers.
-    options : mapping
-        Options of `trackroller.solve` beside the outputs.
-    """
-    groups = ["forces", "peak_stress", "life"]
-    if options.get("life_criterion", "von_mises_peak") != "von_mises_peak":
-        groups.append("multiaxial")
-    ds = solve(list(cases), **{**options, "outputs": groups})
-    regime = [REGIMES[int(i)] for i in np.atleast_1d(ds["regime"].values)]
-    stress = ds["fatigue_stress"] if "fatigue_stress" in ds else ds["peak_stress"]
-    radius = np.array([_rolling_radius(case) for case in cases])
-    velocity = np.array([case.velocity for case in cases])
-    guide = np.array([case.guide_overrollings_per_hour or math.nan for case in cases])
-    per_hour = np.stack([roller_overrollings(velocity, radius), guide], axis=1)[:, None, :]
-    per_km = per_hour / (KM_PER_HOUR * velocity)[:, None, None]
-    shape = (len(cases), 2, 2)
-    stresses = stress.transpose("case", "contact", "body").values
-    flags = ds["validity_body"].transpose("case", "body").values.astype(int)
-    return Solved(stresses, np.broadcast_to(per_km, shape), np.broadcast_to(per_hour, shape), regime, flags)
-
-
-def worst_stress(design: Any, given: Mapping[str, str], name: str) -> tuple[float, float]:
-    """Return the stress of a design that decides its life [MPa], and its overrollings per hour [1/h].
-
-    Parameters
-    ----------
-    design : Case or mapping
-        Fields of the case and options.
-    given : mapping of str to str
-        Under what a fit holds, see `check_same`.
-    name : str
-        Name of the fit, for messages.
-    """
-    values = {n: getattr(design, n) for n in FIELDS} if isinstance(design, Case) else dict(design)
-    case, options, _ = checked_case(values)
-    check_same(given, options, name)
-    solved = solved_rollers([case], {key: value for key, value in options.items() if key != "outputs"})
-    body = BODIES.index(given.get("body", "roller"))
-    if solved.regime[0] != "rolling":
-        raise InputError("design", solved.regime[0], "a roller that rolls", "Change its loads.")
-    if np.isnan(solved.per_hour[0, 0, body]):
-        raise InputError("guide_overrollings_per_hour", None, "a number, for the life of the guide in hours")
-    return float(solved.stress[0, :, body].max()), float(solved.per_hour[0, 0, body])
-
-
-def _rolling_radius(case: Case) -> float:
-    return float(rolling_radius(case.axis_distance, case.guide_profile_radius, np.radians(case.contact_angle)))
-
-
 def _check_hours(rows: TestTable, travels: Sequence[tuple[float, float]], cases: Sequence[Case]) -> None:
     """Refuse a travel that would take years without a stop, which is rather a number of overrollings."""
-    for row, ((low, _), case) in enumerate(zip(travels, cases, strict=True)):
-        hours = low / (KM_PER_HOUR * case.velocity)
-        if hours > LONGEST:
-            speed = f"{case.velocity:g} m/min"
-            allowed = f"a travel of at most {LONGEST:g} h without a stop; this one takes {hours:.3g} h at {speed}"
-            raise rows.error(
-                row, "travel_from", allowed, "Write km, not a number of overrollings, or correct the speed."
-            )
+    remedy = "Write km, not a number of overrollings, or correct the speed."
+    for row, (ends, case) in enumerate(zip(travels, cases, strict=True)):
+        for column, travel in zip(("travel_from", "travel_to"), ends, strict=True):
+            hours = travel / (KM_PER_HOUR * case.velocity)
+            if LONGEST < hours < math.inf:  # an infinite travel_to is that of a suspension
+                speed = f"{case.velocity:g} m/min"
+                allowed = f"a travel of at most {LONGEST:g} h without a stop; this one takes {hours:.3g} h at {speed}"
+                raise rows.error(row, column, allowed, remedy)
 
 
 def _solved(rows: TestTable, cases: Sequence[Case], options: Mapping[str, Any], body: str) -> Solved:
@@ -474,6 +378,8 @@ def _fatigue(
             raise rows.error(row, "base", f"a known number of overrollings of the {body}", remedy)
         worse = int(np.argmin(life))
         stated = rows.number(row, "contact", 1, 2)
+        if stated not in (1, 2) and not math.isnan(stated):
+            raise rows.error(row, "contact", "1 or 2, the contact that failed", "Correct the cell.")
         contact = worse if math.isnan(stated) else int(stated) - 1
         for c in {contact, 1 - contact} if ended and not math.isnan(stated) else {contact}:
             here = ended and c == contact
@@ -507,10 +413,11 @@ def _fatigue_group(
         raise rows.error(last, column, "failures at two loads or more, from which the slope follows", remedy)
     if slope is None:
         check_falls(rows, tests, "travel_from", origin)
-    line = Line(tests, slope=slope, scatter=scatter)
+    line = Line(tests, slope=slope, scatter=scatter, specimens=len(set(origin)))
     if len(rows) <= len(line.free):
         remedy = "Test more rollers, or fit fewer values."
-        raise InputError("tests", len(rows), f"more rows than the {len(line.free)} fitted values", remedy)
+        allowed = f"more rows than the {len(line.free)} fitted values"
+        raise rows.placed(InputError("tests", len(rows), allowed, remedy))
     return Group("fatigue", line, priors_of(prior), at=material.cycles_at_fatigue_limit, rows=origin)
 
 

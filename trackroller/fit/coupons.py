@@ -19,14 +19,16 @@ from typing import Any
 import numpy as np
 
 from trackroller.errors import InputError, check_names, listing
-from trackroller.fit.fitted import Fit, Group
+from trackroller.fit.fitted import Fit, Group, check_texts
+from trackroller.fit.heads import OF_COUPONS, has_failed, only_marks, says_how, told_heads
 from trackroller.fit.line import BOUNDS, Line, Tests
 from trackroller.fit.posterior import Normal, ln_range
-from trackroller.fit.table import LEAST, TestTable, read_tests
-from trackroller.numerics.numbers import number_or_nan
+from trackroller.fit.table import LEAST, LEAST_STRESS, MOST_CYCLES, MOST_STRESS, TestTable, read_tests
+from trackroller.numerics.numbers import finite_number, number_or_nan
+from trackroller.numerics.plain import plain
 
-NEEDED = ("amplitude", "cycles", "failed")
-COLUMNS = (*NEEDED, "group", "test", "note")
+NEEDED = ("amplitude", "cycles")
+COLUMNS = (*NEEDED, "failed", "group", "test", "note", "censored", "status")
 LOAD_TYPES = {
     "rotating bending": (1.0, "the bending amplitude is taken as von Mises amplitude"),
     "bending": (1.0, "the bending amplitude is taken as von Mises amplitude"),
@@ -34,9 +36,8 @@ LOAD_TYPES = {
     "torsion": (math.sqrt(3.0), "sqrt(3) times the amplitude of the shear stress is the von Mises amplitude"),
     "rolling contact": (1.0, "the amplitude is the peak von Mises stress of an overrolling"),
 }
-YES = ("1", "1.0", "true", "yes", "y", "failed", "failure", "fracture", "broken", "ja", "x")
-NO = ("0", "0.0", "false", "no", "n", "run-out", "runout", "run out", "survived", "suspended", "nein", "none")
 FEWEST_CYCLES = 1_000.0  # below it, a number of cycles that is not whole may be a travel
+STOPPED = "Correct the cell; of a run-out, write the cycles at which the specimen was stopped."
 TRAVEL = "If it is a travel in km, fit rollers with `trackroller fit bench`."
 NO_LIMIT = (
     "No fatigue limit makes the tests likelier than the line alone, on which run-outs are long lives: the line was "
@@ -63,7 +64,9 @@ def fit_sn(  # noqa: PLR0913 - one argument for each choice of a fit
     Parameters
     ----------
     table : path, data frame, list of mappings or mapping of columns
-        Columns `amplitude [MPa]`, `cycles` and `failed` (yes or no), and if wanted `group`, `test` and `note`.
+        Columns `amplitude [MPa]`, `cycles` and `failed` (yes or no), and if wanted `group`, `test` and `note`. A column
+        `censored` or `runout` is the opposite of `failed`; other usual names, such as `stress_amplitude_MPa`, `load`,
+        `N`, `specimen` and `fracture`, are taken, and the notes of the fit say so.
     name : str
         Name of the material that is made.
     load_type : str, optional
@@ -101,37 +104,54 @@ def fit_sn(  # noqa: PLR0913 - one argument for each choice of a fit
     >>> round(fit.material["woehler_exponent"], 2)
     8.42
     """
-    tests = read_tests(table, NEEDED, COLUMNS, ("group", "test", "note"))
+    optional = [column for column in COLUMNS if column not in NEEDED]
+    check_texts(name=name, like=like)
+    if knee is not None and not isinstance(knee, (bool, np.bool_)):
+        raise InputError("knee", knee, "true or false", "Leave it out to let the tests decide.")
+    tests = read_tests(table, NEEDED, COLUMNS, optional, OF_COUPONS)
     if load_type is not None:
         check_names("load type", [load_type], LOAD_TYPES)
-    ratio = math.nan if stress_ratio is None else number_or_nan(stress_ratio)
+    ratio = math.nan if stress_ratio is None else finite_number(stress_ratio)
     if stress_ratio is not None and not ratio < 1.0:
-        raise InputError("stress ratio", stress_ratio, "a number below 1", "Give -1 for full reversal.")
+        raise InputError("stress ratio", stress_ratio, "a finite number below 1", "Give -1 for full reversal.")
     tests = _of_group(tests, group)
     factor = LOAD_TYPES[load_type][0] if load_type else 1.0
-    check_held(slope, scatter_in_cycles)
-    observed = _observed(tests, factor)
-    _check_duplicates(tests)
+    slope, scatter_in_cycles = check_held(slope, scatter_in_cycles)
+    failed = _read_ends(tests)
+    observed = _observed(tests, factor, failed)
+    _check_duplicates(tests, failed)
     if slope is None:
         check_falls(tests, observed, "cycles")
     _check_identified(tests, observed, slope, scatter_in_cycles)
     meet = _limit_shows(observed) if knee is None else knee
     held = None if scatter_in_cycles is None else deviation_of(scatter_in_cycles)
     line = Line(observed, slope=slope, scatter=held, knee=meet)
-    if line.size <= len(line.free):
-        allowed = f"more rows than fitted values; {listing([*line.free])} are {len(line.free)} values"
-        raise InputError("tests", line.size, allowed, "Test more specimens, or hold slope or scatter_in_cycles.")
+    _check_number(tests, line)
     priors = priors_of(prior)
     given = {
         "load type": load_type or "not given",
         "stress ratio": "not given" if stress_ratio is None else f"{ratio:g}",
     }
-    notes = _notes(load_type, ratio, meet, observed)
+    notes = [*_read_as(tests, failed), *_notes(load_type, ratio, meet, observed)]
     if knee is None and meet and not line.limit_matters:
         line = replace(line, knee=False)
         notes.append(NO_LIMIT)
     own = Group("fatigue", line, priors, at=_stated_at(line))
     return Fit("sn", name or "fitted material", (own,), tests, like, given, notes)
+
+
+def _check_number(tests: TestTable, line: Line) -> None:
+    """Refuse a line with as many fitted values as specimens, or more."""
+    lacking = len(line.free) + 1 - line.size
+    if lacking <= 0:
+        return
+    holdable = [held for name, held in HELD.items() if name in line.free]
+    remedy = f"Test {lacking} more specimen{'s' if lacking > 1 else ''}"
+    if lacking <= len(holdable):
+        remedy += f", or hold {listing(holdable, 'or' if lacking == 1 else 'and')}"
+    fitted = f"{listing(line.free)} are {len(line.free)} values"
+    allowed = f"more rows than fitted values; {fitted}"
+    raise tests.placed(InputError("tests", line.size, allowed, f"{remedy}."))
 
 
 def _too_flat(field: str, slope: Any) -> InputError:
@@ -145,19 +165,28 @@ def _too_flat(field: str, slope: Any) -> InputError:
 
 def priors_of(given: Mapping[str, Sequence[float]] | None) -> dict[str, Normal]:
     """Return the priors of a line by the names of its values, from those of a user; see `fit_sn`."""
-    given = dict(given or {})
-    check_names("prior", given, ("slope", "scatter_in_cycles", "fatigue_strength"))
+    given = {} if given is None else plain(given, "prior")
+    if not isinstance(given, Mapping):
+        remedy = "Name the value, such as {'slope': [8, 2]}."
+        raise InputError("prior", given, f"a mapping from {listing([*PRIORS], 'or')} to two numbers", remedy)
+    check_names("prior", given, PRIORS)
     found = {}
     for name, pair in given.items():
-        allowed = "[mean, standard deviation > 0] of the slope" if name == "slope" else "[median > 0, sd of ln > 0]"
-        if not isinstance(pair, Sequence) or isinstance(pair, str) or len(pair) != 2:
-            raise InputError(f"prior.{name}", pair, allowed)
-        middle, deviation = map(number_or_nan, pair)
-        if not (middle > 0 and deviation > 0):
-            raise InputError(f"prior.{name}", list(pair), allowed)
+        low, high = PRIORS[name]
+        first = "mean" if name == "slope" else "median"
+        second = "standard deviation" if name == "slope" else "standard deviation of ln"
+        allowed = f"[{first} from {low:.4g} to {high:.4g}, {second} from {LEAST_SPREAD:g} to {MOST_SPREAD:g}]"
+        remedy = (
+            f"For example [{EXAMPLES[name]}], on the command line --prior {name}={EXAMPLES[name].replace(' ', '')}."
+        )
+        if not isinstance(pair, list) or len(pair) != 2:
+            raise InputError(f"prior.{name}", pair, allowed, remedy)
+        middle, deviation = map(finite_number, pair)
+        if name == "slope" and 0 < abs(middle) < low:
+            raise _too_flat("prior.slope", middle)
+        if not (low <= middle <= high and LEAST_SPREAD <= deviation <= MOST_SPREAD):
+            raise InputError(f"prior.{name}", pair, allowed, remedy)
         if name == "slope":
-            if middle < 1.0:
-                raise _too_flat("prior.slope", middle)
             found["slope"] = Normal(middle, deviation)
         elif name == "scatter_in_cycles":  # ln s of T_N = exp(2.563 s)
             own = math.log(middle) / math.log(ln_range(1.0))
@@ -167,13 +196,33 @@ def priors_of(given: Mapping[str, Sequence[float]] | None) -> dict[str, Normal]:
     return found
 
 
+# how a value of a line is held, by its name: on the command line, in Python
+HELD = {"slope": "the slope (--slope 8)", "log_scatter": "the scatter (--scatter 4, in Python scatter_in_cycles=4)"}
+
+
+def _range_of_scatter() -> tuple[float, float]:
+    """Return the bounds of the scatter T_N."""
+    low, high = (ln_range(math.exp(end)) for end in BOUNDS["log_scatter"])
+    return low, high
+
+
+# bounds of the middle of a prior
+PRIORS = {"slope": BOUNDS["slope"], "scatter_in_cycles": _range_of_scatter(), "fatigue_strength": (1.0, MOST_STRESS)}
+EXAMPLES = {"slope": "8, 2", "scatter_in_cycles": "4, 0.5", "fatigue_strength": "500, 0.2"}
+LEAST_SPREAD, MOST_SPREAD = 1e-4, 1e4  # of a prior
+
+
 def _of_group(tests: TestTable, group: str | None) -> TestTable:
     """Return the rows of one group; refuse a table with several groups of which none is asked for."""
     found = Counter(tests.text(row, "group") for row in tests)
     if group is not None:
+        group = str(group)
         rows = [row for row in tests if tests.text(row, "group") == group]
         if not rows:
-            raise InputError("group", group, f"a group of the table: {listing(sorted(found), 'or')}")
+            names = sorted(filter(None, found))
+            if not names:
+                raise InputError("group", group, "a group of the table, which has none", "Leave the group out.")
+            raise InputError("group", group, f"a group of the table: {listing(names, 'or')}")
         return tests.keep(rows)
     if len(found) > 1:
         first = tests.text(0, "group")
@@ -183,26 +232,70 @@ def _of_group(tests: TestTable, group: str | None) -> TestTable:
     return tests
 
 
-def _observed(tests: TestTable, factor: float) -> Tests:
+def _column_of_ends(tests: TestTable) -> str:
+    """Return the column that says which specimens failed; refuse a table with none or two of them."""
+    names = tests.rows[0]
+    given = [column for column in ("failed", "censored") if column in names]
+    if len(given) == 2:
+        heads = [tests.heads.get(column, column) for column in given]
+        raise tests.error(
+            0, "censored", "one column that says which specimens failed", f"Remove {listing(heads, 'or')}."
+        )
+    said = [
+        column
+        for column in ("status", "note")
+        if column in names and all(says_how(tests.text(r, column)) for r in tests)
+    ]
+    if not given and not said:
+        allowed = "a column failed, with yes for a failure and no for a run-out; or a column runout, with the opposite"
+        remedy = f"The table has {', '.join(tests.heads.get(name, name) for name in names)}."
+        raise tests.placed(InputError("column failed", None, allowed, remedy))
+    return [*given, *said][0]
+
+
+def _read_ends(tests: TestTable) -> list[bool]:
+    """Return which specimens failed, by the codes and words of the table."""
+    column = _column_of_ends(tests)
+    cells = [tests.text(row, column) for row in tests]
+    marks, found = only_marks(cells), []
+    for row, cell in enumerate(cells):
+        failed = has_failed(cell, column, marks)
+        if failed is None:
+            yes = "yes for a failure" if column == "failed" else "yes for a run-out"
+            allowed = f"yes or no, 1 or 0, true or false, failed or run-out; {yes}"
+            remedy = "Correct the cell." if cell else "Fill the cell, or mark the others with x alone."
+            raise tests.error(row, column, allowed, remedy)
+        found.append(failed)
+    return found
+
+
+def _read_as(tests: TestTable, failed: Sequence[bool]) -> list[str]:
+    """Return sentences on how heads and codes were read that are not those of the documentation."""
+    column = _column_of_ends(tests)
+    heads = {name: head for name, head in tests.heads.items() if name in (*NEEDED, "failed", "censored", "group")}
+    if column in ("censored", "status", "note"):
+        heads[column] = tests.heads.get(column, column)
+    said = [told_heads(heads, {"amplitude": " [MPa]"})] if heads else []
+    if column != "failed" or only_marks(tests.text(row, column) for row in tests):
+        number = len(failed) - sum(failed)
+        said.append(f"By the column '{tests.heads.get(column, column)}' {number} of {len(failed)} specimens ran out.")
+    return said
+
+
+def _observed(tests: TestTable, factor: float, failed: Sequence[bool]) -> Tests:
     """Return amplitude and cycles of each row as logarithms."""
     stress, low, high = [], [], []
     for row in tests:
-        amplitude = tests.number(row, "amplitude", LEAST)
-        cycles = tests.number(row, "cycles", LEAST)
+        amplitude = tests.number(row, "amplitude", LEAST_STRESS, MOST_STRESS)
+        cycles = tests.number(row, "cycles", LEAST, MOST_CYCLES, STOPPED)
         for column, value in (("amplitude", amplitude), ("cycles", cycles)):
             if math.isnan(value):
                 raise tests.error(row, column, "a number; the cell is empty", "Fill the cell, or remove the row.")
         if cycles < FEWEST_CYCLES and not cycles.is_integer():
             raise tests.error(row, "cycles", "a whole number of load cycles", TRAVEL)
-        if math.isinf(cycles):
-            remedy = "Write the cycles at which the specimen was stopped, with failed = no."
-            raise tests.error(row, "cycles", "a finite number of load cycles", remedy)
-        word = tests.text(row, "failed").lower()
-        if word not in (*YES, *NO):
-            raise tests.error(row, "failed", "yes or no, 1 or 0, failed or run-out", "Correct the cell.")
         stress.append(math.log(factor * amplitude))
         low.append(math.log(cycles))
-        high.append(math.log(cycles) if word in YES else math.inf)
+        high.append(math.log(cycles) if failed[row] else math.inf)
     if max(low) < math.log(FEWEST_CYCLES):
         longest = int(np.argmax(low))
         allowed = f"a life of at least {FEWEST_CYCLES:g} cycles in one row; this one is the longest"
@@ -210,14 +303,13 @@ def _observed(tests: TestTable, factor: float) -> Tests:
     return Tests(np.array(stress), np.array(low), np.array(high))
 
 
-def _check_duplicates(tests: TestTable) -> None:
+def _check_duplicates(tests: TestTable, failed: Sequence[bool]) -> None:
     """Refuse a name that stands twice, and two failures without names that are equal to the last digit."""
     seen: dict[tuple, int] = {}
     for row in tests:
         name = tests.text(row, "test")
-        failure = tests.text(row, "failed").lower() in YES
         key = ("test", name) if name else ("", *(tests.number(row, n) for n in ("amplitude", "cycles")))
-        if (name or failure) and key in seen:
+        if (name or failed[row]) and key in seen:
             other = tests.lines[seen[key]]
             remedy = "Remove one of the two; if both were tested, name them in a column `test`."
             wrong = f"stands in row {other} as well"
@@ -230,17 +322,24 @@ def deviation_of(scatter_in_cycles: float) -> float:
     return math.log(scatter_in_cycles) / math.log(ln_range(1.0))
 
 
-def check_held(slope: float | None, scatter_in_cycles: float | None) -> None:
-    """Refuse a slope or scatter that is held outside the bounds of a line."""
+def check_held(slope: Any, scatter_in_cycles: Any) -> tuple[float | None, float | None]:
+    """Return slope and scatter that are held as numbers; refuse those outside the bounds of a line."""
     low, high = BOUNDS["slope"]
-    if slope is not None and 0 < abs(number_or_nan(slope)) < low:
-        raise _too_flat("slope", slope)
-    if slope is not None and not low <= number_or_nan(slope) <= high:
-        raise InputError("slope", slope, f"a number from {low:g} to {high:g}", "Give k of N = c S^-k, such as 8.")
-    low, high = (ln_range(math.exp(end)) for end in BOUNDS["log_scatter"])
-    if scatter_in_cycles is not None and not low <= number_or_nan(scatter_in_cycles) <= high:
-        allowed = f"a number from {low:.3g} to {high:.3g}"
-        raise InputError("scatter", scatter_in_cycles, allowed, "Give T_N = N_90/N_10, such as 4.")
+    if slope is not None:
+        number = finite_number(slope)
+        if 0 < abs(number) < low:
+            raise _too_flat("slope", slope)
+        if not low <= number <= high:
+            raise InputError("slope", slope, f"a number from {low:g} to {high:g}", "Give k of N = c S^-k, such as 8.")
+        slope = number
+    low, high = _range_of_scatter()
+    if scatter_in_cycles is not None:
+        number = finite_number(scatter_in_cycles)
+        if not low <= number <= high:
+            allowed = f"a number from {low:.3g} to {high:.3g}"
+            raise InputError("scatter", scatter_in_cycles, allowed, "Give T_N = N_90/N_10, such as 4.")
+        scatter_in_cycles = number
+    return slope, scatter_in_cycles
 
 
 def check_falls(tests: TestTable, observed: Tests, column: str, rows: Sequence[int] | None = None) -> None:
@@ -273,11 +372,11 @@ def check_falls(tests: TestTable, observed: Tests, column: str, rows: Sequence[i
 def _check_identified(tests: TestTable, observed: Tests, slope: float | None, scatter: float | None) -> None:
     """Refuse one level with a free slope, and run-outs alone with free values."""
     last = len(tests) - 1
-    free = [name for name, value in (("slope", slope), ("scatter_in_cycles", scatter)) if value is None]
+    free = [HELD[name] for name, value in (("slope", slope), ("log_scatter", scatter)) if value is None]
     if free and not observed.failed.any():
         allowed = "at least one failure; all specimens ran out"
         remedy = f"Hold {listing(free)} for a one-sided bound, or test at a higher amplitude."
-        raise tests.error(last, "failed", allowed, remedy)
+        raise tests.error(last, _column_of_ends(tests), allowed, remedy)
     if slope is None and np.ptp(observed.stress) < 1e-9:
         remedy = "Hold the slope (--slope 8), or test a second amplitude."
         raise tests.error(last, "amplitude", "a second level beside this one, from which the slope follows", remedy)
@@ -336,8 +435,11 @@ def of_words(words: Collection[str], field: str) -> dict[str, list[float]]:
     found = {}
     for word in words:
         name, sign, pair = word.partition("=")
-        numbers = [number_or_nan(part) for part in pair.split(",")]
+        numbers = [finite_number(part) for part in pair.split(",")]
         if not sign or len(numbers) != 2 or any(map(math.isnan, numbers)):
-            raise InputError(field, word, "NAME=MIDDLE,DEVIATION", "For example slope=8,2")
+            raise InputError(field, word, "NAME=MIDDLE,DEVIATION, two finite numbers", "For example slope=8,2")
+        if name.strip() in found:
+            remedy = f"Give {name.strip()} once."
+            raise InputError(field, word, "one prior for each value", remedy, f"stands beside another {name.strip()}")
         found[name.strip()] = numbers
     return found

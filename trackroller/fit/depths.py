@@ -9,8 +9,9 @@ from typing import Any
 import numpy as np
 
 from trackroller.errors import InputError, check_names
-from trackroller.fit.bench import DEFAULTS, not_given_notes, wear_group, worn_alone
-from trackroller.fit.fitted import Fit
+from trackroller.fit.bench import DEEPEST, check_base, not_given_notes, wear_group, worn_alone
+from trackroller.fit.fitted import Fit, check_texts
+from trackroller.fit.solved_rollers import DEFAULTS
 from trackroller.fit.table import LEAST, read_tests
 from trackroller.parameters import BODIES
 from trackroller.roller.settings import checked_case
@@ -58,9 +59,11 @@ def fit_wear(
     ASSUME: the other body keeps its profile, and errors of the depths are independent of each other.
     """
     check_names("body", [body], BODIES)
+    check_texts(name=name, like=like)
+    check_base(base)
     rows = read_tests(table, NEEDED, COLUMNS, ("test", "note"))
-    travel = np.array([rows.number(row, "travel", LEAST) for row in rows])
-    depth = np.array([rows.number(row, "wear_depth", LEAST) for row in rows])
+    travel = np.array([rows.number(row, "travel", LEAST, FARTHEST) for row in rows])
+    depth = np.array([rows.number(row, "wear_depth", LEAST, DEEPEST) for row in rows])
     for row, (km, mm) in enumerate(zip(travel, depth, strict=True)):
         for column, value in zip(NEEDED, (km, mm), strict=True):
             if math.isnan(value):
@@ -73,7 +76,8 @@ def fit_wear(
             remedy = "Write the mean of the two depths once."
             raise rows.error(row, "travel", "each travel once", remedy, "stands in another row as well")
     if len(rows) < 2:
-        raise InputError("tests", len(rows), "two depths or more, for a coefficient with its scatter")
+        allowed = "two depths or more, for a coefficient with its scatter"
+        raise rows.placed(InputError("tests", len(rows), allowed, "Measure the groove once more."))
     case, options, _ = checked_case(dict(base or {}))
     unit = followed(worn_alone(case, body), options, body, depth)
     for row in np.flatnonzero(np.isnan(unit)).tolist():

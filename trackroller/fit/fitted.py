@@ -14,15 +14,18 @@ import xarray as xr
 from scipy.special import ndtri
 
 from trackroller.errors import InputError, check_names, listing
-from trackroller.files import write_whole
+from trackroller.files import all_or_none, write_whole
+from trackroller.fit import SHOWN
 from trackroller.fit.line import Interval, Line
 from trackroller.fit.posterior import Normal, Posterior, ln_range, log_strength, posterior
-from trackroller.fit.table import TestTable
+from trackroller.fit.solved_rollers import worst_stress
+from trackroller.fit.table import LEAST_STRESS, MOST_CYCLES, MOST_STRESS, TestTable
 from trackroller.materials import Material, add_material
-from trackroller.materials.file import posterior_path
-from trackroller.numerics.numbers import number_or_nan
+from trackroller.materials.file import own_file, posterior_path
+from trackroller.numerics.numbers import finite_number
 
 CONFIDENCE = 0.9
+LONGEST_NAME = 100  # characters of the name of a material, which is a part of names of files
 # name in `.data` and in an entry of the database, by the value of a line of each kind
 WORDS = {
     "fatigue_limit": ("MPa", "fatigue strength at the knee, failure probability 50 %"),
@@ -150,6 +153,8 @@ class Group:
 @dataclass(frozen=True)
 class Fit:
     """Values of a material from tests; `trackroller.fit_sn` and `trackroller.fit_bench` make it.
+
+    `trackroller.report(fit, path)` writes its page; `fit.report(path)` is the same.
 
     Parameters
     ----------
@@ -323,17 +328,13 @@ class Fit:
         InputError
             For an unknown quantity, or one that was not fitted.
         """
-        for field_name, value in (("failure_probability", failure_probability), ("confidence", confidence)):
-            if not 0.0 < number_or_nan(value) < 1.0:
-                raise InputError(field_name, value, "a number between 0 and 1", "Give 0.1 for 10 %.")
+        failure_probability = share("failure_probability", failure_probability)
+        confidence = share("confidence", confidence)
+        quantity = str(quantity)
         if quantity in ("cycles", "amplitude"):
             line = self.group("fatigue").line
             given, name = (amplitude, "amplitude") if quantity == "cycles" else (cycles, "cycles")
-            number = (
-                number_or_nan(given, "MPa" if name == "amplitude" else "-", name) if given is not None else math.nan
-            )
-            if not number > 0:
-                raise InputError(name, given, f"a number above 0, for the interval of {quantity}")
+            number = _positive(name, given, f"the interval of {quantity}")
             call = line.interval_of_life if quantity == "cycles" else line.interval_of_strength
             found = call(math.log(number), failure_probability, confidence)
             return Interval(*(float(np.exp(end)) for end in found))
@@ -364,17 +365,20 @@ class Fit:
         InputError
             If the design does not roll, or has another contact model, life criterion or accuracy than the fit.
         """
-        from trackroller.fit.bench import worst_stress
-
+        failure_probability = share("failure_probability", failure_probability)
+        confidence = share("confidence", confidence)
         stress, per_hour = worst_stress(design, self.given, self.name)
         found = self.group("fatigue").line.interval_of_life(math.log(stress), failure_probability, confidence)
         return Interval(*(float(np.exp(end)) / per_hour for end in found))
 
     def estimate(self, quantity: str, *, amplitude: float = math.nan, failure_probability: float = 0.5) -> float:
         """Return the most likely value of a quantity, as `interval` names them."""
+        quantity = str(quantity)
         if quantity == "cycles":
             line = self.group("fatigue").line
-            return float(np.exp(line.log_life(line.best, math.log(amplitude), failure_probability)))
+            log_stress = math.log(_positive("amplitude", amplitude, "the estimate of cycles"))
+            probability = share("failure_probability", failure_probability)
+            return float(np.exp(line.log_life(line.best, log_stress, probability)))
         name = SPOKEN.get(quantity, quantity)
         known = {n: own for own in self.groups for n in own.names}
         check_names("quantity", [name], known)
@@ -413,10 +417,10 @@ class Fit:
         digest = f", sha256 {self.tests.digest[:16]}" if self.tests.digest else ""
         under = "; ".join(f"{key} {value}" for key, value in self.given.items())
         source = f"fit of {len(self.tests)} tests, {self.tests.name}{digest}"
-        material = add_material(file, self.name, replace=replace, source=source, note=under, **entry)
-        place.parent.mkdir(exist_ok=True)
-        write_whole(place, lambda beside: self.data.to_netcdf(beside, engine="netcdf4"))
-        return material
+        with all_or_none(place, own_file(file)):
+            write_whole(place, lambda beside: self.data.to_netcdf(beside, engine="netcdf4"))
+            # the material comes last: a killed process leaves no material without its range
+            return add_material(file, self.name, replace=replace, source=source, note=under, **entry)
 
     def _check_file(self, place: Path) -> None:
         """Refuse a name whose posterior would take the place of that of another material."""
@@ -436,22 +440,39 @@ class Fit:
         """Return whether the fit has a group of this kind."""
         return any(own.kind == kind for own in self.groups)
 
-    def report(self, path: Path | str) -> Path:
-        """Write the page of the fit as one HTML file that stands alone, or as PDF by the name of the file.
 
-        Parameters
-        ----------
-        path : Path or str
-            The file to write.
+for _name, _method in SHOWN.items():
+    setattr(Fit, _name, _method)
 
-        Returns
-        -------
-        Path
-            The file.
-        """
-        from trackroller.report.pages.fit import write_fit
 
-        return write_fit(self, path)
+def share(field: str, value: Any) -> float:
+    """Return a share between 0 and 1; refuse other values."""
+    number = finite_number(value)
+    if not 0.0 < number < 1.0:
+        raise InputError(field, value, "a number between 0 and 1", "Give 0.1 for 10 %.")
+    return number
+
+
+def _positive(name: str, value: Any, purpose: str) -> float:
+    """Return an amplitude [MPa] or a number of cycles; refuse other values."""
+    unit, low, high = ("MPa", LEAST_STRESS, MOST_STRESS) if name == "amplitude" else ("-", 1.0, MOST_CYCLES)
+    number = math.nan if value is None else finite_number(value, unit, name)
+    if not low <= number <= high:
+        shown = " MPa" if name == "amplitude" else ""
+        raise InputError(name, value, f"a finite number from {low:g} to {high:g}{shown}, for {purpose}")
+    return number
+
+
+def check_texts(**texts: Any) -> None:
+    """Refuse values of fields that are neither a name nor None."""
+    for field_name, text in texts.items():
+        if text is None:
+            continue
+        if not isinstance(text, str):
+            raise InputError(field_name, text, "a text", "Write the name in quotes.")
+        if len(text) > LONGEST_NAME or not text.isprintable():
+            allowed = f"one line of at most {LONGEST_NAME} characters that can be printed"
+            raise InputError(field_name, text, allowed, "Shorten the name, such as 'rig steel'.")
 
 
 ENTRY = ("fatigue_limit", "woehler_exponent", "scatter_in_cycles", "scatter_in_stress", "wear_coefficient")

@@ -9,9 +9,9 @@ whose logarithm is normal, too: the limit scatters from specimen to specimen (a 
 a failure is a suspension; a failure that was found at an inspection lies in an interval.
 
 The interval of a value holds each number whose profile likelihood lies within t^2(n - p)/2 of the maximum: n counts
-the tests, p the fitted values, and t is Student's quantile. On small samples this cut-off covers what it states, and
-that of chi^2 does not. Where n - p is 1 or 2, the smaller n/2 ln(1 + t^2/(n - p)) is taken, which is exact for the mean
-of complete data.
+the specimens, p the fitted values, and t is Student's quantile. On small samples this cut-off covers what it states,
+and that of chi^2 does not. Where n - p is 1 or 2, the smaller n/2 ln(1 + t^2/(n - p)) is taken, which is exact for the
+mean of complete data.
 
 ASSUME: specimens are independent of each other, and the scatter of ln N is the same at all stresses.
 
@@ -122,6 +122,8 @@ class Line:
         Whether a fatigue limit with its own scatter is fitted as well.
     sloped : bool
         False for lives that do not depend on a stress, such as a travel over the travel that a model gives.
+    specimens : int, optional
+        Number of specimens, if some of them have several tests: a roller with two contacts is one specimen.
     """
 
     tests: Tests
@@ -129,6 +131,7 @@ class Line:
     scatter: float | None = None
     knee: bool = False
     sloped: bool = True
+    specimens: int | None = None
 
     @cached_property
     def free(self) -> tuple[str, ...]:
@@ -146,8 +149,8 @@ class Line:
 
     @property
     def size(self) -> int:
-        """Return the number of tests."""
-        return len(self.tests.stress)
+        """Return the number of specimens."""
+        return len(self.tests.stress) if self.specimens is None else self.specimens
 
     @cached_property
     def reference(self) -> float:
@@ -191,7 +194,7 @@ class Line:
         """
         points = np.asarray(points, float)
         flat = points.reshape(-1, points.shape[-1])
-        rows = max(AT_ONCE // max(self.size, 1), 1)
+        rows = max(AT_ONCE // max(len(self.tests.stress), 1), 1)
         parts = [self._of_points(flat[i : i + rows]) for i in range(0, len(flat), rows)]
         return np.concatenate(parts).reshape(points.shape[:-1])
 

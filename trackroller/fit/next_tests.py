@@ -9,9 +9,9 @@ ASSUME: a test runs until its roller fails, or until the longest travel that is 
 
 from __future__ import annotations
 
-import dataclasses
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -19,11 +19,11 @@ import xarray as xr
 from scipy.special import log_ndtr
 
 from trackroller.errors import InputError
-from trackroller.fit.bench import check_same, solved_rollers
-from trackroller.fit.fitted import Fit, Group
+from trackroller.fit.fitted import Fit, Group, share
 from trackroller.fit.line import Line, Tests, Values
 from trackroller.fit.posterior import Posterior
-from trackroller.numerics.numbers import number_or_nan
+from trackroller.fit.solved_rollers import check_same, fields_of, solved_rollers
+from trackroller.numerics.numbers import finite_number, number_or_nan
 from trackroller.parameters import BODIES, PARAMETERS
 from trackroller.roller.case import Case, to_table
 from trackroller.roller.settings import checked_case
@@ -31,6 +31,7 @@ from trackroller.roller.settings import checked_case
 OUTCOMES = 200  # ends drawn for each candidate
 POINTS = 3000  # points of the posterior that are kept, drawn by their weight
 MOST_CANDIDATES = 500
+FARTHEST = 1e9  # km, the longest travel of a test
 CAMPAIGNS = 100  # that are simulated for the number of tests
 MOST_TESTS = 128  # of a simulated campaign
 
@@ -89,13 +90,13 @@ def next_tests(
     >>> bool(plan.deviation_after[0] < plan.deviation_now)
     True
     """
-    if not (isinstance(tests, (int, np.integer)) and 1 <= tests <= 20):
-        raise InputError("tests", tests, "a whole number from 1 to 20")
-    if not number_or_nan(longest) > 0:
-        raise InputError("longest", longest, "a travel above 0 km", "Leave it out for tests until failure.")
+    if isinstance(tests, (bool, np.bool_)) or not (isinstance(tests, (int, np.integer)) and 1 <= tests <= 20):
+        raise InputError("tests", tests, "a whole number from 1 to 20", "Give 3 for three tests.")
+    longest = _longest_travel(longest)
+    failure_probability = share("failure_probability", failure_probability)
     own, body = fit.group("fatigue"), str(fit.given.get("body", "roller"))
     cases = _cases(candidates)
-    chosen_design, options, _ = checked_case(_fields(design))
+    chosen_design, options, _ = checked_case(fields_of(design))
     check_same(fit.given, options, fit.name)
     stresses = _stresses([*cases, chosen_design], options, body)
     ds = ranked(own, stresses, tests, failure_probability, longest, seed)
@@ -104,6 +105,15 @@ def next_tests(
     for name in differ:
         ds[name] = ("candidate", np.array([getattr(case, name) for case in cases]), {"units": PARAMETERS[name].unit})
     return ds
+
+
+def _longest_travel(longest: Any) -> float:
+    """Return the travel after which a test stops [km]; inf, the default, stands for tests until failure."""
+    number = number_or_nan(longest, "km", "longest")
+    if not (0 < number <= FARTHEST or number == math.inf):
+        allowed = f"a travel above 0 and of at most {FARTHEST:g} km"
+        raise InputError("longest", longest, allowed, "Leave it out for tests until failure.")
+    return number
 
 
 Stresses = tuple[np.ndarray, np.ndarray, np.ndarray]
@@ -192,7 +202,10 @@ def _cases(candidates: Any) -> list[Case]:
         columns = {name: np.broadcast_to(candidates[name].values, len(table)) for name in names}
         given = [{n: _plain(column[i]) for n, column in columns.items()} for i in range(len(table))]
     else:
-        given = [_fields(one) for one in candidates]
+        if isinstance(candidates, (str, bytes, Mapping)) or not isinstance(candidates, Iterable):
+            remedy = "Write a list, such as [{'radial_force': -150}, {'radial_force': -200}]."
+            raise InputError("candidates", candidates, "a list of cases, or a data set along case", remedy)
+        given = [fields_of(one, "candidates") for one in candidates]
     if not given:
         raise InputError("candidates", None, "at least one candidate")
     return [Case.from_dict({n: v for n, v in one.items() if v is not None}) for one in given]
@@ -201,13 +214,6 @@ def _cases(candidates: Any) -> list[Case]:
 def _plain(value: Any) -> Any:
     value = value.item() if isinstance(value, np.generic) else value
     return None if isinstance(value, float) and math.isnan(value) else value
-
-
-def _fields(design: Any) -> dict[str, Any]:
-    """Return the fields of a case or mapping."""
-    if isinstance(design, Case):
-        return {name: value for name, value in vars(design).items() if name in Case.__dataclass_fields__}
-    return dict(design)
 
 
 def _stresses(cases: Sequence[Case], options: Mapping[str, Any], body: str) -> Stresses:
@@ -316,7 +322,7 @@ def tests_until(fit: Fit, plan: xr.Dataset, factor: float, *, campaigns: int = C
     all tests as `fit_bench` does. The number of tests is found by doubling and halving, because the width of the
     interval falls with it but for chance.
     """
-    check_factor(factor)
+    factor = check_factor(factor)
     own = fit.group("fatigue")
     line, values = own.line, own.posterior.values
     chosen = plan["chosen"].values
@@ -346,11 +352,13 @@ def tests_until(fit: Fit, plan: xr.Dataset, factor: float, *, campaigns: int = C
     return _campaigns(*np.array(found, float).T)
 
 
-def check_factor(factor: float) -> None:
-    """Refuse a factor between the ends of an interval that is no number above 1."""
-    if not number_or_nan(factor) > 1.0:
-        allowed = "a number above 1: the high over the low end of the interval"
+def check_factor(factor: Any) -> float:
+    """Return a factor between the ends of an interval; refuse what is no finite number above 1."""
+    number = finite_number(factor)
+    if not number > 1.0:
+        allowed = "a finite number above 1: the high over the low end of the interval"
         raise InputError("until", factor, allowed, "Give 2 for an interval such as 100 to 200 h.")
+    return number
 
 
 def _campaigns(tests: np.ndarray, hours: np.ndarray) -> xr.Dataset:
@@ -377,7 +385,8 @@ def _first(line: Line, tests: Tests, log_stress: float, probability: float, goal
             np.concatenate([a, b[:number]])
             for a, b in ((line.tests.stress, tests.stress), (line.tests.low, tests.low), (line.tests.high, tests.high))
         ]
-        return _ln_width(dataclasses.replace(line, tests=Tests(*every)), log_stress, probability) <= goal
+        specimens = line.size + number
+        return _ln_width(replace(line, tests=Tests(*every), specimens=specimens), log_stress, probability) <= goal
 
     low, high = 0, 1
     while not narrow(high):

@@ -13,12 +13,12 @@ import numpy as np
 import xarray as xr
 
 from trackroller.errors import InputError
-from trackroller.fit.bench import DEFAULTS
 from trackroller.fit.line import Interval, Line, Tests
 from trackroller.fit.posterior import Posterior
+from trackroller.fit.solved_rollers import DEFAULTS
 from trackroller.materials.file import find_user_file, posterior_path
 from trackroller.parameters import BODIES
-from trackroller.roller.record import materials_of
+from trackroller.roller.stored_inputs import materials_of
 
 SAME = 1e-6  # relative difference of values of a material and of its fit that rounding may cause
 
@@ -85,7 +85,11 @@ def stored_fit(name: str, values: Mapping[str, Any], file: Path | None = None) -
     path = None if file is None else posterior_path(file, name)
     if path is None or not path.is_file():
         return None
-    found = _read(path, name, path.stat().st_mtime_ns)
+    try:
+        found = _read(path, name, path.stat().st_mtime_ns)
+    except KeyError as missing:
+        allowed = "a file that `trackroller fit` of this version wrote"
+        raise InputError("fit", str(path), allowed, "Fit the tests again.", f"lacks {missing}") from None
     if found is None:
         return None
     fit, strength = found
@@ -139,7 +143,13 @@ def _read(path: Path, name: str, changed: int) -> tuple[StoredFit, tuple[float, 
         return None
     held = {key: ds.attrs.get(f"fatigue_held_{key}") for key in ("slope", "scatter")}
     tests = Tests(*(ds[f"fatigue_test_{part}"].values for part in ("stress", "low", "high")))
-    line = Line(tests, slope=held["slope"], scatter=held["scatter"], knee=bool(ds.attrs["fatigue_knee"]))
+    line = Line(
+        tests,
+        slope=held["slope"],
+        scatter=held["scatter"],
+        knee=bool(ds.attrs["fatigue_knee"]),
+        specimens=int(ds.attrs["fatigue_tests"]),
+    )
     names = {n: n.removeprefix("fatigue_") for n in map(str, ds.data_vars) if n.startswith("fatigue_")}
     own = Posterior.from_dataset(ds[list(names)].rename(names))
     given = {key.removeprefix(HOLDS): str(value) for key, value in ds.attrs.items() if key.startswith(HOLDS)}

@@ -3,20 +3,24 @@
 from __future__ import annotations
 
 import math
+import sys
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 from trackroller.errors import Collector, InputError, unknown_name
 from trackroller.files import noted_reads
-from trackroller.numerics.cells import split_head
-from trackroller.numerics.numbers import number_or_nan
-from trackroller.numerics.plain import rows_of
-from trackroller.numerics.units import PLAIN, in_unit
-from trackroller.study.file.user_table import UNITS, read_table
+from trackroller.fit.heads import NAMES_OF_TESTS, UNITS_OF_HEADS, Head, read_heads
+from trackroller.numerics.numbers import finite_number, number_or_nan
+from trackroller.numerics.plain import plain, rows_of
+from trackroller.numerics.table_cells import split_head
+from trackroller.numerics.units import PLAIN, in_unit, split_quantity
+from trackroller.study.file.user_columns import UNITS, line_of_names, read_table
 
 FIELD = "tests"
+LARGEST = sys.float_info.max
 
 
 @dataclass(frozen=True)
@@ -33,12 +37,15 @@ class TestTable:
         The file; None for a data frame.
     digest : str
         SHA-256 of the file; "" for a data frame.
+    heads : mapping of str to str
+        Heads in the table by column, where they are another name of it.
     """
 
     rows: list[dict[str, Any]]
     lines: list[int]
     path: Path | None = None
     digest: str = ""
+    heads: Mapping[str, str] = field(default_factory=dict)
 
     __test__ = False  # pytest takes the name for that of a test
 
@@ -60,41 +67,51 @@ class TestTable:
             See `InputError`.
         """
         value = self.rows[row].get(column, "")
-        field = column if self.path is not None else f"row {self.lines[row]}, {column}"
-        error = InputError(field, value, allowed, remedy, wrong)
-        return error if self.path is None else error.at(self.path, self.lines[row])
+        head = self.heads.get(column, column)
+        place = head if self.path is not None else f"row {self.lines[row]}, {head}"
+        return self.placed(InputError(place, value, allowed, remedy, wrong), self.lines[row])
 
-    def number(self, row: int, column: str, lower: float = -math.inf, upper: float = math.inf) -> float:
-        """Return a number in the unit of its column; NaN for an empty cell.
+    def placed(self, error: InputError, line: int = 0) -> InputError:
+        """Return an error with the file of the table and a line of it, 0 for the table as a whole."""
+        return error if self.path is None else error.at(self.path, line)
+
+    def number(
+        self,
+        row: int,
+        column: str,
+        lower: float = -math.inf,
+        upper: float = math.inf,
+        remedy: str = "Correct the cell.",
+    ) -> float:
+        """Return a finite number in the unit of its column; NaN for an empty cell.
 
         Raises
         ------
         InputError
-            If the cell is no number, or lies outside the bounds, which are allowed values themselves.
+            If the cell is no finite number, or lies outside the bounds, which are allowed values themselves.
         """
         cell = self.rows[row].get(column)
-        if cell is None or cell == "" or (isinstance(cell, float) and math.isnan(cell)):
+        if _is_empty(cell):
             return math.nan
         unit = UNITS.get(column, "-")
-        shown = "" if unit in PLAIN else f" {unit}"
-        low = "above 0" if lower == LEAST else f"of at least {lower:g}{shown}"
-        allowed = f"a number{f' in{shown}' if shown else ''} {low if lower > -math.inf else ''}".strip()
+        allowed = _allowed_number("" if unit in PLAIN else f" {unit}", lower, upper)
         try:
-            value = number_or_nan(cell, unit, column)
+            value = finite_number(cell, unit, column)
         except InputError:
             raise self.error(row, column, allowed, "Correct the cell, or its unit.") from None
-        if math.isnan(value) or not lower <= value <= upper:
-            raise self.error(row, column, allowed, "Correct the cell.")
+        if not lower <= value <= upper:
+            raise self.error(row, column, allowed, remedy)
         return float(value)
 
     def text(self, row: int, column: str) -> str:
         """Return the text of a cell without spaces around it, '' for an empty one."""
         cell = self.rows[row].get(column)
-        return "" if cell is None or (isinstance(cell, float) and math.isnan(cell)) else str(cell).strip()
+        return "" if _is_empty(cell) else str(cell).strip()
 
     def keep(self, rows: Sequence[int]) -> TestTable:
         """Return the table with some of its rows."""
-        return TestTable([self.rows[i] for i in rows], [self.lines[i] for i in rows], self.path, self.digest)
+        kept = [self.rows[i] for i in rows], [self.lines[i] for i in rows]
+        return TestTable(*kept, self.path, self.digest, self.heads)
 
     def __len__(self) -> int:
         return len(self.rows)
@@ -104,10 +121,36 @@ class TestTable:
 
 
 LEAST = 1e-300  # smallest number above 0
+# more or less is a mistake: 30,000 years at 1 kHz, and stresses below any load cell and above any strength [MPa]
+MOST_CYCLES, LEAST_STRESS, MOST_STRESS = 1e15, 1e-3, 1e5
+MISSING = ("NAType", "NaTType")  # types of the values of pandas that say that a cell is empty
+
+
+def _allowed_number(unit: str, lower: float, upper: float) -> str:
+    """Return which numbers are allowed in words; the unit has a blank before it, or is ''."""
+    if LEAST < lower and upper < math.inf:
+        return f"a finite number from {lower:g} to {upper:g}{unit}"
+    words = f"a finite number in{unit}" if unit else "a finite number"
+    if lower == LEAST:
+        words += " above 0"
+    elif lower > -math.inf:
+        words += f" of at least {lower:g}{unit}"
+    return f"{words} and of at most {upper:g}{unit}" if upper < math.inf else words
+
+
+def _is_empty(cell: Any) -> bool:
+    """Return whether a cell holds neither a number nor a text."""
+    if isinstance(cell, str):
+        return not cell.strip()
+    return cell is None or type(cell).__name__ in MISSING or (isinstance(cell, float) and math.isnan(cell))
 
 
 def read_tests(
-    table: Any, needed: Collection[str], known: Collection[str], optional: Collection[str] = ()
+    table: Any,
+    needed: Collection[str],
+    known: Collection[str],
+    optional: Collection[str] = (),
+    others: Mapping[str, str] = NAMES_OF_TESTS,
 ) -> TestTable:
     """Read a table of tests.
 
@@ -121,11 +164,13 @@ def read_tests(
         Names of all columns that may be there.
     optional : collection of str
         Names of columns whose cells may be empty.
+    others : mapping of str to str
+        Other names of columns, see `trackroller.fit.heads`.
 
     Returns
     -------
     TestTable
-        The rows.
+        The rows, by the names of `known`.
 
     Raises
     ------
@@ -133,22 +178,21 @@ def read_tests(
         For a file that is not readable, a misspelt or missing column, and an empty table.
     """
     if isinstance(table, (str, Path)):
-        found, place = from_file(Path(table), optional)
+        found, place = _tests_of_file(Path(table), known, optional, others)
     else:
-        found, place = _from_rows(table), 0
+        found, place = _from_rows(table, known, others), 0
     names = list(dict.fromkeys(name for row in found.rows for name in row))
     wrong = Collector()
     for name in names:
         with wrong.part():
             if name not in known:
-                raise _placed(unknown_name("column", split_head(str(name))[0], known), found, place)
+                raise found.placed(unknown_name("column", split_head(str(name))[0], known), place)
     for name in needed:
         with wrong.part():
             if name not in names and not wrong.errors:
                 allowed = f"a column {name}{_with_unit(name)}"
-                raise _placed(
-                    InputError(f"column {name}", None, allowed, f"The table has {', '.join(names)}."), found, place
-                )
+                remedy = f"The table has {', '.join(names) or 'no columns'}."
+                raise found.placed(InputError(f"column {name}", None, allowed, remedy), place)
     wrong.check()
     return found
 
@@ -158,12 +202,39 @@ def _with_unit(name: str) -> str:
     return "" if unit in PLAIN else f" [{unit}]"
 
 
-def _placed(error: InputError, table: TestTable, line: Any) -> InputError:
-    return error.at(table.path, line) if table.path is not None else error
+def _tests_of_file(
+    path: Path, known: Collection[str], optional: Collection[str], others: Mapping[str, str]
+) -> tuple[TestTable, int]:
+    """Return the rows of a file by the names of the columns, and the line of its head."""
+    line, written = line_of_names(path, FIELD)
+    try:
+        heads = read_heads(written, known, others)
+    except InputError as error:
+        raise error.at(path, line) from None
+    names = {split_head(head)[0]: one for head, one in heads.items()}
+    numbers = {name: UNITS[one.column] for name, one in names.items() if one.column in UNITS}
+    empty = {head for head, one in heads.items() if one.column in optional}
+    found, place = from_file(path, {*optional, *empty}, further=numbers)
+    columns = {name: one for name, one in {**heads, **names}.items() if name in found.rows[0]}
+    rows = [dict(_renamed(name, cell, columns.get(name)) for name, cell in row.items()) for row in found.rows]
+    read_as = {one.column: name for name, one in columns.items()}
+    return TestTable(rows, found.lines, found.path, found.digest, read_as), place
+
+
+def _renamed(name: str, cell: Any, head: Head | None) -> tuple[str, Any]:
+    """Return name and value of a cell whose head is another name; a unit at the end of the head stands behind it."""
+    if head is None:
+        return name, cell
+    states_unit = head.unit in UNITS_OF_HEADS.values() and split_quantity(cell) is None
+    return head.column, f"{cell} {head.unit}" if cell and states_unit else cell
 
 
 def from_file(
-    path: Path, optional: Collection[str] = (), field: str = FIELD, row: str = "test"
+    path: Path,
+    optional: Collection[str] = (),
+    field: str = FIELD,
+    row: str = "test",
+    further: Mapping[str, str] = MappingProxyType({}),
 ) -> tuple[TestTable, int]:
     """Return the rows of a CSV file or a workbook, whatever its columns are, and the line of its head.
 
@@ -175,29 +246,43 @@ def from_file(
         Names of columns whose cells may be empty.
     field, row : str
         Words of messages for the table and for a row.
+    further : mapping of str to str
+        Units of further columns of numbers by their names.
     """
     wrong = Collector()
     with noted_reads() as read:
-        found = read_table(path, field, row, wrong, optional=optional)
+        found = read_table(path, field, row, wrong, optional=optional, further=further)
     wrong.check()
     rows = [dict(zip(found.names, line, strict=True)) for line in found.lines.values()]
     return TestTable(rows, list(found.lines), path, read[path.resolve()][1]), found.head
 
 
-def _from_rows(table: Any) -> TestTable:
+def _from_rows(table: Any, known: Collection[str], others: Mapping[str, str]) -> TestTable:
+    allowed = "the path of a table, a data frame, a list of rows (each a mapping), or a mapping of columns"
+    if table is None:
+        raise InputError(FIELD, None, allowed)
     if hasattr(table, "columns"):
         given = rows_of(table, FIELD)
     elif isinstance(table, Mapping):
-        columns = {name: list(values) for name, values in table.items()}
+        columns = {name: plain(values, str(name)) for name, values in table.items()}
+        for name, values in columns.items():
+            if not isinstance(values, list):
+                raise InputError(f"{FIELD}: {name}", values, "a list with one value for each test")
         if len({len(values) for values in columns.values()}) > 1:
             raise InputError(FIELD, list(columns), "columns of the same length")
         given = [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
     else:
-        given = [dict(row) for row in table]
+        given = plain(table, FIELD)
+        if not isinstance(given, list) or not all(isinstance(row, Mapping) for row in given):
+            remedy = "Name the columns, such as {'amplitude': [...], 'cycles': [...], 'failed': [...]}."
+            raise InputError(FIELD, table, allowed, remedy)
     if not given:
         raise InputError(FIELD, None, "a table with at least one test")
-    rows = [dict(_cell(str(head), value) for head, value in row.items()) for row in given]
-    return TestTable(rows, list(range(1, len(rows) + 1)))
+    heads = read_heads(dict.fromkeys(str(head) for row in given for head in row), known, others)
+    written = {head: f"{one.column} [{one.unit}]" if one.unit else one.column for head, one in heads.items()}
+    rows = [dict(_cell(written.get(str(head), str(head)), value) for head, value in row.items()) for row in given]
+    read_as = {one.column: head for head, one in heads.items()}
+    return TestTable(rows, list(range(1, len(rows) + 1)), heads=read_as)
 
 
 def _cell(head: str, value: Any) -> tuple[str, Any]:
@@ -205,4 +290,5 @@ def _cell(head: str, value: Any) -> tuple[str, Any]:
     name, unit = split_head(head)
     if name not in UNITS or unit in PLAIN or value is None or isinstance(value, str):
         return (name if name in UNITS or unit in PLAIN else head), value
-    return name, in_unit(float(value), unit, UNITS[name], name)
+    number = number_or_nan(value)
+    return name, value if math.isnan(number) else in_unit(number, unit, UNITS[name], name)

@@ -29,7 +29,7 @@ LOAD_X, LOAD_Y, LOAD_Z, NU = 0, 6, 12, 18
 POINT_FORCES, BILINEAR = range(2)
 
 
-class Loads(NamedTuple):
+class GridLoads(NamedTuple):
     """Places (m, 2) in grid spacings and their weights of q_x, q_y, p (m, 3) [MPa]; `kind` names the kernel."""
 
     places: Array
@@ -53,8 +53,8 @@ class CornerLoads(NamedTuple):
     """
 
     length: float
-    near: Loads
-    far: Loads
+    near: GridLoads
+    far: GridLoads
     box: Box
     reach: float
 
@@ -72,11 +72,11 @@ def _moment_corrected(q: Array, axis: int, second_moment: float) -> Array:
     return np.pad(q, pad) + 0.5 * second_moment * _second_difference(q, axis)
 
 
-def _kept(x: Array, y: Array, weights: Array, kind: int) -> Loads:
+def _kept(x: Array, y: Array, weights: Array, kind: int) -> GridLoads:
     """Return the loads whose weights are not all zero."""
     used = np.any(weights != 0.0, axis=-1)
     yy, xx = np.meshgrid(y, x, indexing="ij")
-    return Loads(np.stack([xx[used], yy[used]], axis=-1), np.ascontiguousarray(weights[used]), kind)
+    return GridLoads(np.stack([xx[used], yy[used]], axis=-1), np.ascontiguousarray(weights[used]), kind)
 
 
 def corner_loads(x: Array, y: Array, tractions: Array) -> CornerLoads:

@@ -526,7 +526,7 @@ ROUGH = 48  # most elements along an axis for the first climbs, which search bel
 GAPS = (0.045, 0.017, 0.008)  # relative distance to the highest, per finalist, below which a climb is given up
 
 
-class Patches(NamedTuple):
+class SearchedPatches(NamedTuple):
     """The n patches of a search.
 
     Attributes
@@ -745,7 +745,7 @@ def find_peaks(
         chosen = fields_of(fields, group)
         other = _merged(chosen) if coarse is None else coarse[group]
         slender, adhesion = bool(factor > 1), coarse is not None
-        some = Patches(
+        some = SearchedPatches(
             patches[group],
             chosen,
             _rough(chosen),
@@ -773,7 +773,7 @@ def find_peaks(
     return out
 
 
-def _found(patches: Patches, rules: Rules, effort: Effort) -> Peak:
+def _found(patches: SearchedPatches, rules: Rules, effort: Effort) -> Peak:
     """Return the peaks of patches with the same rules, in normalised coordinates."""
     peaks = np.zeros((len(patches.rows), 2, 6))
 

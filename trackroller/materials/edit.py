@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import io
-import os
 import shutil
 from collections.abc import Mapping
 from pathlib import Path
@@ -17,7 +16,7 @@ from ruamel.yaml.scalarstring import DoubleQuotedScalarString
 from trackroller.errors import InputError, WorkError, check_names
 from trackroller.files import read_text, write_whole
 from trackroller.materials.entries import NUMBERS, TEXTS, VALUE_KEYS
-from trackroller.materials.file import build_database, read_database
+from trackroller.materials.file import build_database, own_file, read_database
 from trackroller.materials.material import Material
 from trackroller.materials.properties import PROPERTIES
 from trackroller.materials.sn_curve import POINTS
@@ -32,7 +31,7 @@ HEADER = """\
 FIELDS = (*NUMBERS, *TEXTS, POINTS, FIELD, "source", "placeholder")
 
 
-def add_material(path: Path | str, name: str, *, replace: bool = False, **values: Any) -> Material:
+def add_material(path: Path | str, name: str, /, *, replace: bool = False, **values: Any) -> Material:
     """Write a material into the user's file and return the material as the file now defines it.
 
     Parameters
@@ -63,11 +62,7 @@ def add_material(path: Path | str, name: str, *, replace: bool = False, **values
     Comments, order and all other entries of the file are kept. The new text is checked and written to a temporary file,
     which then replaces the old file in one step.
     """
-    expanded = os.path.expanduser(path)
-    if expanded.startswith("~"):  # a folder of this name would be made
-        remedy, wrong = "Write the whole path.", "names a home that this machine does not know"
-        raise InputError("materials file", str(path), "the path of a YAML file", remedy, wrong)
-    path = Path(os.path.realpath(expanded))
+    path = own_file(path)
     if not isinstance(name, str) or not name.strip():
         raise InputError("material name", name, "a text that is not empty")
     check_names(f"material '{name}': field", values, FIELDS)

@@ -57,9 +57,29 @@ def slug(name: str) -> str:
     return re.sub(r"[^\w-]+", "-", name.strip().lower()).strip("-") or "material"
 
 
+def own_file(path: Path | str) -> Path:
+    """Return the whole path of a user's materials file; links are followed.
+
+    Raises
+    ------
+    InputError
+        If it is no path, names a folder, or begins with a home that this machine does not know.
+    """
+    allowed, remedy = "the path of a YAML file", "Write a name such as config/materials.yaml."
+    if not isinstance(path, (str, os.PathLike)):
+        raise InputError("materials file", path, allowed, remedy)
+    expanded = os.path.expanduser(path)
+    if os.path.isdir(expanded or "."):
+        raise InputError("materials file", str(path), allowed, remedy, "is a folder")
+    if expanded.startswith("~"):  # a folder of this name would be made
+        remedy, wrong = "Write the whole path.", "names a home that this machine does not know"
+        raise InputError("materials file", str(path), allowed, remedy, wrong)
+    return Path(os.path.realpath(expanded))
+
+
 def posterior_path(file: Path | str, name: str) -> Path:
     """Return the file of the posterior of a fitted material, beside the user's materials file."""
-    return Path(file).expanduser().resolve().parent / FITS / f"{slug(name)}.nc"
+    return own_file(file).parent / FITS / f"{slug(name)}.nc"
 
 
 def read_database(user_file: Path | None) -> MaterialDatabase:

@@ -75,7 +75,7 @@ def pairs(y: np.ndarray, unit: np.ndarray, ordered: np.ndarray, seed: int = 0) -
     return out
 
 
-class Fit(NamedTuple):
+class FittedPolynomial(NamedTuple):
     """The columns of a fitted polynomial, and what it predicts.
 
     Attributes
@@ -97,7 +97,7 @@ def best_fit(
     degrees: Sequence[tuple[int, int]] = DEGREES,
     *,
     ranked: bool = True,
-) -> Fit | None:
+) -> FittedPolynomial | None:
     """Return the polynomial that predicts held-out rows best.
 
     Parameters
@@ -121,7 +121,7 @@ def best_fit(
     if scores[best] == -np.inf:
         return None
     width = columns.widths[best]
-    return Fit(scores[best], columns.table[:, :width], columns.term[:width])
+    return FittedPolynomial(scores[best], columns.table[:, :width], columns.term[:width])
 
 
 class _Columns(NamedTuple):

@@ -29,7 +29,6 @@ from typing import Any
 
 import numpy as np
 
-from trackroller.errors import InputError
 from trackroller.methods import convergence
 from trackroller.methods.intervals import constant, percentile_bounds
 from trackroller.methods.method import Design, Drawn, Estimated, Estimates, Factors, Key, Method, Settings, spread
@@ -113,9 +112,8 @@ class Saltelli(Method):
 
     def group_indices(self, y: np.ndarray, design: Design, groups: Mapping[str, Sequence[str]]) -> Estimates:
         """Return the indices of the groups whose columns the design exchanges together."""
-        second, exchanged = bool(design.meta["second_order"]), design.meta.get("groups")
-        if exchanged is None:  # of an earlier version
-            raise InputError("analysis.groups", list(groups), "a design drawn by group", "Run the study again.")
+        second = bool(design.meta["second_order"])
+        exchanged = design.meta["groups"]
         columns, sets = len(exchanged), [1 << exchanged.index(name) for name in groups]
         block = by_block(y, design)
         block = block[np.isfinite(block).all(axis=1)]

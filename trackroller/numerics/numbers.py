@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from trackroller.errors import InputError
-from trackroller.numerics.cells import plain_quantity
+from trackroller.numerics.table_cells import plain_quantity
 from trackroller.numerics.units import in_unit, split_quantity
 
 _TEXT = re.compile(r"[-+]?(?:(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?|\.?(?:inf|Inf|INF)|infinity)", re.ASCII)
@@ -98,6 +98,18 @@ def number_or_nan(value: Any, unit: str | None = None, field: str = "", differen
     except ValueError:
         return math.nan
     return number if unit is None or parts is None else in_unit(number, parts[1], unit, field, difference)
+
+
+def finite_number(value: Any, unit: str | None = None, field: str = "") -> float:
+    """Return a number as `number_or_nan` does, but NaN for an infinite one too; all bounds refuse NaN.
+
+    Examples
+    --------
+    >>> finite_number("2 kN", "N", "radial_force"), finite_number("inf")
+    (2000.0, nan)
+    """
+    number = number_or_nan(value, unit, field)
+    return number if math.isfinite(number) else math.nan
 
 
 def number_in(

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from trackroller.errors import nearest
-from trackroller.numerics.cells import plain_quantity
+from trackroller.numerics.table_cells import plain_quantity
 
 SMALLEST = 1e-6  # least size of a number that must not be 0
 

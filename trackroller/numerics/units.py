@@ -112,6 +112,9 @@ def _registry() -> Any:
 
     registry: Any = pint.UnitRegistry(cache_folder=None)
     registry.define("HB = [brinell_hardness]")
+    registry.define("HBW = HB")  # by a ball of hard metal, as all tests today
+    registry.define("Msi = 1e6 * psi")
+    registry.define("kp = kgf")
     return registry
 
 
@@ -122,7 +125,10 @@ def _factor_and_offset(unit: str, wanted: str, field: str) -> tuple[float, float
     try:
         if not re.fullmatch(_UNIT, unit.strip(), re.ASCII):
             raise ValueError(unit)
-        zero, one = (_registry().Quantity(number, _spelt(unit)) for number in (0.0, 1.0))
+        spelt = _spelt(unit)
+        if spelt == "g" and _registry().Unit(_spelt(own)).dimensionality == _registry().Unit("m/s^2").dimensionality:
+            spelt = "standard_gravity"  # of an acceleration; a mass keeps its gram
+        zero, one = (_registry().Quantity(number, spelt) for number in (0.0, 1.0))
     except Exception:  # pint's parser raises a dozen kinds, also AssertionError
         raise InputError(field, unit, "a unit that is known", remedy) from None
     target = _registry().Unit(_spelt(own))

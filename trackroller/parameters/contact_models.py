@@ -205,8 +205,6 @@ _BUILT_IN = (
         cost=Cost.measured("kalker_table"),
     ),
 )
-# Models of earlier versions, with what to take instead.
-GONE = {"fastsim": "Take contact_model: kalker_table, which is cheaper and more accurate."}
 # Cost of solved patches (`normal: halfspace`) by kalker; other models take less.
 SOLVED_PATCHES = Cost((0.2, 0.4, 0.7), (0.03, 0.2, 2.8), Cost.measured("kalker").shares)
 

@@ -11,7 +11,7 @@ from trackroller.damage import LIMITS, verdict
 from trackroller.damage.own import hint
 from trackroller.errors import InputError, unknown_name
 from trackroller.parameters.accuracy import QUANTITIES
-from trackroller.parameters.contact_models import DECLARED, GONE, MEANINGS
+from trackroller.parameters.contact_models import DECLARED, MEANINGS
 
 
 @dataclass(frozen=True)
@@ -31,8 +31,6 @@ class Option:
     kind : str
         "word" (one of `values`), "words" (several of them), "number" (within `bounds`), "accuracy" (a word, such a
         number, or numbers by quantity), "condition" (see `trackroller.roller.stop`) or "switch" (true or false).
-    gone : dict of str
-        Words of earlier versions, with what to take instead.
     bounds : tuple of float
         Numbers between which a number must lie; the bounds themselves are not allowed.
     by_model : bool
@@ -54,7 +52,6 @@ class Option:
     meaning: str
     values: Mapping[str, str] = field(default_factory=dict)
     kind: str = "word"
-    gone: Mapping[str, str] = field(default_factory=dict)
     bounds: tuple[float, float] = (0, 1)
     by_model: bool = False
     required: bool = False
@@ -140,8 +137,6 @@ class Option:
         if not isinstance(value, str) or value not in self.values:
             if self.name == "outputs" and (how := hint(value)):
                 raise InputError(where, value, self.allowed(), how)
-            if isinstance(value, str) and value in self.gone:
-                raise InputError(where, value, self.allowed(), self.gone[value])
             number = ("a relative tolerance such as 0.01",) * (self.kind == "accuracy")
             raise unknown_name(where, value, (*self.values, *number))
         return value
@@ -188,7 +183,6 @@ _OPTIONS = (
         "kalker",
         "how friction is distributed over the patch",
         MEANINGS,
-        gone=GONE,
         factor=True,
     ),
     Option(

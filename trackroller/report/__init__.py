@@ -1,27 +1,35 @@
-"""The sheet of one roller and the report of a study: `trackroller.report(ds, path)` writes either.
+"""The pages of results, such as the sheet of a roller and the report of a study: `trackroller.report` writes them.
 
 The module itself can be called: `trackroller.report` is both the room of the reports and the function that writes one.
 """
 
 from __future__ import annotations
 
+import os
 import sys
 from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING
 
+from trackroller.errors import InputError
+
 if TYPE_CHECKING:
     import xarray as xr
 
+    from trackroller.fit.fitted import Fit
+    from trackroller.results.results import Results
 
-def write(ds: xr.Dataset, path: Path | str) -> Path:
-    """Write the sheet of one case, the page of a load spectrum or the report of a study, as HTML or PDF.
+
+def write(result: xr.Dataset | Results | Fit, path: Path | str) -> Path:
+    """Write the page of a result as HTML or PDF.
 
     Parameters
     ----------
-    ds : xarray.Dataset
-        Result of `trackroller.solve` for one case or for the design of a study, result of `solve_spectrum`, of
-        `trackroller.carriage` or of `trackroller.wear`, or the data set in `study.nc`.
+    result : xarray.Dataset, Results or Fit
+        Results of a study, its data set in `study.nc`, or what `trackroller.solve` returned for its design: the report.
+        The data set of one case: its sheet. What `solve_spectrum`, `trackroller.carriage`, `trackroller.wear`,
+        `trackroller.fit_sn` or `trackroller.fit_bench` returned: the page of a load spectrum, of a carriage, of wear,
+        of a fit.
     path : Path or str
         The file to write, .html or .pdf. It stands alone and can be sent by mail. A browser prints the PDF: Chromium,
         Chrome or Edge.
@@ -34,7 +42,8 @@ def write(ds: xr.Dataset, path: Path | str) -> Path:
     Raises
     ------
     InputError
-        If `ds` is neither the result of one case nor of a study.
+        If `result` is none of these, such as the data set of several cases that belong to no study, or if `path` is no
+        path.
 
     Examples
     --------
@@ -43,6 +52,24 @@ def write(ds: xr.Dataset, path: Path | str) -> Path:
     >>> tr.report(ds, "sheet.html").name
     'sheet.html'
     """
+    import xarray as xr
+
+    if not isinstance(path, (str, os.PathLike)):
+        raise InputError("report", path, "the path of a page", "Write a name such as sheet.html.")
+    if isinstance(result, xr.Dataset) and "study" not in result.attrs:
+        return _write_without_study(result, path)
+
+    from trackroller.fit.fitted import Fit
+    from trackroller.report.pages.fit import write_fit
+    from trackroller.report.show import results_of, write_report  # heavy: pandas, SciPy and SALib
+
+    if isinstance(result, Fit):
+        return write_fit(result, path)
+    return write_report(results_of(result, "report"), path)
+
+
+def _write_without_study(ds: xr.Dataset, path: Path | str) -> Path:
+    """Write the sheet of one case, or the page of a load spectrum, of a carriage or of wear."""
     from trackroller.report.pages.carriage import write_carriage  # heavy: jinja2
     from trackroller.report.pages.sheet import write_sheet  # heavy: jinja2
     from trackroller.report.pages.spectrum import write_spectrum  # heavy: jinja2
@@ -54,18 +81,12 @@ def write(ds: xr.Dataset, path: Path | str) -> Path:
         return write_carriage(ds, path)
     if "damage_sum" in ds:
         return write_spectrum(ds, path)
-    if "study" not in ds.attrs:
-        return write_sheet(ds, path)
-    from trackroller.report import html
-    from trackroller.report.build import report_text
-    from trackroller.results.stored_study import open_study  # heavy: pandas, SciPy and SALib, for studies only
-
-    return html.write_page(Path(path), report_text(open_study(ds)))
+    return write_sheet(ds, path)
 
 
 class _CallableModule(ModuleType):
-    def __call__(self, ds: xr.Dataset, path: Path | str) -> Path:
-        return write(ds, path)
+    def __call__(self, result: xr.Dataset | Results | Fit, path: Path | str) -> Path:
+        return write(result, path)
 
 
 sys.modules[__name__].__class__ = _CallableModule

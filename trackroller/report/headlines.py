@@ -43,7 +43,8 @@ of the curve), `at_from`, `at_to` [unit of the output]; `asked`: the same of a f
 
 `best`, by `Answer.kind` (`one`, `front`, `front_required`; `solve_finer`, `open`, `none` with
 `nearest`): `designs`, a list of dict: `name` (as one of `names`),
-`at` (`corner`, `knee` or ''), `goals` (list of {words, units, value}), `stopped` (search stopped before this end);
+`at` (`corner`, `knee` or ''), `goals` and `required` (lists of {words, units, value}; `required` holds outputs of
+requirements that are no goals), `stopped` (search stopped before this end);
 `binds` (requirement, limit or end of a range in words), `accuracy` (of these numbers), `extrapolated`,
 `exceeded`, `second`.
 
@@ -59,7 +60,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from trackroller.errors import listing
-from trackroller.parameters.of_carriage import parameter_of
+from trackroller.parameters.carriage_fields import parameter_of
 from trackroller.report.bounds import bounds_of_output
 from trackroller.report.numbers import (
     capital,
@@ -402,7 +403,7 @@ def best(answer: Answer) -> Headline:
     if answer.kind == "front":
         return _front(answer, designs)
     first = designs[0]
-    goals = listing([_goal(one) for one in first["goals"]])
+    goals = listing([_goal(one) for one in (*first["goals"], *first["required"])])
     accuracy = f" at {head['accuracy']}" if head.get("accuracy") else ""
     clauses = [f"{goals}{_beyond(head)}{accuracy}"]
     binds = _short(head.get("binds"))

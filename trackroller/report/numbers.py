@@ -11,7 +11,7 @@ from typing import Any
 
 from trackroller.errors import listing
 from trackroller.parameters import MAPPING_FIELDS
-from trackroller.parameters.of_carriage import long_name_of, parameter_of
+from trackroller.parameters.carriage_fields import long_name_of, parameter_of
 from trackroller.roller.duty import duty_of, years
 from trackroller.study.design.levels import NAMED, short
 

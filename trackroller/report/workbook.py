@@ -18,7 +18,7 @@ import xarray as xr
 from trackroller.damage.verdict import STATES
 from trackroller.errors import InputError
 from trackroller.parameters import REGIME_LABELS
-from trackroller.parameters.of_carriage import parameter_of
+from trackroller.parameters.carriage_fields import parameter_of
 from trackroller.parameters.validity import VALIDITY
 from trackroller.report import html
 from trackroller.report.headlines import headline_of
@@ -27,7 +27,7 @@ from trackroller.report.pages.sheet import collect
 from trackroller.report.tables.table import Table, cell
 from trackroller.results.answer import Answer
 from trackroller.results.results import Results
-from trackroller.roller import record
+from trackroller.roller import stored_inputs as record
 from trackroller.roller.aliases import RADII
 from trackroller.roller.dataset import FLAGS
 from trackroller.roller.duty import duty_of, years

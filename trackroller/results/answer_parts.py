@@ -10,7 +10,7 @@ import pandas as pd
 
 from trackroller.damage import LIMITS
 from trackroller.parameters import BODIES, PARAMETERS
-from trackroller.parameters.of_carriage import long_name_of
+from trackroller.parameters.carriage_fields import long_name_of
 from trackroller.results.answer import Caution
 from trackroller.results.candidate_table import title_of
 from trackroller.results.candidates import slip_margin
@@ -18,10 +18,10 @@ from trackroller.results.case_ranges import CaseRanges
 from trackroller.results.columns import codes
 from trackroller.results.comparison import Comparison
 from trackroller.results.places import level_text, places_of, places_text
-from trackroller.results.results import Results
+from trackroller.results.solved_cases import SolvedCases
 from trackroller.roller.limit_notes import given_in_vain
 from trackroller.roller.output_names import is_life
-from trackroller.roller.record import names_not_given
+from trackroller.roller.stored_inputs import names_not_given
 from trackroller.study.outputs import flat
 from trackroller.study.store.provenance import DATE
 
@@ -32,7 +32,7 @@ UNEQUAL = 0.01  # relative difference from which on loads of candidates are unli
 NAMED_LEVELS = 4  # values that a warning lists
 
 
-def facts_of(results: Results, own: Comparison | None = None) -> dict[str, Any]:
+def facts_of(results: SolvedCases, own: Comparison | None = None) -> dict[str, Any]:
     """Return the facts of the title line of a study.
 
     Parameters
@@ -63,7 +63,7 @@ def facts_of(results: Results, own: Comparison | None = None) -> dict[str, Any]:
     return facts
 
 
-def checks_left_out(results: Results) -> dict[str, tuple[str, ...]]:
+def checks_left_out(results: SolvedCases) -> dict[str, tuple[str, ...]]:
     """Return the limits that were not checked for each body, in words.
 
     A limit is checked for a body if its life, or of a limit without lives its use, is known in every valid row. A limit
@@ -88,7 +88,7 @@ def checks_left_out(results: Results) -> dict[str, tuple[str, ...]]:
     return {body: tuple(names) for body, names in found.items()}
 
 
-def _known(results: Results) -> dict[str, np.ndarray]:
+def _known(results: SolvedCases) -> dict[str, np.ndarray]:
     """Return where each limit is known, (n, body) bool by its name."""
     data = results.data
     if "limit" not in data.dims:
@@ -102,21 +102,21 @@ def _known(results: Results) -> dict[str, np.ndarray]:
     return out
 
 
-def _without_limits(results: Results) -> dict[str, np.ndarray]:
+def _without_limits(results: SolvedCases) -> dict[str, np.ndarray]:
     """Return which of static strength and fatigue are known in a study without the group of the limits."""
     stress = np.stack([results.column(f"peak_stress_{body}") for body in BODIES], axis=1)
     lives = np.stack([results.column(f"{body}_life_hours") for body in BODIES], axis=1)
     return {"static": ~np.isnan(stress), "fatigue": ~np.isnan(lives)}
 
 
-def unchecked_names(results: Results) -> list[str]:
+def unchecked_names(results: SolvedCases) -> list[str]:
     """Return the names of the limits that were checked for no body."""
     known = _known(results)
     judged = [name for name, limit in LIMITS.items() if limit.verdict is not None]
     return [name for name in judged if name not in known or not known[name].any()]
 
 
-def given_for_nothing(results: Results) -> dict[str, str]:
+def given_for_nothing(results: SolvedCases) -> dict[str, str]:
     """Return the values under `base` that serve only limits which were not checked, with these limits in words."""
     unknown = names_not_given(results.data.attrs)
     idle = given_in_vain(results.config.base, unchecked_names(results))
@@ -127,7 +127,7 @@ def given_for_nothing(results: Results) -> dict[str, str]:
     }
 
 
-def not_given_words(results: Results) -> dict[str, str]:
+def not_given_words(results: SolvedCases) -> dict[str, str]:
     """Return the values that nobody gave, with their units."""
     found = {}
     for name in names_not_given(results.data.attrs):
@@ -162,10 +162,10 @@ def lost_by_missing_input(own: Comparison) -> str:
     return ""
 
 
-def where_text(results: Results, hit: np.ndarray, among: np.ndarray) -> str:
+def where_text(results: SolvedCases, hit: np.ndarray, among: np.ndarray) -> str:
     """Return the levels of factors that hold some rows and no others; '' if no levels do."""
     places = places_of(results.table, results.factors, hit, among)
-    return places_text([place for place in places if len(place) <= 3]) if places else ""
+    return places_text([place for place in places if len(place) <= 3], results.table) if places else ""
 
 
 def cautions(own: Comparison, shown: pd.DataFrame, named: int = 1) -> tuple[Caution, ...]:
@@ -202,7 +202,7 @@ def _edge_text(own: Comparison, shown: pd.DataFrame, edge: str) -> str:
     return "; ".join(parts)
 
 
-def case_cautions(results: Results, ranges: CaseRanges, rows: np.ndarray) -> list[Caution]:
+def case_cautions(results: SolvedCases, ranges: CaseRanges, rows: np.ndarray) -> list[Caution]:
     """Return the warnings that count cases.
 
     Parameters

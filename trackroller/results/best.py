@@ -15,8 +15,8 @@ from trackroller.damage import LIMITS
 from trackroller.errors import InputError, listing
 from trackroller.methods.optimise import nondominated_ranks
 from trackroller.parameters import BODIES, REGIMES
-from trackroller.parameters.of_carriage import long_name_of, parameter_of
-from trackroller.results.answer import Answer, Caution, Column
+from trackroller.parameters.carriage_fields import long_name_of, parameter_of
+from trackroller.results.answer import Answer, Caution, Column, Required
 from trackroller.results.answer_parts import (
     case_cautions,
     checks_left_out,
@@ -35,6 +35,7 @@ from trackroller.results.judging import (
     ends_of_goal,
     goal_column,
     judge,
+    judges_of,
     life_of_search,
     optimum_of,
     required,
@@ -43,7 +44,7 @@ from trackroller.results.judging import (
 )
 from trackroller.results.lives import OF_PAIR
 from trackroller.results.requirement import required_of
-from trackroller.results.results import SAME_ENDS, Results
+from trackroller.results.solved_cases import SAME_ENDS, SolvedCases
 from trackroller.roller.output_names import is_life
 from trackroller.study.design.levels import in_words
 from trackroller.study.file.search import judged_by
@@ -59,6 +60,7 @@ REASONS = {  # why a design does not hold, as what binds another one
 }
 GOAL = "goal_{}"  # column of a goal by its number; `_low` and `_high` are the ends of its range
 REFERENCE = "goal_{}_reference"
+REQUIRED = "required_{}"  # column of the output of a requirement by its number
 
 
 @dataclass(frozen=True)
@@ -71,7 +73,7 @@ class _Found:
     search : what it found, see `optimum_of`
     """
 
-    results: Results
+    results: SolvedCases
     search: Mapping[str, Any]
 
     @cached_property
@@ -98,6 +100,11 @@ class _Found:
         return shares_of(self.results)
 
     @cached_property
+    def judges(self) -> list[tuple[Required, CaseRanges]]:
+        """Return each requirement with the output that judges it."""
+        return judges_of(self.results)
+
+    @cached_property
     def goals(self) -> dict[str, str]:
         """Return the goals with `max` or `min`."""
         return dict(self.search["goals"])
@@ -111,9 +118,12 @@ class _Found:
     def verdict(self) -> np.ndarray:
         """Return whether each design meets the requirement, shape (designs,): `met`, `open`, `missed`, or `none`.
 
-        `none` stands where a design does not hold in enough conditions to be compared.
+        Optima are judged by their solution at `reference`. `none` stands where a design does not hold in enough
+        conditions to be compared.
         """
         short = shortfall(self.results)
+        for number, one in self.optima.items():
+            short[number] = one["short"][1]
         states = np.where(short == 0, "met", np.where(short < 2, "open", "missed")).astype(object)
         return np.where(self.judged.violation > 0, "none", states)
 
@@ -169,12 +179,12 @@ class _Found:
         return list(dict.fromkeys([*self.named, *self.corners, *order])) if self.usable else []
 
 
-def answer_of_search(results: Results) -> Answer:
+def answer_of_search(results: SolvedCases) -> Answer:
     """Return the answer of a search.
 
     Parameters
     ----------
-    results : Results
+    results : SolvedCases
         A solved study with `method: optimise`.
 
     Returns
@@ -263,7 +273,12 @@ def _design(found: _Found, number: int) -> dict[str, Any]:
     for goal, value in zip(found.goals, found.optima[number]["reference"], strict=True):
         _, units, words = goal_column(found.results, goal)
         goals.append({"words": words, "units": units, "value": float(value)})
-    return {"name": _name(found, number), "at": at, "goals": goals, "stopped": _is_stopped(found, number)}
+    required = []
+    for (_, own), value in zip(found.judges, found.optima[number]["required"][1], strict=True):
+        if own.output[0] not in {judged_by(goal)[1] for goal in found.goals} and not _is_drawn(found):
+            required.append({"words": own.output[1], "units": own.output[2], "value": float(value)})
+    stopped = _is_stopped(found, number)
+    return {"name": _name(found, number), "at": at, "goals": goals, "required": required, "stopped": stopped}
 
 
 def _nearest(found: _Found, number: int) -> dict[str, Any]:
@@ -313,7 +328,7 @@ def _is_stopped(found: _Found, number: int) -> bool:
 def _table(found: _Found) -> tuple[pd.DataFrame, tuple[Column, ...]]:
     """Return one row a design that was solved at `reference`, with its columns."""
     table = pd.DataFrame([_row(found, number) for number in found.shown])
-    columns = [*_choice_columns(found), *_goal_columns(found)]
+    columns = [*_choice_columns(found), *_goal_columns(found), *_required_columns(found)]
     if found.wanted:
         columns.append(Column("verdict", "Requirement", kind="state", meaning=_MEANINGS["verdict"]))
         if found.results.design.meta["inner_samples"] > 1:
@@ -373,12 +388,24 @@ def _goal_columns(found: _Found) -> list[Column]:
     """Return the columns of each goal: its value, the range of a life, and its value at `reference`."""
     columns = []
     for number, (goal, way) in enumerate(found.goals.items(), 1):
+        if judged_by(goal)[1] in found.results.design.meta["outer"]:
+            continue  # its value stands in the column of the choice
         _, units, words = goal_column(found.results, goal)
         better = "larger is better" if way == "max" else "smaller is better"
         name = GOAL.format(number)
         columns.append(Column(name, words, units, f"{words}; {better}"))
         columns.append(Column(f"{name}_low", f"{words}, range", units, "with placeholders", until=f"{name}_high"))
         columns.append(Column(REFERENCE.format(number), f"{words} at reference", units, "the same at `reference`"))
+    return columns
+
+
+def _required_columns(found: _Found) -> list[Column]:
+    """Return a column for the output of each requirement at `reference`."""
+    columns = []
+    for place, (_, own) in enumerate(found.judges):
+        _, words, units = own.output
+        meaning = f"{words} at the worst condition, at `reference`; of a range its worse end"
+        columns.append(Column(REQUIRED.format(place + 1), words, units, meaning))
     return columns
 
 
@@ -392,6 +419,8 @@ def _row(found: _Found, number: int) -> dict[str, Any]:
         row[name] = float(found.judged.values[number, place - 1])
         row |= dict(zip((f"{name}_low", f"{name}_high"), _range(found, goal, number), strict=True))
         row[REFERENCE.format(place)] = float(value)
+    for place, value in enumerate(found.optima[number]["required"][1], 1):
+        row[REQUIRED.format(place)] = float(value)
     if found.wanted:
         row |= _requirement(found, number)
     row |= _step(found) if number == found.chosen else {"step": np.nan, "step_of": ""}
@@ -423,7 +452,7 @@ def _corner(found: _Found, number: int) -> str:
 
 def _requirement(found: _Found, number: int) -> dict[str, Any]:
     """Return whether a design meets the requirement, and in which share of the conditions."""
-    share = float(min((own.sure[number] for own in found.shares), default=np.nan))
+    share = float(found.optima[number]["share"][1])
     low, high = (np.nan, np.nan)
     if _is_drawn(found):
         count = np.array([found.results.design.meta["inner_samples"]])

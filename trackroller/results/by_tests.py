@@ -16,19 +16,20 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
+import pandas as pd
 import xarray as xr
 from scipy.special import ndtr, ndtri
 
 from trackroller.errors import InputError, listing
-from trackroller.fit.bench import DEFAULTS, check_same
 from trackroller.fit.line import Values
 from trackroller.fit.posterior import Posterior
+from trackroller.fit.solved_rollers import DEFAULTS, check_same
 from trackroller.fit.stored import StoredFit, stored_fit
 from trackroller.methods.b10 import b10
-from trackroller.parameters import BODIES
+from trackroller.parameters import BODIES, FIRST_TO_FAIL
 from trackroller.results.first_limits import reached_by_body
-from trackroller.results.lives import body_lives
-from trackroller.results.results import SAME_ENDS, Results
+from trackroller.results.lives import body_lives, past_data
+from trackroller.results.solved_cases import SAME_ENDS, SolvedCases, made_once
 from trackroller.results.targets import hits_of, scattering_body
 from trackroller.roller.output_names import body_of, is_life
 from trackroller.study.design.entries import OPTION_FACTORS
@@ -46,20 +47,20 @@ AT_ONCE = 2_000_000  # elements of an array of cases and draws, which bounds the
 Shift = Callable[[str], np.ndarray]  # of ln life by body, (n,)
 
 
-def materials_fitted(results: Results) -> dict[str, StoredFit]:
+def materials_fitted(results: SolvedCases) -> dict[str, StoredFit]:
     """Return the fits of the materials of a study by the names of the materials, whether they hold for it or not."""
     stored = json.loads(str(results.data.attrs.get("materials", "{}")))
     fits = {name: stored_fit(name, values, results.materials_file) for name, values in stored.items()}
     return {name: fit for name, fit in fits.items() if fit is not None}
 
 
-def options_of(results: Results) -> dict[str, Any]:
+def options_of(results: SolvedCases) -> dict[str, Any]:
     """Return the options by which the compared cases of a study were solved."""
     held = {name: results.held_level(name) for name in results.factors if name in OPTION_FACTORS}
     return {key: value for key, value in results.data.attrs.items() if key in DEFAULTS} | held
 
 
-def not_held(results: Results) -> dict[str, str]:
+def not_held(results: SolvedCases) -> dict[str, str]:
     """Return the fitted materials of a study that was solved with other options than their fit, with these options."""
     used, found = options_of(results), {}
     for name, fit in materials_fitted(results).items():
@@ -71,14 +72,58 @@ def not_held(results: Results) -> dict[str, str]:
     return found
 
 
-def by_tests_of(results: Results) -> ByTests | None:
-    """Return the fits that hold for a study with the draws of their posteriors; None without one."""
+@made_once
+def by_tests_of(results: SolvedCases) -> ByTests | None:
+    """Return the fits of the materials of a study that hold for it, with the draws of their posteriors.
+
+    Returns
+    -------
+    ByTests or None
+        None without a material that was fitted to tests.
+    """
     other = not_held(results)
     fits = {name: fit for name, fit in materials_fitted(results).items() if name not in other}
     return ByTests(results, fits) if fits else None
 
 
-def required(results: Results) -> ByTests:
+def beyond_sn_data(results: SolvedCases, column: str) -> np.ndarray:
+    """Mark the cases in which a life lies beyond the S-N data, shape (n,); no case for another quantity.
+
+    The body stays below its fatigue limit, or lasts more than `DATA_END` overrollings. Of a material that was
+    fitted to tests, its stress or its life lies beyond the tests. For the pair the body that fails first counts,
+    or the roller where no body is known to fail first. A life to the first limit that wear or the bearing ends
+    rests on no S-N data.
+
+    Parameters
+    ----------
+    results : SolvedCases
+        The solved study.
+    column : str
+        A life, such as `pair_life_hours` or `life_cycles_guide`.
+    """
+    if not (of_fatigue(column) or of_first_limit(column)):
+        return np.zeros(len(results.table), dtype=bool)
+    body = body_of(column)
+    if not body:
+        guide = results.first_failing(column) == FIRST_TO_FAIL.index("guide")
+        own = body_lives(column)
+        return np.where(guide, *(beyond_sn_data(results, own[body]) for body in ("guide", "roller")))
+    if of_first_limit(column):
+        fatigue = results.column(f"limiting_mechanism_{body}") == results.limits.index("fatigue")
+        return np.asarray(fatigue & beyond_sn_data(results, f"{body}_life_hours"))
+    names = pd.Series(results.material(body))
+    stored = json.loads(str(results.data.attrs.get("materials", "{}")))
+    knees = {n: float(stored.get(n, {}).get("cycles_at_fatigue_limit", np.inf)) for n in names.unique()}
+    endless = np.isposinf(results.column(f"{body}_life_hours"))
+    cycles = results.column(f"life_cycles_{body}")
+    past = past_data(cycles, names.map(knees).to_numpy(dtype=float)) | endless
+    tests = by_tests_of(results)
+    if tests is None:
+        return past
+    return np.where(tests.named[body] != "", tests.beyond(body), past)
+
+
+def required(results: SolvedCases) -> ByTests:
     """Return the fits that hold for a study with `material_scatter: fitted`.
 
     Raises
@@ -107,7 +152,7 @@ class ByTests:
     fits : fit of each fitted material by its name
     """
 
-    results: Results
+    results: SolvedCases
     fits: Mapping[str, StoredFit]
 
     @cached_property
@@ -282,7 +327,7 @@ def _spread_evenly(posterior: Posterior) -> np.ndarray:
     return np.asarray(order[np.searchsorted(below, (np.arange(DRAWS) + 0.5) / DRAWS * below[-1])])
 
 
-def probability_of(results: Results, name: str) -> float:
+def probability_of(results: SolvedCases, name: str) -> float:
     """Return the failure probability that a life of a study belongs to [1]: lives to a limit have that of the study."""
     return float(results.data.attrs.get("failure_probability", 0.5)) if of_first_limit(name) else 0.5
 
@@ -296,12 +341,12 @@ def _drawn_lives(own: ByTests, column: Output, given: np.ndarray | None) -> tupl
     return lives, np.where(np.isnan(deviation), 0.0 if given is None else given[:, None], deviation)
 
 
-def bands(results: Results, deviations: Mapping[str, np.ndarray]) -> xr.Dataset:
+def bands(results: SolvedCases, deviations: Mapping[str, np.ndarray]) -> xr.Dataset:
     """Return the bands of targets and of B10 by the tests, for a study with `material_scatter: fitted`.
 
     Parameters
     ----------
-    results : Results
+    results : SolvedCases
         Solved study.
     deviations : mapping of str to numpy.ndarray
         Standard deviation of log10 life of the material of each body [1], (n,).
@@ -341,7 +386,7 @@ def bands(results: Results, deviations: Mapping[str, np.ndarray]) -> xr.Dataset:
     return out.merge(_b10_bands(own, deviations, words))
 
 
-def _columns(results: Results, names: list[str]) -> list[Output]:
+def _columns(results: SolvedCases, names: list[str]) -> list[Output]:
     """Return these outputs as they are, without a limit of their number."""
     factors = results.design.factors
     return (

@@ -9,11 +9,11 @@ import pandas as pd
 
 from trackroller.damage import LIMITS
 from trackroller.parameters import BODIES
-from trackroller.parameters.of_carriage import long_name_of, parameter_of
+from trackroller.parameters.carriage_fields import long_name_of, parameter_of
 from trackroller.results.answer import STATES, Column
 from trackroller.results.comparison import Comparison, wilson
 from trackroller.results.lives import BESIDE, OF_PAIR
-from trackroller.results.places import levels_of, place_text, places_of, places_text, plain
+from trackroller.results.places import case_text, places_of, places_text, plain
 from trackroller.roller.output_names import is_life
 from trackroller.study.outputs import flat
 
@@ -67,16 +67,8 @@ def candidate_columns(own: Comparison, table: pd.DataFrame) -> tuple[Column, ...
         Column("worst", "Worst condition", "", "the levels of the condition at the low end", "text"),
         Column("ends", "Ended by", "", "what ends the candidate at the low end of its worst condition", "text"),
         *_ends_apart(table),
-        Column("holds", "Holds", "", "conditions in which the roller rolls inside all limits", "count"),
-        Column("judged", "Judged", "", "conditions that the model can judge", "count"),
     ]
-    if own.required:
-        columns.append(Column("meets", "Meets", "", "conditions that meet the requirement within the error", "count"))
-    columns.append(Column("of", "Of", "", "conditions of the candidate", "count"))
-    if own.required:
-        columns.append(
-            Column("fails", "Fails where", "", "levels that cover the misses, or counts of their causes", "text")
-        )
+    columns += _count_columns(own)
     if own.drawn:
         share = "share of the drawn conditions that meet the requirement" if own.required else "share that is held"
         columns += [
@@ -107,9 +99,15 @@ def candidate_columns(own: Comparison, table: pd.DataFrame) -> tuple[Column, ...
         columns.append(
             Column("exceeded", "Above 100 %", "", "limits that are exceeded somewhere, the worst one", "text")
         )
+    if own.count > 1:
+        better = "conditions in which the candidate is better than the leader"
+        columns += [
+            Column(
+                "ratio_low", "To the leader", "1", "ratio to the leader in the same condition", "ratio", "ratio_high"
+            ),
+            Column("longer", "Better in", "", better, "count"),
+        ]
     columns += [
-        Column("ratio_low", "To the leader", "1", "ratio to the leader in the same condition", "ratio", "ratio_high"),
-        Column("longer", "Better in", "", "conditions in which the candidate is better than the leader", "count"),
         Column("error", "Error", "1", "told 95 % error of the solution at the worst condition", "error"),
         Column("extrapolated", "Extrapolated", "", "conditions whose life lies beyond the data of its rule", "count"),
     ]
@@ -118,6 +116,20 @@ def candidate_columns(own: Comparison, table: pd.DataFrame) -> tuple[Column, ...
             Column("edge", "At the end of", "", "choices at the smallest or largest of their levels", "text")
         )
     return tuple(columns)
+
+
+def _count_columns(own: Comparison) -> list[Column]:
+    """Return the columns that count conditions; of drawn ones a share says how many meet a requirement."""
+    columns = [
+        Column("holds", "Holds", "", "conditions in which the roller rolls inside all limits", "count"),
+        Column("judged", "Judged", "", "conditions that the model can judge", "count"),
+        Column("of", "Of", "", "conditions of the candidate", "count"),
+    ]
+    if not own.required or own.drawn:
+        return columns
+    meets = Column("meets", "Meets", "", "conditions that meet the requirement within the error", "count")
+    fails = Column("fails", "Fails where", "", "levels that cover the misses, or counts of their causes", "text")
+    return [*columns[:2], meets, columns[2], fails]
 
 
 def _ends_apart(table: pd.DataFrame) -> list[Column]:
@@ -187,7 +199,7 @@ def _least(own: Comparison, values: np.ndarray, rows: np.ndarray) -> np.ndarray:
 def _condition_text(own: Comparison, names: list[str], row: int) -> str:
     if row < 0 or not names:
         return ""
-    return place_text({name: (level,) for name, level in levels_of(own.results.table, names, row).items()})
+    return case_text(own.results.table, names, row)
 
 
 def _end_words(own: Comparison, case: np.ndarray, end: str) -> tuple[list[str], list[str]]:
@@ -307,7 +319,7 @@ def _where(own: Comparison, names: list[str], number: int, good: np.ndarray) -> 
     found = places_of(part, names, ~good[rows], np.ones(len(rows), dtype=bool))
     few = [place for place in found if len(place) <= MOST_FACTORS]
     if found and len(few) == len(found):
-        return places_text(found)
+        return places_text(found, part)
     reasons = pd.Series(own.ranges.reason[rows][~good[rows]]).replace(
         "", "too short" if own.ranges.rises else "too much"
     )
@@ -337,11 +349,14 @@ def _second_models(own: Comparison) -> dict[str, Any]:
     for place, name in enumerate(names):
         if name not in BESIDE or np.isnan(low[rows, place]).all():
             continue
+        known = np.ones(len(low), dtype=bool)
         ends = []
         for values in (low, high):
             of_pair = np.fmin.reduce(values[:, place], axis=1)
-            ends.append(_least(own, np.where(np.isnan(of_pair), np.inf, of_pair), rows))
-        shorter = np.nan_to_num(ends[0], nan=np.inf) < shortest
+            known &= ~np.isnan(of_pair)
+            ends.append(_least(own, of_pair, rows))
+        unknown = np.bincount(own.place[rows & ~known], minlength=own.count) > 0
+        shorter = ~unknown & ~np.isnan(ends[0]) & ((which == "") | (ends[0] < shortest))
         which[shorter] = name
         shortest = np.where(shorter, ends[0], shortest)
         longest = np.where(shorter, ends[1], longest)

@@ -13,10 +13,11 @@ import pandas as pd
 
 from trackroller.methods.b10 import b10
 from trackroller.parameters import FIRST_TO_FAIL, REGIMES
+from trackroller.results.by_tests import beyond_sn_data
 from trackroller.results.columns import codes
 from trackroller.results.lives import FIRST_LIMIT, body_lives
-from trackroller.results.results import Results
 from trackroller.results.robustness import material_deviations
+from trackroller.results.solved_cases import SolvedCases, made_once
 from trackroller.roller.output_names import is_life
 from trackroller.study.design.levels import OF_MATERIALS
 
@@ -27,7 +28,7 @@ UNRANKED = ("converged", "conditions met", "")  # without lives and stresses: 1 
 TIED = 1e-9  # relative difference of lives that count as equal
 
 
-def slip_margin(results: Results) -> np.ndarray:
+def slip_margin(results: SolvedCases) -> np.ndarray:
     """Return the share of the largest transmissible force that the drive leaves, 1 - |F_Motor|/(mu |F_rad|/cos alpha).
 
     Returns
@@ -47,7 +48,7 @@ def slip_margin(results: Results) -> np.ndarray:
     return margin
 
 
-def lift_off_margin(results: Results) -> np.ndarray:
+def lift_off_margin(results: SolvedCases) -> np.ndarray:
     """Return the load of the lighter contact over that of the heavier one, shape (n,) [1]; 0 at lift-off."""
     loads = np.stack([results.column("normal_force_1"), results.column("normal_force_2")])
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -55,14 +56,14 @@ def lift_off_margin(results: Results) -> np.ndarray:
     return np.where(results.regime == REGIMES.index("lift_off"), 0.0, ratio)
 
 
-def _input(results: Results, name: str) -> np.ndarray:
+def _input(results: SolvedCases, name: str) -> np.ndarray:
     if name in results.table and results.numeric(name):
         return results.column(name)
     value = results.base.get(name)
     return np.full(len(results.table), float(value) if isinstance(value, (int, float)) else np.nan)
 
 
-def mixed(results: Results) -> np.ndarray:
+def mixed(results: SolvedCases) -> np.ndarray:
     """Return the rows of a random design that are no draws of their own, such as the mixtures of Saltelli's; (n,)."""
     out = np.ones(len(results.table), dtype=bool)
     out[results.design.method.independent_rows(results.design)] = False
@@ -86,11 +87,33 @@ def _shared(place: np.ndarray, use: np.ndarray) -> np.ndarray:
     return kept if len(shared) >= SHARED and each_once else np.zeros(len(use), dtype=bool)
 
 
-def goal_without_lives(results: Results) -> tuple[str, str, str] | None:
+def goal_without_lives(results: SolvedCases) -> tuple[str, str, str] | None:
     """Return what compares designs without lives: a stress, else whether they meet the target; None without both."""
     if STRESS[0] in results.table:
         return STRESS
     return UNRANKED if results.config.requirement else None
+
+
+@made_once
+def candidates_of(results: SolvedCases, free: tuple[str, ...] = ()) -> Candidates | None:
+    """Return the designs of a study: the combinations of choices, each judged over its conditions.
+
+    Parameters
+    ----------
+    results : SolvedCases
+        The solved study.
+    free : tuple of str
+        Conditions that count as choices here, because a goal names them.
+
+    Returns
+    -------
+    Candidates or None
+        None without a valid case that has a life or a stress, unless the study has a target.
+    """
+    goal = results.life or goal_without_lives(results)
+    if goal is None or not (results.valid & ~np.isnan(results.column(goal[0]))).any():
+        return None
+    return Candidates.grouped(results, goal, free)
 
 
 @dataclass(frozen=True)
@@ -110,7 +133,7 @@ class Candidates:
     design : `place` with the rows of `untried`, shape (n,)
     """
 
-    results: Results
+    results: SolvedCases
     choices: tuple[str, ...]
     conditions: tuple[str, ...]
     goal: tuple[str, str, str]
@@ -120,21 +143,7 @@ class Candidates:
     design: np.ndarray
 
     @classmethod
-    def of(cls, results: Results, free: tuple[str, ...] = ()) -> Candidates | None:
-        """Return the designs of a study; None without a valid case that has a life or a stress, unless it has a target.
-
-        Parameters
-        ----------
-        results : the solved study
-        free : conditions that count as choices here, because a goal names them
-        """
-        goal = results.life or goal_without_lives(results)
-        if goal is None or not (results.valid & ~np.isnan(results.column(goal[0]))).any():
-            return None
-        return cls.grouped(results, goal, free)
-
-    @classmethod
-    def grouped(cls, results: Results, goal: tuple[str, str, str], free: tuple[str, ...] = ()) -> Candidates:
+    def grouped(cls, results: SolvedCases, goal: tuple[str, str, str], free: tuple[str, ...] = ()) -> Candidates:
         """Return the designs of a study, whether a case is valid or not.
 
         Parameters
@@ -255,7 +264,7 @@ class Candidates:
         for body, name in body_lives(self.goal[0]).items():
             case = self._least(results.column(name), self.usable)
             table[f"worst_{body}"] = np.where(case < 0, np.nan, results.column(name)[case])
-            table[f"worst_{body}_beyond"] = (case >= 0) & results.beyond_data(name)[case]
+            table[f"worst_{body}_beyond"] = (case >= 0) & beyond_sn_data(results, name)[case]
         for name, margin, lost in (
             ("slip_margin", slip_margin(results), "full_slip"),
             ("lift_off_margin", lift_off_margin(results), "lift_off"),
@@ -320,7 +329,7 @@ class Candidates:
         order = rows[np.lexsort((values[rows] if self.rising else -values[rows], self.place[rows]))]
         number = self._count(self.usable)
         start, some = np.cumsum(number) - number, number > 0
-        beyond = self.results.beyond_data(self.goal[0])
+        beyond = beyond_sn_data(self.results, self.goal[0])
         ends = {"worst": (0, 0), "median": ((number - 1) // 2, number // 2), "best": (number - 1, number - 1)}
         columns: dict[str, np.ndarray] = {}
         for name, two in ends.items():
@@ -347,7 +356,7 @@ class Candidates:
         ends = np.array([b10(lives[c], scatter[c]) for c in cases]).T
         columns = dict(zip(("b10", "b10_low", "b10_high"), ends, strict=True))
         rests = np.array([max(b10(lives[c])[0], value) for c, value in zip(cases, ends[0], strict=True)])
-        there = self.usable & (lives <= rests[self.place]) & results.beyond_data(self.goal[0])
+        there = self.usable & (lives <= rests[self.place]) & beyond_sn_data(results, self.goal[0])
         return columns | {"b10_beyond": self._count(there) > 0}
 
 

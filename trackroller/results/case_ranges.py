@@ -9,9 +9,10 @@ import numpy as np
 
 from trackroller.parameters import BODIES, FIRST_TO_FAIL, REGIMES
 from trackroller.results.answer import Required
+from trackroller.results.by_tests import beyond_sn_data, by_tests_of
 from trackroller.results.first_limits import first_at, first_limit
 from trackroller.results.lives import FIRST_LIMIT, OF_PAIR
-from trackroller.results.results import Results
+from trackroller.results.solved_cases import SolvedCases
 from trackroller.roller.output_names import body_of, is_life
 from trackroller.study.outputs import flat, of_fatigue, of_first_limit
 
@@ -41,7 +42,7 @@ class CaseRanges:
     rises : whether more is better
     """
 
-    results: Results
+    results: SolvedCases
     output: tuple[str, str, str]
     rises: bool
 
@@ -191,7 +192,7 @@ class CaseRanges:
 
     def hours_at(self, end: str) -> np.ndarray | None:
         """Return the hours until each limit at an end, with the lives by fatigue moved by the tests; None without."""
-        tests = self.results.by_tests
+        tests = by_tests_of(self.results)
         if tests is None:
             return None
         side = ("_low", "_high").index(end)
@@ -200,7 +201,7 @@ class CaseRanges:
     @cached_property
     def tested(self) -> dict[str, np.ndarray]:
         """Return the held cases that fatigue of each fitted material ends, shape (n,) bool by its name."""
-        tests = self.results.by_tests
+        tests = by_tests_of(self.results)
         if tests is None or not is_life(self.output[0]):
             return {}
         found = {name: np.zeros(len(self.value), dtype=bool) for name in tests.fits}
@@ -214,7 +215,7 @@ class CaseRanges:
     @cached_property
     def beyond(self) -> np.ndarray:
         """Return the cases whose life lies beyond the data of its rule, shape (n,)."""
-        return np.asarray(self.results.beyond_data(self.output[0]) & self.held)
+        return np.asarray(beyond_sn_data(self.results, self.output[0]) & self.held)
 
     def judges(self, required: Required) -> bool:
         """Return whether this output judges a requirement: it names it, or a life that comes to the first limit."""
@@ -242,7 +243,7 @@ class CaseRanges:
     @cached_property
     def _shifts(self) -> dict[str, np.ndarray]:
         """Return the shift of ln life by fatigue of each body at both ends of the band by the tests, (2, n) each."""
-        tests = self.results.by_tests
+        tests = by_tests_of(self.results)
         if tests is None:
             return {}
         chance = 0.5
@@ -264,7 +265,7 @@ class CaseRanges:
     def _end(self, side: int) -> np.ndarray:
         end = ("_low", "_high")[side]
         stored = self._stored(end)
-        tests = self.results.by_tests
+        tests = by_tests_of(self.results)
         if tests is not None and is_life(self.output[0]):
             stored = tests.lives(self.output[0], stored, lambda body: self._shifts[body][side], end)
         is_better = (side == 1) == self.rises

@@ -23,8 +23,8 @@ from trackroller.results.first_limits import UNSURE
 from trackroller.results.groups import MOST_LEVELS
 from trackroller.results.lives import FIRST_LIMIT, OF_PAIR
 from trackroller.results.requirement import required_of
-from trackroller.results.results import Results
 from trackroller.results.robustness import material_deviations
+from trackroller.results.solved_cases import SolvedCases
 from trackroller.roller.expected_errors import ratio_error
 from trackroller.roller.output_names import is_life
 from trackroller.roller.told_errors import ORDINARY_FRICTION
@@ -39,7 +39,7 @@ STRESSES = (
 )
 
 
-def compared_output(results: Results, required: Iterable[Required]) -> tuple[tuple[str, str, str], bool] | None:
+def compared_output(results: SolvedCases, required: Iterable[Required]) -> tuple[tuple[str, str, str], bool] | None:
     """Return the output that compares the candidates of a study, and whether more of it is better.
 
     It is the life to the first limit, or the life by fatigue, if the requirement is on a life or there is none;
@@ -79,7 +79,7 @@ def wilson(hits: np.ndarray, size: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return np.clip(middle - half, 0.0, 1.0), np.clip(middle + half, 0.0, 1.0)
 
 
-def unchanged_by(results: Results, name: str, values: Iterable[np.ndarray]) -> bool:
+def unchanged_by(results: SolvedCases, name: str, values: Iterable[np.ndarray]) -> bool:
     """Return whether a factor changes none of some values where all other factors are equal.
 
     A factor without two such rows counts as one that may change them.
@@ -111,13 +111,13 @@ class Comparison:
     groups : the candidates, with the choices that change nothing still among their choices
     """
 
-    results: Results
+    results: SolvedCases
     ranges: CaseRanges
     required: tuple[Required, ...]
     groups: Candidates
 
     @classmethod
-    def of(cls, results: Results) -> Comparison | None:
+    def of(cls, results: SolvedCases) -> Comparison | None:
         """Return the comparison of a study; None without a life, a stress and a requirement."""
         required = required_of(results)
         found = compared_output(results, required)

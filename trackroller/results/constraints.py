@@ -11,8 +11,8 @@ import xarray as xr
 from trackroller.errors import InputError, nearest
 from trackroller.methods.factor import readable
 from trackroller.parameters import MATERIAL_FIELDS, PARAMETERS, REGIMES
+from trackroller.parameters.carriage_fields import parameter_of
 from trackroller.parameters.expressions import condition
-from trackroller.parameters.of_carriage import parameter_of
 from trackroller.study.outputs import flat, outputs, regimes
 
 Column = tuple[np.ndarray, str, str]  # values (n,), units, long name

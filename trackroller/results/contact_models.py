@@ -12,7 +12,7 @@ import xarray as xr
 
 from trackroller.parameters import EXACTNESS
 from trackroller.results.columns import CONTACT_RESULTS, codes, input_columns
-from trackroller.results.results import Results
+from trackroller.results.solved_cases import SolvedCases
 from trackroller.study.outputs import flat
 
 MODEL = "contact_model"
@@ -22,7 +22,7 @@ FORCES = ("normal_force", "lateral_force", "driving_force", "spin_moment", "semi
 ENERGY = "friction_energy_per_distance"
 
 
-def pairs(results: Results) -> xr.Dataset | None:
+def pairs(results: SolvedCases) -> xr.Dataset | None:
     """Return the designs of a study by contact model; None if the study has only one model.
 
     Parameters
@@ -64,7 +64,7 @@ def pairs(results: Results) -> xr.Dataset | None:
     return xr.Dataset(data, coords | {MODEL: models}, attrs)
 
 
-def _same(results: Results, rows: np.ndarray, models: list[str]) -> tuple[str, ...]:
+def _same(results: SolvedCases, rows: np.ndarray, models: list[str]) -> tuple[str, ...]:
     """Return the cheaper models that solved each of their cases as the reference did."""
     if "contact_model_used" not in results.data:
         return ()

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from trackroller.parameters.of_carriage import long_name_of
+from trackroller.parameters.carriage_fields import long_name_of
 from trackroller.results.answer import Answer
 from trackroller.results.answer_parts import (
     cautions,
@@ -26,7 +26,7 @@ from trackroller.results.effect_curves import Effects
 from trackroller.results.first_ends import ends_by_factor
 from trackroller.results.lives import OF_PAIR
 from trackroller.results.places import places_of, places_text, plain
-from trackroller.results.results import Results
+from trackroller.results.solved_cases import SolvedCases
 from trackroller.results.turning import Turning
 from trackroller.roller.output_names import is_life
 
@@ -210,12 +210,12 @@ class Decider:
         return bool(inside.all() and ratios.size)
 
 
-def answer_decide(results: Results) -> Answer:
+def answer_decide(results: SolvedCases) -> Answer:
     """Return which candidate of a study to build.
 
     Parameters
     ----------
-    results : Results
+    results : SolvedCases
         A solved study with a life, a stress or a requirement.
     """
     own = Comparison.of(results)
@@ -246,9 +246,15 @@ def answer_decide(results: Results) -> Answer:
 
 
 def _missing_input(own: Comparison, found: Decision) -> dict[str, Any]:
-    """Return the load to give that was not given and by which conditions are lost; {} without one."""
+    """Return the load to give that was not given and by which conditions are lost; {} without one.
+
+    None is asked for where no candidate meets the requirement in the conditions that are held.
+    """
     name = lost_by_missing_input(own)
-    return {"give": {"what": long_name_of(name)}} if name and found.kind != "cannot_tell" else {}
+    missed = found.kind == "none" and own.ranges.held.any() and bool(own.required)
+    if not name or missed or found.kind == "cannot_tell":
+        return {}
+    return {"give": {"what": long_name_of(name)}}
 
 
 def with_ratios(own: Comparison, shown: pd.DataFrame) -> pd.DataFrame:
@@ -316,7 +322,7 @@ def not_held_by_any(own: Comparison) -> dict[str, Any]:
     names = [name for name in own.conditions if table[name].nunique() > 1]
     place = places_of(table.iloc[first], names, lost, np.ones(len(first), dtype=bool))
     judged = own.ranges.judged[rows]
-    where = places_text(place) or causes_text(own, rows)
+    where = places_text(place, table.iloc[first]) or causes_text(own, rows)
     told = {"count": int(lost.sum()), "of": len(first), "where": where}
     return {"not_held" if judged.any() else "not_judged": told}
 

@@ -6,12 +6,12 @@ import numpy as np
 import pandas as pd
 
 from trackroller.parameters import BODIES
-from trackroller.parameters.of_carriage import long_name_of
+from trackroller.parameters.carriage_fields import long_name_of
 from trackroller.results.candidate_table import title_of
 from trackroller.results.case_ranges import CaseRanges
 from trackroller.results.groups import BINS, classes
 from trackroller.results.places import level_text
-from trackroller.results.results import Results
+from trackroller.results.solved_cases import SolvedCases
 from trackroller.roller.output_names import is_life
 from trackroller.study.design.entries import OPTION_FACTORS
 
@@ -38,7 +38,7 @@ def end_of_case(ranges: CaseRanges) -> np.ndarray:
     return out
 
 
-def ends_by_factor(results: Results, ranges: CaseRanges) -> pd.DataFrame:
+def ends_by_factor(results: SolvedCases, ranges: CaseRanges) -> pd.DataFrame:
     """Return counts of cases by what ends them (columns) at each level or class of a factor (rows).
 
     Parameters

@@ -10,11 +10,11 @@ from trackroller.damage.verdict import breaking
 from trackroller.parameters import BODIES, FIRST_TO_FAIL
 from trackroller.results.groups import MOST_LEVELS
 from trackroller.results.lives import FIRST_LIMIT
-from trackroller.results.results import Results
+from trackroller.results.solved_cases import SolvedCases
 from trackroller.study.outputs import flat
 
 
-def first_limit(results: Results) -> np.ndarray:
+def first_limit(results: SolvedCases) -> np.ndarray:
     """Return the name of the limit that ends the pair first in every case, shape (n,); '' where it is not known."""
     guide = results.first_failing(FIRST_LIMIT[0]) == FIRST_TO_FAIL.index("guide")
     numbers = [
@@ -24,7 +24,7 @@ def first_limit(results: Results) -> np.ndarray:
     return np.asarray(names[np.where(guide, numbers[1], numbers[0])])
 
 
-def deciding(results: Results, names: np.ndarray, most: int = 2) -> list[str]:
+def deciding(results: SolvedCases, names: np.ndarray, most: int = 2) -> list[str]:
     """Return the factors on which the first limit of the valid cases depends most, the strongest first.
 
     Parameters
@@ -52,7 +52,7 @@ def deciding(results: Results, names: np.ndarray, most: int = 2) -> list[str]:
     return sorted((f for f in information if information[f] > 1e-9), key=lambda f: -information[f])[:most]
 
 
-def reached_by_body(results: Results, end: str = "") -> np.ndarray:
+def reached_by_body(results: SolvedCases, end: str = "") -> np.ndarray:
     """Return the hours until each limit of each body is reached, shape (n, limit, 2) [h]; infinity if never known.
 
     Parameters
@@ -71,7 +71,7 @@ def reached_by_body(results: Results, end: str = "") -> np.ndarray:
     return np.asarray(np.nan_to_num(reached, nan=np.inf, posinf=np.inf))
 
 
-def first_at(results: Results, end: str, reached: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray]:
+def first_at(results: SolvedCases, end: str, reached: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray]:
     """Return which limit ends each case at an end of the ranges, and whether it ends the guide, shape (n,) each.
 
     A limit has the name '' where none is reached. `reached` holds other hours than those of `reached_by_body`.
@@ -84,7 +84,7 @@ def first_at(results: Results, end: str, reached: np.ndarray | None = None) -> t
     return np.where(known, names, ""), np.asarray(known & (place % reached.shape[2] == BODIES.index("guide")))
 
 
-def outlasted(results: Results, first: str, rows: np.ndarray) -> dict[str, float]:
+def outlasted(results: SolvedCases, first: str, rows: np.ndarray) -> dict[str, float]:
     """Return the hours before which each other limit ends no case, by its name.
 
     Nothing unless the limit `first` ends all these cases at both ends of the ranges of the placeholders.

@@ -16,19 +16,19 @@ from trackroller.results.answer_parts import (
 )
 from trackroller.results.case_ranges import CaseRanges
 from trackroller.results.effect_curves import Effects
-from trackroller.results.first_ends import end_of_case, ends_by_factor
+from trackroller.results.first_ends import UNKNOWN, end_of_case, ends_by_factor
 from trackroller.results.output_ranges import COLUMNS, output_ranges
 from trackroller.results.requirement import required_of
-from trackroller.results.results import Results
+from trackroller.results.solved_cases import SolvedCases
 from trackroller.results.what_matters import shown_ranges
 
 
-def answer_how_it_behaves(results: Results) -> Answer:
+def answer_how_it_behaves(results: SolvedCases) -> Answer:
     """Return the range of the outputs of a study, and what ends its cases.
 
     Parameters
     ----------
-    results : Results
+    results : SolvedCases
         A solved study.
     """
     ranges = shown_ranges(results)
@@ -44,14 +44,15 @@ def answer_how_it_behaves(results: Results) -> Answer:
         "largest": float(first["largest"]),
         "at_smallest": first["at_smallest"],
         "at_largest": first["at_largest"],
-        "ends": [{"limit": str(end), "body": "", "count": int(count)} for end, count in ends.items()],
+        "error": float(first["error"]),
+        "ends": [{"limit": str(end), "body": "", "count": int(n)} for end, n in ends.items() if end != UNKNOWN],
         "of": int(results.of_one_model().sum()),
         "lost": int((results.of_one_model() & ~rows).sum()),
     }
     return _answer(results, ranges, table, told)
 
 
-def _answer(results: Results, ranges: CaseRanges, table: pd.DataFrame, told: dict[str, Any]) -> Answer:
+def _answer(results: SolvedCases, ranges: CaseRanges, table: pd.DataFrame, told: dict[str, Any]) -> Answer:
     known = bool(told)
     return Answer(
         question="how it behaves",

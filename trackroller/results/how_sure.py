@@ -19,15 +19,15 @@ from trackroller.results.comparison import Comparison
 from trackroller.results.decide import Decider, leading, not_held_by_any, with_ratios
 from trackroller.results.effect_curves import Effects
 from trackroller.results.first_ends import ends_by_factor
-from trackroller.results.results import Results
+from trackroller.results.solved_cases import SolvedCases
 
 
-def answer_how_sure(results: Results) -> Answer:
+def answer_how_sure(results: SolvedCases) -> Answer:
     """Return how surely the candidates of a study meet its requirement.
 
     Parameters
     ----------
-    results : Results
+    results : SolvedCases
         A solved study with a life, a stress or a requirement.
 
     Notes

@@ -14,10 +14,11 @@ from trackroller.methods.factor import readable
 from trackroller.methods.optimise import crowding
 from trackroller.parameters import REGIME_LABELS, REGIMES
 from trackroller.results.answer import Required
+from trackroller.results.by_tests import beyond_sn_data
 from trackroller.results.case_ranges import CaseRanges
 from trackroller.results.comparison import Comparison
 from trackroller.results.constraints import Column
-from trackroller.results.results import OUTSIDE, Results
+from trackroller.results.solved_cases import OUTSIDE, SolvedCases
 from trackroller.roller.output_names import is_life
 from trackroller.roller.requirement import Requirement
 from trackroller.study.file.search import judged_by
@@ -44,6 +45,8 @@ class Judged:
     short : how far a design is from the requirement of the study, see `shortfall`; shape (n,),
         0 everywhere without one
     life : shortest life over the conditions, of a range its low end; shape (n,), 0 everywhere without lives
+    share : smallest share of the conditions that surely meets a requirement [1], shape (n,); NaN without one
+    required : output of each requirement at its worst condition, of a range its worse end; shape (n, requirements)
     """
 
     genes: np.ndarray
@@ -52,6 +55,8 @@ class Judged:
     violation: np.ndarray
     short: np.ndarray
     life: np.ndarray
+    share: np.ndarray
+    required: np.ndarray
     reasons: Mapping[str, int] = field(default_factory=dict)
     goals: Mapping[str, str] = field(default_factory=dict)
 
@@ -77,20 +82,20 @@ class Judged:
         return replace(self, **both, reasons=counts)
 
 
-_BY_DESIGN = ("genes", "values", "costs", "violation", "short", "life")
+_BY_DESIGN = ("genes", "values", "costs", "violation", "short", "life", "share", "required")
 
 
-def goals_of_search(results: Results) -> dict[str, str]:
+def goals_of_search(results: SolvedCases) -> dict[str, str]:
     """Return the goals of a search: the key `goals`, otherwise the usual ones."""
     return dict(results.config.goals) or results.goals
 
 
-def judge(results: Results, genes: np.ndarray | None = None) -> Judged:
+def judge(results: SolvedCases, genes: np.ndarray | None = None) -> Judged:
     """Judge each design of a solved search over its conditions.
 
     Parameters
     ----------
-    results : Results
+    results : SolvedCases
         A solved study with `design: optimise`.
     genes : numpy.ndarray, shape (n, choices), optional
         Genes of the designs; by default those of the design.
@@ -106,11 +111,21 @@ def judge(results: Results, genes: np.ndarray | None = None) -> Judged:
         violation = np.isnan(table).any(axis=1).astype(float)
     else:
         violation = _beyond_spare(results, 1.0 - known.mean(axis=1))
-    reasons = _reasons(results, known.ravel())
-    return Judged(genes, table, costs, violation, shortfall(results), _shortest(results), reasons, goals)
+    return Judged(
+        genes=genes,
+        values=table,
+        costs=costs,
+        violation=violation,
+        short=shortfall(results),
+        life=_shortest(results),
+        share=_smallest_share(results),
+        required=_required_values(results),
+        reasons=_reasons(results, known.ravel()),
+        goals=goals,
+    )
 
 
-def _beyond_spare(results: Results, lost: np.ndarray) -> np.ndarray:
+def _beyond_spare(results: SolvedCases, lost: np.ndarray) -> np.ndarray:
     """Return shares of conditions in which designs are not valid; 0 where the requirement allows so many to fail."""
     wanted = _to_meet(results).values()
     if not wanted or not all(own.in_shares for own in wanted):
@@ -119,7 +134,7 @@ def _beyond_spare(results: Results, lost: np.ndarray) -> np.ndarray:
     return np.where(lost <= spare + SHARE_ROUNDING, 0.0, lost)
 
 
-def _shortest(results: Results) -> np.ndarray:
+def _shortest(results: SolvedCases) -> np.ndarray:
     """Return the shortest life of each design over its conditions, of a range its low end, shape (designs,)."""
     shape = results.design.meta["design_points"], results.design.meta["inner_samples"]
     life = life_of_search(results)
@@ -128,7 +143,24 @@ def _shortest(results: Results) -> np.ndarray:
     return np.asarray(life.low.reshape(shape).min(axis=1))
 
 
-def _values(results: Results) -> tuple[np.ndarray, np.ndarray]:
+def _smallest_share(results: SolvedCases) -> np.ndarray:
+    """Return the smallest share of the conditions in which each design surely meets a requirement; NaN without one."""
+    nothing = np.full(results.design.meta["design_points"], np.nan)
+    return np.asarray(np.fmin.reduce([nothing, *(own.sure for own in shares_of(results))]))
+
+
+def _required_values(results: SolvedCases) -> np.ndarray:
+    """Return the output of each requirement at its worst condition, shape (designs, requirements)."""
+    shape = results.design.meta["design_points"], results.design.meta["inner_samples"]
+    columns = [np.zeros((shape[0], 0))]
+    for _, own in judges_of(results):
+        worse = own.worse.reshape(shape)
+        worst = worse.min(axis=1) if own.rises else worse.max(axis=1)
+        columns.append(worst[:, None])
+    return np.concatenate(columns, axis=1)
+
+
+def _values(results: SolvedCases) -> tuple[np.ndarray, np.ndarray]:
     """Return the goals of each design, (designs, goals), and where all goals of a case are known, (designs, cases)."""
     design = results.design
     shape = design.meta["design_points"], design.meta["inner_samples"]
@@ -146,12 +178,12 @@ def _values(results: Results) -> tuple[np.ndarray, np.ndarray]:
     return np.stack(values, axis=1), known
 
 
-def required(results: Results) -> bool:
+def required(results: SolvedCases) -> bool:
     """Return whether a search has a requirement that its designs have to meet."""
     return bool(_to_meet(results))
 
 
-def _to_meet(results: Results) -> dict[str, Requirement]:
+def _to_meet(results: SolvedCases) -> dict[str, Requirement]:
     """Return what the designs of a search have to meet.
 
     An output whose probability is a goal has to meet its requirement in as many conditions as possible, unless the
@@ -162,14 +194,14 @@ def _to_meet(results: Results) -> dict[str, Requirement]:
     return {name: own for name, own in wanted.items() if own.in_shares or name not in chances}
 
 
-def judges_of(results: Results) -> list[tuple[Required, CaseRanges]]:
+def judges_of(results: SolvedCases) -> list[tuple[Required, CaseRanges]]:
     """Return each requirement that the designs of a search have to meet, with the output that judges it."""
     own = Comparison.of(results)
     wanted = _to_meet(results)
     return [] if own is None else [pair for pair in own.judges if pair[0].output in wanted]
 
 
-def life_of_search(results: Results) -> CaseRanges | None:
+def life_of_search(results: SolvedCases) -> CaseRanges | None:
     """Return the life that orders designs with the same goals, with its range; None in a study without lives."""
     return None if results.life is None else CaseRanges(results, results.life, True)
 
@@ -195,7 +227,7 @@ class Shares:
         return np.asarray(shares >= self.wanted - SHARE_ROUNDING)
 
 
-def shares_of(results: Results, exact: bool = False) -> list[Shares]:
+def shares_of(results: SolvedCases, exact: bool = False) -> list[Shares]:
     """Return the share of the conditions in which each design meets each requirement of a search.
 
     All conditions have to meet a requirement without a probability; nine of ten where a goal is a B10.
@@ -213,7 +245,7 @@ def shares_of(results: Results, exact: bool = False) -> list[Shares]:
     return found
 
 
-def shortfall(results: Results, exact: bool = False) -> np.ndarray:
+def shortfall(results: SolvedCases, exact: bool = False) -> np.ndarray:
     """Return how far each design of a search is from the requirement of the study, shape (designs,).
 
     Parameters
@@ -237,7 +269,7 @@ def shortfall(results: Results, exact: bool = False) -> np.ndarray:
     return np.asarray(np.where(met, 0.0, np.where(may, 1.0, 2.0) + missing))
 
 
-def _life_gap(results: Results) -> np.ndarray:
+def _life_gap(results: SolvedCases) -> np.ndarray:
     """Return how much the shortest life of each design lacks of the required one, 0 to 1, shape (designs,)."""
     gap = np.zeros(results.design.meta["design_points"])
     for one, own in judges_of(results):
@@ -246,7 +278,7 @@ def _life_gap(results: Results) -> np.ndarray:
     return gap
 
 
-def _met(results: Results, output: str) -> np.ndarray:
+def _met(results: SolvedCases, output: str) -> np.ndarray:
     """Return which cases are in a regime, or are valid and meet a target of the study, shape (n,)."""
     if output in REGIMES:
         return np.asarray(results.regime == REGIMES.index(output))
@@ -267,7 +299,7 @@ def _over_conditions(raw: np.ndarray, good: np.ndarray, kind: str, way: str) -> 
     return out
 
 
-def _reasons(results: Results, known: np.ndarray) -> dict[str, int]:
+def _reasons(results: SolvedCases, known: np.ndarray) -> dict[str, int]:
     """Count the cases that do not count, by what they break."""
     counts = {word: int((results.regime == i).sum()) for i, word in enumerate(REGIMES) if i}
     counts |= {flag: int((results.rolling & results.flagged(flag)).sum()) for flag in results.flags if flag in OUTSIDE}
@@ -317,20 +349,20 @@ def spread(costs: np.ndarray, count: int) -> np.ndarray:
     return left
 
 
-def optimum_of(results: Results) -> dict[str, Any] | None:
+def optimum_of(results: SolvedCases) -> dict[str, Any] | None:
     """Return what a search found, from the attribute of its results; None for another study."""
     text = results.data.attrs.get(OPTIMUM)
     return json.loads(text) if isinstance(text, str) else None
 
 
-def choices_of(results: Results, number: int) -> dict[str, Any]:
+def choices_of(results: SolvedCases, number: int) -> dict[str, Any]:
     """Return the choices of a design of a search by name."""
     design = results.design
     row = number * design.meta["inner_samples"]
     return {name: readable(design.columns[name][row : row + 1])[0] for name in design.meta["outer"]}
 
 
-def goal_column(results: Results, goal: str) -> Column:
+def goal_column(results: SolvedCases, goal: str) -> Column:
     """Return the values (n,) of a goal by design, its units and its name in words."""
     kind, output = judged_by(goal)
     values = _values(results)[0][:, list(goals_of_search(results)).index(goal)]
@@ -345,7 +377,7 @@ def goal_column(results: Results, goal: str) -> Column:
     return values, units, named.get(kind, f"mean {words}")
 
 
-def ends_of_goal(results: Results, goal: str) -> tuple[np.ndarray, np.ndarray] | None:
+def ends_of_goal(results: SolvedCases, goal: str) -> tuple[np.ndarray, np.ndarray] | None:
     """Return both ends of the range of a life that is a goal, shape (designs,) each; None if it has no range."""
     kind, output = judged_by(goal)
     if not is_life(output) or kind == "probability" or f"{output}_low" not in results.data:
@@ -360,7 +392,7 @@ def ends_of_goal(results: Results, goal: str) -> tuple[np.ndarray, np.ndarray] |
     return ends[0], ends[1]
 
 
-def beyond_data(results: Results, goal: str) -> np.ndarray:
+def beyond_data(results: SolvedCases, goal: str) -> np.ndarray:
     """Return for which designs a life that is a goal rests on a life beyond the S-N data, shape (n,)."""
     kind, output = judged_by(goal)
     shape = results.design.meta["design_points"], results.design.meta["inner_samples"]
@@ -368,4 +400,4 @@ def beyond_data(results: Results, goal: str) -> np.ndarray:
         return np.zeros(shape[0], dtype=bool)
     lives = results.quantity(output)[0].astype(float).reshape(shape)
     counted = results.held.reshape(shape) & ((kind == "mean") | (lives <= goal_column(results, goal)[0][:, None]))
-    return np.asarray((counted & results.beyond_data(output).reshape(shape)).any(axis=1))
+    return np.asarray((counted & beyond_sn_data(results, output).reshape(shape)).any(axis=1))

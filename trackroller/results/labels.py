@@ -13,7 +13,7 @@ from trackroller.methods.correlation import correlated_pairs
 from trackroller.methods.intervals import constant
 from trackroller.methods.method import Estimates
 from trackroller.parameters import REGIME_LABELS, REGIMES
-from trackroller.parameters.of_carriage import long_name_of
+from trackroller.parameters.carriage_fields import long_name_of
 from trackroller.study.outputs import Output
 
 RELIABLE = 0.9  # share of usable blocks, effects or cells below which an index is marked

@@ -11,8 +11,8 @@ from trackroller.methods.b10 import log_b10, share
 from trackroller.methods.intervals import constant
 from trackroller.parameters import REGIMES
 from trackroller.results.labels import factor_name
-from trackroller.results.results import Results
 from trackroller.results.robustness import material_deviations
+from trackroller.results.solved_cases import SolvedCases
 from trackroller.results.targets import hits_of, scattering_body
 from trackroller.study.design.levels import in_words
 from trackroller.study.file.goals import statistic
@@ -21,18 +21,18 @@ from trackroller.study.outputs import outputs, regimes
 UNTIL = "until"  # attribute of study.nc with the looks and the reason for stopping (JSON)
 
 
-def looks_of(results: Results) -> dict[str, Any] | None:
+def looks_of(results: SolvedCases) -> dict[str, Any] | None:
     """Return the looks at a grown sample from the attribute of its results; None for another study."""
     text = results.data.attrs.get(UNTIL)
     return json.loads(text) if isinstance(text, str) else None
 
 
-def look(results: Results) -> dict[str, Any]:
+def look(results: SolvedCases) -> dict[str, Any]:
     """Return the widest interval of each output of `until`.
 
     Parameters
     ----------
-    results : Results
+    results : SolvedCases
         The solved step.
 
     Returns
@@ -74,7 +74,7 @@ def look(results: Results) -> dict[str, Any]:
     return seen | ({"unsure": np.flatnonzero(unsure).tolist()} if design.method.points else {})
 
 
-def _of_indices(results: Results, name: str) -> tuple[np.ndarray, np.ndarray]:
+def _of_indices(results: SolvedCases, name: str) -> tuple[np.ndarray, np.ndarray]:
     """Return an output (n,) and the half widths of its headline indices; those of effects over the output's range."""
     design, given = results.design, results.config.analysis
     y = outputs(results.data, design.factors, [name], given.keep, scale=given.scale, allowed=results.allowed)[0].values
@@ -84,7 +84,7 @@ def _of_indices(results: Results, name: str) -> tuple[np.ndarray, np.ndarray]:
     return y, np.concatenate(widths) / scale
 
 
-def _of_points(results: Results, name: str) -> tuple[np.ndarray, np.ndarray]:
+def _of_points(results: SolvedCases, name: str) -> tuple[np.ndarray, np.ndarray]:
     """Return the values (n,) and, by design point, the half width of log10 B10 or of a probability.
 
     It is 0 at a point without a value in any case: more cases would not decide there.
@@ -106,7 +106,7 @@ def _of_points(results: Results, name: str) -> tuple[np.ndarray, np.ndarray]:
     return values, _shares(results, hits)[1]
 
 
-def _shares(results: Results, hits: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _shares(results: SolvedCases, hits: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return the share of hits at each design point and the half width of its interval, shape (points,) each."""
     copies, points = int(results.design.meta["replicates"]), results.design.points
     found = [share(hits[rows], np.arange(rows.stop - rows.start) % copies, copies) for rows in points]
@@ -114,7 +114,7 @@ def _shares(results: Results, hits: np.ndarray) -> tuple[np.ndarray, np.ndarray]
     return shares, widths
 
 
-def _decided(results: Results, name: str, widths: np.ndarray) -> np.ndarray:
+def _decided(results: SolvedCases, name: str, widths: np.ndarray) -> np.ndarray:
     """Return the design points whose share is clear of the share that a requirement wants, shape (points,) bool.
 
     More cases would not change whether they meet it.
@@ -132,7 +132,7 @@ def _decided(results: Results, name: str, widths: np.ndarray) -> np.ndarray:
     return np.asarray(np.abs(shares - own.probability) > widths)
 
 
-def _names(results: Results) -> list[str]:
+def _names(results: SolvedCases) -> list[str]:
     """Return the factors, or the design points of an inner/outer design, in words."""
     design = results.design
     if not design.method.points:

@@ -187,6 +187,9 @@ def _reported(search: _Search, decided: Judged, facts: dict[str, Any], tell: Tel
             "values": best.values[row].tolist(),
             "reference": checked.values[i].tolist(),
             "violation": [float(best.violation[row]), float(checked.violation[i])],
+            "short": [float(best.short[row]), float(checked.short[i])],
+            "share": [float(best.share[row]), float(checked.share[i])],
+            "required": [best.required[row].tolist(), checked.required[i].tolist()],
         }
         for i, row in enumerate(shown)
     ]

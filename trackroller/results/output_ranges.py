@@ -9,8 +9,8 @@ import pandas as pd
 
 from trackroller.results.answer import Column
 from trackroller.results.case_ranges import CaseRanges
-from trackroller.results.places import levels_of, place_text
-from trackroller.results.results import Results
+from trackroller.results.places import case_text
+from trackroller.results.solved_cases import SolvedCases
 from trackroller.roller.output_names import is_life
 from trackroller.study.outputs import default_names
 
@@ -28,7 +28,7 @@ COLUMNS = (
 )
 
 
-def output_ranges(results: Results, ranges: CaseRanges) -> pd.DataFrame:
+def output_ranges(results: SolvedCases, ranges: CaseRanges) -> pd.DataFrame:
     """Return one row an output with its range over the cases that are held, the columns of `COLUMNS`.
 
     Parameters
@@ -44,7 +44,7 @@ def output_ranges(results: Results, ranges: CaseRanges) -> pd.DataFrame:
     return pd.DataFrame([_row(results, own) for own in found])
 
 
-def _row(results: Results, ranges: CaseRanges) -> dict[str, Any]:
+def _row(results: SolvedCases, ranges: CaseRanges) -> dict[str, Any]:
     """Return the range of one output with its cases."""
     rows = np.flatnonzero(results.of_one_model(ranges.held) & ~np.isnan(ranges.value))
     _, words, units = ranges.output
@@ -59,14 +59,9 @@ def _row(results: Results, ranges: CaseRanges) -> dict[str, Any]:
         "smallest": float(values.min()),
         "median": float(np.quantile(values, 0.5, method="inverted_cdf")),
         "largest": float(values.max()),
-        "at_smallest": _levels_text(results, names, least),
-        "at_largest": _levels_text(results, names, most),
+        "at_smallest": case_text(results.table, names, least),
+        "at_largest": case_text(results.table, names, most),
         "row_smallest": least,
         "row_largest": most,
         "error": float(np.median(ranges.error[rows])),
     }
-
-
-def _levels_text(results: Results, names: list[str], row: int) -> str:
-    levels = levels_of(results.table, names, row)
-    return place_text({name: (level,) for name, level in levels.items()})

@@ -12,12 +12,14 @@ from trackroller.errors import InputError
 from trackroller.methods import Design
 from trackroller.methods.factor import readable
 from trackroller.parameters import EXACTNESS, REGIME_LABELS, REGIMES
-from trackroller.parameters.of_carriage import parameter_of
-from trackroller.results.candidates import Candidates
+from trackroller.parameters.carriage_fields import parameter_of
+from trackroller.results.by_tests import beyond_sn_data
+from trackroller.results.candidates import Candidates, candidates_of
 from trackroller.results.columns import codes
 from trackroller.results.constraints import Column, meeting
 from trackroller.results.judging import SAFE_B10, beyond_data, goal_column, goals_of_search, judge
-from trackroller.results.results import Results
+from trackroller.results.sensitivity import analysis_of
+from trackroller.results.solved_cases import SolvedCases, made_once
 from trackroller.roller.output_names import is_life
 from trackroller.study.file.goals import names_in, statistic
 from trackroller.study.file.search import judged_by
@@ -26,23 +28,24 @@ from trackroller.study.outputs import regimes
 HOLE = 0.15  # of the range of a Pareto set: a step between its designs that is wider may leave a hole
 
 
-def given_pareto(results: Results) -> xr.Dataset | None:
+def given_pareto(results: SolvedCases) -> xr.Dataset | None:
     """Return the Pareto set for the goals that a study or a search gives; None without goals of its own."""
-    return results.pareto() if results.config.pareto or results.config.method.proposes else None
+    return study_pareto(results) if results.config.pareto or results.config.method.proposes else None
 
 
-def study_pareto(results: Results) -> xr.Dataset | None:
+@made_once
+def study_pareto(results: SolvedCases) -> xr.Dataset | None:
     """Find the Pareto set for the keys `pareto` and `constraints` of a study.
 
     Parameters
     ----------
-    results : Results
+    results : SolvedCases
         A solved study.
 
     Returns
     -------
     xarray.Dataset or None
-        Without the key `pareto` the goals are those of `Results.goals`. Designs that share their conditions:
+        Without the key `pareto` the goals are those of `SolvedCases.goals`. Designs that share their conditions:
         see `pareto_of_candidates`. An inner/outer design with the key: see `pareto_of_points`, and without it None.
         Otherwise see `pareto`; rows that differ in conditions have the attribute `kind` = `case`, and there is no set
         without the key, because the conditions cannot be chosen.
@@ -51,11 +54,12 @@ def study_pareto(results: Results) -> xr.Dataset | None:
     if config.method.proposes:
         return pareto_of_search(results)
     if config.method.points:
-        return pareto_of_points(results.analysis, given) if results.analysis is not None and given else None
+        analysis = analysis_of(results)
+        return pareto_of_points(analysis, given) if analysis is not None and given else None
     goals = results.goals
     if not goals:
         return None
-    candidates: Candidates | None = results.candidates(tuple(name for name in goals if name in results.factors))
+    candidates = candidates_of(results, tuple(name for name in goals if name in results.factors))
     if candidates is not None and candidates.conditions and candidates.comparable:
         return pareto_of_candidates(candidates, goals)
     mixed = candidates is not None and bool(candidates.conditions)
@@ -108,7 +112,7 @@ def pareto_mask(objectives: np.ndarray, directions: Iterable[str]) -> np.ndarray
 
 
 def pareto(
-    results: Results,
+    results: SolvedCases,
     objectives: Mapping[str, str],
     constraints: Iterable[str] = (),
 ) -> xr.Dataset:
@@ -116,7 +120,7 @@ def pareto(
 
     Parameters
     ----------
-    results : Results
+    results : SolvedCases
         A solved study.
     objectives : mapping of str to str
         Output, numeric factor or parameter, and `min` or `max` for each, such as {"roller_life_hours": "max",
@@ -309,13 +313,13 @@ def pareto_of_candidates(candidates: Candidates, objectives: Mapping[str, str]) 
     return front.assign(_beyond(results, {name: cases[kept] for name, cases in worst.items()}))
 
 
-def _beyond(results: Results, cases: Mapping[str, np.ndarray]) -> dict[str, tuple[str, np.ndarray]]:
+def _beyond(results: SolvedCases, cases: Mapping[str, np.ndarray]) -> dict[str, tuple[str, np.ndarray]]:
     """Return for each life among the goals whether it lies beyond the S-N data in the cases that are compared."""
     lives = {name: rows for name, rows in cases.items() if is_life(name)}
-    return {f"beyond_{n}": ("row", results.beyond_data(n)[rows].astype(np.int8)) for n, rows in lives.items()}
+    return {f"beyond_{n}": ("row", beyond_sn_data(results, n)[rows].astype(np.int8)) for n, rows in lives.items()}
 
 
-def pareto_of_search(results: Results) -> xr.Dataset:
+def pareto_of_search(results: SolvedCases) -> xr.Dataset:
     """Return the Pareto set of the gathered designs of a search, see `pareto`.
 
     The dimension `row` numbers the designs. Only the designs are compared that are valid in the most conditions, and

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from trackroller.parameters.of_carriage import long_name_of, parameter_of
+from trackroller.parameters.carriage_fields import long_name_of, parameter_of
 from trackroller.results.groups import MOST_LEVELS, confined, levels
 from trackroller.study.design.levels import in_words
 
@@ -67,8 +67,10 @@ def _without_needless(table: pd.DataFrame, restricted: Levels, hit: np.ndarray, 
 
 
 def number_text(value: float) -> str:
-    """Return a number with up to six digits."""
-    return f"{value:,.6g}".replace("-", "−").replace("inf", "∞")
+    """Return a number as a person wrote it, with up to six digits; a drawn number, which has more, with four."""
+    text = f"{value:.6g}"
+    digits = 6 if float(text) == value else 4
+    return f"{value:,.{digits}g}".replace("-", "−").replace("inf", "∞")
 
 
 def level_text(name: str, value: Any) -> str:
@@ -82,21 +84,45 @@ def level_text(name: str, value: Any) -> str:
     return (number_text(float(value)) + unit).replace(" deg", "°")
 
 
-def place_text(place: Levels) -> str:
-    """Return one place as a text: 'motor force −20, 20 N and friction coefficient 0.05'."""
+def case_text(table: pd.DataFrame, names: Sequence[str], row: int) -> str:
+    """Return the levels of some factors in one row as a text: 'motor force −20 N, friction coefficient 0.05'."""
+    levels_here = levels_of(table, names, row).items()
+    return ", ".join(f"{long_name_of(name)} {level_text(name, level)}" for name, level in levels_here)
+
+
+def places_text(places: Sequence[Levels], table: pd.DataFrame) -> str:
+    """Return some places as a text, with numbers that follow each other in a table as 'first to last'."""
+    return "; ".join(_place_text(place, table) for place in places)
+
+
+def _place_text(place: Levels, table: pd.DataFrame) -> str:
     parts = []
     for name, own in place.items():
-        parts.append(f"{long_name_of(name)} {_joined(name, own)}")
+        texts = []
+        for run in _runs(own, levels(table[name])):
+            texts += _run_texts(name, run)
+        parts.append(f"{long_name_of(name)} {' or '.join(texts)}")
     return ", ".join(parts)
 
 
-def _joined(name: str, own: tuple[Any, ...]) -> str:
-    texts = [level_text(name, value) for value in own]
-    if len(texts) > 3 and not isinstance(own[0], str):
-        return f"{texts[0]} to {texts[-1]}"
-    return " or ".join(texts)
+def _runs(own: tuple[Any, ...], known: list[Any]) -> list[list[Any]]:
+    """Return levels in groups that follow each other in the list of all levels."""
+    runs: list[list[Any]] = []
+    last = -2
+    for at, level in enumerate(known):
+        if level not in own:
+            continue
+        if at == last + 1:
+            runs[-1].append(level)
+        else:
+            runs.append([level])
+        last = at
+    return runs
 
 
-def places_text(places: Sequence[Levels]) -> str:
-    """Return some places as a text."""
-    return "; ".join(place_text(place) for place in places)
+def _run_texts(name: str, run: list[Any]) -> list[str]:
+    """Return the texts of levels that follow each other: all of few, otherwise the first and the last number."""
+    texts = [level_text(name, value) for value in run]
+    if len(texts) > 2 and not isinstance(run[0], str):
+        return [f"{texts[0]} to {texts[-1]}"]
+    return texts

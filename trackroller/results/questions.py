@@ -15,7 +15,7 @@ from trackroller.results.how_sure import answer_how_sure
 from trackroller.results.judging import optimum_of
 from trackroller.results.output_ranges import output_ranges
 from trackroller.results.requirement import required_of
-from trackroller.results.results import Results
+from trackroller.results.solved_cases import SolvedCases, made_once
 from trackroller.results.what_matters import answer_what_matters, shown_ranges
 from trackroller.results.which_model import answer_which_model, models_of
 from trackroller.roller.output_names import is_life
@@ -23,12 +23,12 @@ from trackroller.roller.output_names import is_life
 SENSITIVITY = ("saltelli", "morris", "central_composite", "box_behnken", "plackett_burman")
 
 
-def question_of(results: Results) -> str:
+def question_of(results: SolvedCases) -> str:
     """Return which of `trackroller.results.answer.QUESTIONS` a study asks; the key `question` of its file decides.
 
     Parameters
     ----------
-    results : Results
+    results : SolvedCases
         A solved study.
 
     Notes
@@ -44,7 +44,7 @@ def question_of(results: Results) -> str:
         return "best"
     required = required_of(results)
     if compared_output(results, required) is None:
-        return "how it behaves"
+        return "what matters" if method.name in SENSITIVITY else "how it behaves"
     own = Comparison.of(results)
     if own is None:
         return "how it behaves"
@@ -64,7 +64,7 @@ def _shared(own: Comparison) -> bool:
     return own.groups.matched or own.count == 1 or bool(own.groups.size.min() > 1)
 
 
-def _about_another_output(results: Results) -> bool:
+def _about_another_output(results: SolvedCases) -> bool:
     """Return whether a study without a requirement asks for outputs that rank no design, such as a force."""
     named = [name for name in results.config.analysis.outputs or () if name not in REGIMES]
     return bool(named) and not required_of(results) and not any(_ranks(name) for name in named)
@@ -74,12 +74,13 @@ def _ranks(name: str) -> bool:
     return is_life(name) or name.startswith("peak_stress")
 
 
-def answer_of(results: Results) -> Answer | None:
+@made_once
+def answer_of(results: SolvedCases) -> Answer | None:
     """Return the answer to a study; None for a search that did not come to its end.
 
     Parameters
     ----------
-    results : Results
+    results : SolvedCases
         A solved study, finished or not.
     """
     question = question_of(results)
@@ -102,7 +103,7 @@ def answer_of(results: Results) -> Answer | None:
     return _with_outputs(makers[question](results), results)
 
 
-def _with_outputs(answer: Answer, results: Results) -> Answer:
+def _with_outputs(answer: Answer, results: SolvedCases) -> Answer:
     """Return an answer with the range of each usual output of the study."""
     ranges = CaseRanges(results, answer.output, is_life(answer.output[0]))
     return dataclasses.replace(answer, outputs=output_ranges(results, ranges))

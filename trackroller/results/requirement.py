@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from trackroller.results.answer import Required
-from trackroller.results.results import Results
+from trackroller.results.solved_cases import SolvedCases
 
 
-def required_of(results: Results) -> tuple[Required, ...]:
+def required_of(results: SolvedCases) -> tuple[Required, ...]:
     """Return what a study requires, in the order of its file; empty without a requirement."""
     found = []
     for name, own in results.config.requirement.items():

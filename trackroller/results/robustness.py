@@ -21,8 +21,9 @@ from trackroller.methods import Design
 from trackroller.methods.b10 import b10, quantile
 from trackroller.methods.factor import readable
 from trackroller.parameters import BODIES, MATERIAL_FIELDS, REGIMES
+from trackroller.results.by_tests import beyond_sn_data
 from trackroller.results.labels import output_labels
-from trackroller.results.results import Results
+from trackroller.results.solved_cases import SolvedCases
 from trackroller.results.targets import at_points, scattering_body
 from trackroller.roller.output_names import body_of, is_life
 from trackroller.study.design.levels import in_words
@@ -33,14 +34,14 @@ PERCENTILES = (1.0, 5.0, 10.0, 50.0, 90.0, 95.0, 99.0)
 
 
 def robustness(
-    results: Results,
+    results: SolvedCases,
     log_life_scatter: Mapping[str, np.ndarray],
 ) -> xr.Dataset:
     """Summarise every output and the probability of each regime at every design point.
 
     Parameters
     ----------
-    results : Results
+    results : SolvedCases
         Solved study with an inner/outer array design.
     log_life_scatter : mapping of str to numpy.ndarray
         For each body the standard deviation of log10 life of the material itself [1], shape (n,), besides the scatter
@@ -77,7 +78,7 @@ def robustness(
             scatter = np.where(results.ended_by_fatigue(body_of(column.name) or "roller"), scatter, 0.0)
         values = results.with_breaks(column)
         by_output.append(_statistics(values, regime, is_life(column.name), scatter, design.points))
-        beyond = np.where(results.beyond_data(column.name), column.values, np.nan)
+        beyond = np.where(beyond_sn_data(results, column.name), column.values, np.nan)
         by_output[-1]["beyond_data"] = np.array([np.fmin.reduce(beyond[rows]) for rows in design.points])
     out = xr.Dataset(coords=_coordinates(design, columns))
     for key in by_output[0] if by_output else ():
@@ -113,7 +114,7 @@ def _attributes(design: Design, scatter: float) -> dict[str, str | int | float]:
     }
 
 
-def material_deviations(results: Results) -> dict[str, np.ndarray]:
+def material_deviations(results: SolvedCases) -> dict[str, np.ndarray]:
     """Return the standard deviation of log10 life of each body's material in each case, lg(T_N) / 2.563.
 
     Parameters

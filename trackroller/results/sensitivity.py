@@ -31,8 +31,8 @@ from trackroller.results.labels import (
     stacked,
     treatment,
 )
-from trackroller.results.results import Results
 from trackroller.results.robustness import material_deviations, robustness
+from trackroller.results.solved_cases import SolvedCases, made_once
 from trackroller.results.targets import targets
 from trackroller.roller.dataset import file_attributes
 from trackroller.study.file.goals import Analysis
@@ -50,12 +50,35 @@ def _of_replicates(found: Estimated, y: np.ndarray, design: Design) -> Estimated
     return found._replace(estimates=found.estimates | out | course, sizes=at)
 
 
-def analyse(results: Results) -> xr.Dataset:
+@made_once
+def indices_of(results: SolvedCases) -> xr.Dataset:
+    """Return the sensitivity indices that a study has, or compute them by `analyse`.
+
+    Raises
+    ------
+    InputError
+        If no output or no factor varies.
+    """
+    return analyse(results) if results.known_indices is None else results.known_indices
+
+
+@made_once
+def analysis_of(results: SolvedCases) -> xr.Dataset | None:
+    """Return the sensitivity indices of a study; None for a study that has none."""
+    try:
+        found = indices_of(results)
+    except InputError as error:
+        log.info("no sensitivity analysis: %s", error)
+        return None
+    return found if found.data_vars else None
+
+
+def analyse(results: SolvedCases) -> xr.Dataset:
     """Compute sensitivity indices of every output of a study and record how they were obtained.
 
     Parameters
     ----------
-    results : Results
+    results : SolvedCases
         A solved study. The key `analysis` of its study file says which outputs and regimes count. The same study gives
         the same indices.
 

@@ -17,17 +17,11 @@ import xarray as xr
 
 from trackroller.errors import InputError
 from trackroller.results.results import Results
-from trackroller.roller.record import NOT_GIVEN
+from trackroller.roller.stored_inputs import NOT_GIVEN
 from trackroller.study.design.carriage_cases import ROW
 from trackroller.study.design.entries import CASE_FIELDS
 from trackroller.study.design.stored import restored, solved_part
-from trackroller.study.file.load import (
-    checked_keys,
-    former_defaults,
-    with_present_keys,
-    with_present_names,
-    without_former,
-)
+from trackroller.study.file.load import checked_keys, with_present_keys
 from trackroller.study.file.study import Study
 from trackroller.study.outputs import case_dims
 from trackroller.study.store import chunks
@@ -188,20 +182,22 @@ def _study(data: xr.Dataset) -> Study:
     text = data.attrs.get("study")
     if not isinstance(text, str):
         raise InputError("study", sorted(map(str, data.attrs)), "results with their study file as attribute", _REMEDY)
-    written = parse_mapping(text, "stored study file")
-    stored, names = (
-        with_present_names(with_present_keys(without_former(written))),
-        json.loads(data.attrs.get(NOT_GIVEN, "[]")),
-    )
-    study = Study(checked_keys(stored), not_given=tuple(names or former_defaults(written)))
+    stored = with_present_keys(parse_mapping(text, "stored study file"))
+    name = str(stored.get("name", ""))
+    try:
+        config = checked_keys(stored)
+    except InputError as error:
+        wrong = f"has a study file that this version does not read ({error.errors[0]})"
+        raise InputError("study", name, "", _REMEDY, wrong) from None
+    study = Study(config, not_given=tuple(json.loads(data.attrs.get(NOT_GIVEN, "[]"))))
     if changed := _changed(stored, study.as_dict()):
         allowed, wrong = "a study file that is read as it was written", f"has another {changed} in this version"
-        raise InputError("study", str(stored.get("name", "")), allowed, _REMEDY, wrong)
+        raise InputError("study", name, allowed, _REMEDY, wrong)
     return study
 
 
 def _changed(stored: Mapping[str, Any], now: Mapping[str, Any]) -> str:
-    """Return the first key whose value has changed, '' if there is none; keys that are new have their defaults."""
+    """Return the first key whose value has changed, or that only one of two mappings has; '' if there is none."""
     for key, value in stored.items():
         if key not in now:
             return key
@@ -210,4 +206,4 @@ def _changed(stored: Mapping[str, Any], now: Mapping[str, Any]) -> str:
                 return f"{key}.{inner}"
         elif value != now[key]:
             return key
-    return ""
+    return next((key for key in now if key not in stored), "")

@@ -63,7 +63,7 @@ def targets(
     deviations : body, or target -> standard deviation of log10 life of its material [1], shape (n,), see
         `material_deviations`
     allowed : cases that count, such as the valid ones, shape (n,)
-    judged : life to the first limit by the targets that it judges, see `Results.judged_targets`, shape (n,) each
+    judged : life to the first limit by the targets that it judges, see `SolvedCases.judged_targets`, shape (n,) each
 
     Returns
     -------

@@ -9,7 +9,7 @@ import pandas as pd
 import xarray as xr
 
 from trackroller.parameters import REGIMES
-from trackroller.parameters.of_carriage import long_name_of
+from trackroller.parameters.carriage_fields import long_name_of
 from trackroller.results.answer import Answer, Column, Curve
 from trackroller.results.answer_parts import (
     case_cautions,
@@ -25,7 +25,8 @@ from trackroller.results.first_ends import ends_by_factor
 from trackroller.results.places import level_text
 from trackroller.results.ranking import SIZED, estimate, headline, order, robust_design, used_share
 from trackroller.results.requirement import required_of
-from trackroller.results.results import Results
+from trackroller.results.sensitivity import analysis_of
+from trackroller.results.solved_cases import SolvedCases
 from trackroller.roller.output_names import is_life
 from trackroller.study.design.entries import OPTION_FACTORS
 from trackroller.study.outputs import default_names
@@ -35,7 +36,7 @@ ROUNDING = 1e-12  # of the largest effect: a smaller one is 0 but for rounding
 WORTH = 0.02  # of the variance: a smaller interaction is not named
 
 
-def shown_ranges(results: Results) -> CaseRanges | None:
+def shown_ranges(results: SolvedCases) -> CaseRanges | None:
     """Return the output that a study without candidates is about: its first wanted one, its life or a stress."""
     required = required_of(results)
     named = [name for name in results.config.analysis.outputs or () if name not in REGIMES]
@@ -54,12 +55,12 @@ def shown_ranges(results: Results) -> CaseRanges | None:
     return None
 
 
-def answer_what_matters(results: Results) -> Answer:
+def answer_what_matters(results: SolvedCases) -> Answer:
     """Return which factors of a study matter for its output, the largest effect first.
 
     Parameters
     ----------
-    results : Results
+    results : SolvedCases
         A solved study.
 
     Notes
@@ -92,16 +93,16 @@ def answer_what_matters(results: Results) -> Answer:
     )
 
 
-def _indices(results: Results, ranges: CaseRanges) -> xr.Dataset | None:
+def _indices(results: SolvedCases, ranges: CaseRanges) -> xr.Dataset | None:
     """Return the analysis of a study if it has indices that are shares of variance, or elementary effects."""
-    sens = results.analysis
+    sens = analysis_of(results)
     name = ranges.output[0]
     if sens is None or robust_design(sens) or name not in sens["output"].values:
         return None
     return sens if order(sens, name) and headline(sens) in sens else None
 
 
-def _table(results: Results, ranges: CaseRanges, curves: tuple[Curve, ...]) -> pd.DataFrame:
+def _table(results: SolvedCases, ranges: CaseRanges, curves: tuple[Curve, ...]) -> pd.DataFrame:
     """Return one row a factor: index with its interval, height and shape of its curve, and both of its ends."""
     sens = _indices(results, ranges)
     known = {curve.factor: curve for curve in curves}
@@ -175,7 +176,7 @@ def pair_shares(sens: xr.Dataset | None, output: str) -> dict[str, Any]:
     return {"pairs": np.fmax(value, value.T), "titles": [str(one) for one in part["factor_name"].values]}
 
 
-def _lost(results: Results, ranges: CaseRanges) -> dict[str, int]:
+def _lost(results: SolvedCases, ranges: CaseRanges) -> dict[str, int]:
     """Return how many cases are lost (skids, lift-offs and others) between the levels of a factor, most less least."""
     rows = results.of_one_model()
     bad = (~ranges.held)[rows]
@@ -190,7 +191,7 @@ def _lost(results: Results, ranges: CaseRanges) -> dict[str, int]:
     return out
 
 
-def _range(results: Results, name: str) -> str:
+def _range(results: SolvedCases, name: str) -> str:
     """Return the levels of a factor in words: both ends of a number, or its names."""
     levels = results.levels(name)
     if results.numeric(name) and len(levels) > 2:
@@ -262,7 +263,7 @@ def _columns(ranges: CaseRanges, table: pd.DataFrame, sens: xr.Dataset | None) -
     return tuple(columns)
 
 
-def share_used(results: Results, output: str) -> float:
+def share_used(results: SolvedCases, output: str) -> float:
     """Return the share of the rows that the indices of an output use [1]."""
-    sens = results.analysis
+    sens = analysis_of(results)
     return 1.0 if sens is None or output not in sens["output"].values else used_share(sens, output)

@@ -27,18 +27,18 @@ from trackroller.results.effect_curves import Effects
 from trackroller.results.first_ends import ends_by_factor
 from trackroller.results.places import plain
 from trackroller.results.requirement import required_of
-from trackroller.results.results import Results
+from trackroller.results.solved_cases import SolvedCases
 
 MODEL = "contact_model"
 
 
-def models_of(results: Results) -> list[str]:
+def models_of(results: SolvedCases) -> list[str]:
     """Return the contact models of a study, the most exact one first."""
     known = set(results.table[MODEL]) if MODEL in results.table else set()
     return [model for model in EXACTNESS if model in known]
 
 
-def of_model(results: Results, model: str) -> Results:
+def of_model(results: SolvedCases, model: str) -> SolvedCases:
     """Return the results of one contact model alone, as those of a study that was solved with it."""
     rows = np.flatnonzero((results.table[MODEL] == model).to_numpy())
     data = results.data
@@ -51,12 +51,12 @@ def of_model(results: Results, model: str) -> Results:
     return dataclasses.replace(results, data=data, design=design, known_indices=None)
 
 
-def answer_which_model(results: Results) -> Answer:
+def answer_which_model(results: SolvedCases) -> Answer:
     """Return whether the requirement or the order of the candidates changes with the contact model.
 
     Parameters
     ----------
-    results : Results
+    results : SolvedCases
         A solved study with the factor `contact_model`.
 
     Notes
@@ -106,7 +106,7 @@ def answer_which_model(results: Results) -> Answer:
 TOLD = ("model", "verdict", "low", "high", "error", "meets", "of", "holds")
 
 
-def _of_model(results: Results, ranges: CaseRanges, model: str, base: str) -> dict[str, Any]:
+def _of_model(results: SolvedCases, ranges: CaseRanges, model: str, base: str) -> dict[str, Any]:
     """Return the row of one contact model: its own decision, and its ratios to the most exact one on like cases."""
     own_results = of_model(results, model)
     required = required_of(own_results)
@@ -141,7 +141,7 @@ def _of_model(results: Results, ranges: CaseRanges, model: str, base: str) -> di
     }
 
 
-def _like(results: Results, model: str, base: str) -> tuple[np.ndarray, np.ndarray]:
+def _like(results: SolvedCases, model: str, base: str) -> tuple[np.ndarray, np.ndarray]:
     """Return the cases of two models that agree in all other factors, shape (k,) each."""
     others = [name for name in results.factors if name != MODEL]
     key = codes(results.table, others)
@@ -154,7 +154,7 @@ def _like(results: Results, model: str, base: str) -> tuple[np.ndarray, np.ndarr
     return tuple(rows[np.searchsorted(keys, both)] for keys, rows in found)  # type: ignore[return-value]
 
 
-def _ratios(results: Results, ranges: CaseRanges, model: str, base: str) -> np.ndarray:
+def _ratios(results: SolvedCases, ranges: CaseRanges, model: str, base: str) -> np.ndarray:
     """Return the output by a model over that by the most exact one, over the cases that both hold, shape (k,)."""
     one, other = _like(results, model, base)
     both = ranges.held[one] & ranges.held[other]
@@ -164,7 +164,7 @@ def _ratios(results: Results, ranges: CaseRanges, model: str, base: str) -> np.n
     return np.asarray(found[np.isfinite(found)])
 
 
-def _like_against_like(results: Results, ranges: CaseRanges, models: list[str]) -> dict[str, Any]:
+def _like_against_like(results: SolvedCases, ranges: CaseRanges, models: list[str]) -> dict[str, Any]:
     """Return the output by each model against that by the most exact one, on the cases that both hold."""
     points = {}
     for model in models[1:]:

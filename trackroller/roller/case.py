@@ -29,9 +29,9 @@ from trackroller.parameters import (
 )
 from trackroller.parameters.example import EXAMPLE, Default, DefaultName
 from trackroller.roller.aliases import ALIASES, RADII, radius, renamed, with_axis_distance
+from trackroller.roller.case_table import CaseTable, MaterialArrays
 from trackroller.roller.fields import FIELDS, mapping_text, number, own_friction, own_frictions
 from trackroller.roller.geometry import geometry_problem
-from trackroller.roller.table import CaseTable, MaterialArrays
 
 STUDY = "study"  # attribute of a design and of results: the study file as YAML
 __all__ = ["FIELDS", "Case", "CaseTable", "MaterialArrays", "geometry_problem", "to_table"]

@@ -175,7 +175,7 @@ def validity_bit(name: str) -> int:
 def solved_by(ds: xr.Dataset) -> np.ndarray:
     """Return the name of the contact model that solved each case, object array in the shape of `contact_model_used`.
 
-    The numbers have the meanings that the data set states: files of earlier versions number the models otherwise.
+    The numbers have the meanings that the data set states, because a model of a user takes the next free number.
     """
     used = ds.variables["contact_model_used"]
     names = np.array(str(used.attrs["flag_meanings"]).split(), dtype=object)

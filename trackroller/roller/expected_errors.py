@@ -24,8 +24,8 @@ from trackroller.roller.options import model_in_use
 if TYPE_CHECKING:
     import xarray as xr
 
+    from trackroller.roller.case_table import CaseTable
     from trackroller.roller.options import Options
-    from trackroller.roller.table import CaseTable
 
 FILE = "expected_errors.json"  # measured errors by contact model, rung and quantity
 _QUANTITY_OF = {

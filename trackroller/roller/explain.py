@@ -10,7 +10,7 @@ import numpy as np
 
 from trackroller.parameters.accuracy import PEAK_OUTPUTS, RUNGS
 from trackroller.parameters.contact_models import DECLARED
-from trackroller.roller import requirements
+from trackroller.roller import distinct_contacts
 
 if TYPE_CHECKING:
     from trackroller.roller.case import CaseTable
@@ -62,8 +62,8 @@ def explain(table: CaseTable, options: Options) -> list[Stage]:
     The counts are those known before anything is solved. Cases that lift off or slip fully leave later stages.
     """
     n, shortcuts, wanted = len(table), options.shortcuts, set(options.outputs)
-    part = table.take(requirements.distinct_mechanics(table)[0]) if shortcuts and n > 1 else table
-    mirrored, free = requirements.is_mirror_symmetric(part), requirements.is_frictionless(part)
+    part = table.take(distinct_contacts.distinct_mechanics(table)[0]) if shortcuts and n > 1 else table
+    mirrored, free = distinct_contacts.is_mirror_symmetric(part), distinct_contacts.is_frictionless(part)
     if not shortcuts:
         mirrored = free = np.zeros(len(part), dtype=bool)
     m, twins, frictionless = len(part), int(mirrored.sum()), int(free.sum())

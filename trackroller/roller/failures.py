@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from trackroller.contact.slip import turning_of
+from trackroller.roller.case_table import CaseTable
 from trackroller.roller.dataset import validity_bit
 from trackroller.roller.equilibrium import FAILED, ROLLING
 from trackroller.roller.geometry import contact_geometry
 from trackroller.roller.options import Options
-from trackroller.roller.table import CaseTable
 
 if TYPE_CHECKING:
     import xarray as xr

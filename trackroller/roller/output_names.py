@@ -8,7 +8,6 @@ sum of both where the variable adds up.
 from __future__ import annotations
 
 import itertools
-import re
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
@@ -103,26 +102,6 @@ def parts_of(variable: Variable, limits: Iterable[Limit] = tuple(LIMITS.values()
             if limit is None or body in limit.bodies:
                 at = {"body": body, "contact": contact, "limit": limit.name if limit else ""}
                 yield Part(variable, MappingProxyType({dim: key for dim, key in at.items() if key}))
-
-
-_FORMER = (  # names of earlier versions
-    (re.compile(r"\b(\w+)\[\s*([\w\s,]+)\]"), lambda found: _joined(found[1], found[2])),
-    (re.compile(r"\b(roller|guide)_(peak_stress|life_cycles|wear_life_hours)\b"), r"\2_\1"),
-    (re.compile(r"\bfriction_energy\b"), "friction_energy_per_distance"),
-)
-
-
-def _joined(variable: str, places: str) -> str:
-    """Return the name of `variable[contact,body]`."""
-    keys = [key.strip() for key in places.split(",") if key.strip()]
-    return "_".join([variable, *sorted(keys, key=lambda key: 0 if key in BODIES else 1)])
-
-
-def present_names(text: str) -> str:
-    """Return a name of a result, or an expression, with the names of earlier versions replaced by those of today."""
-    for pattern, now in _FORMER:
-        text = pattern.sub(now, text)
-    return text
 
 
 PARTS: Mapping[str, Part] = MappingProxyType(

@@ -14,8 +14,8 @@ import numpy as np
 
 from trackroller.contact.drawn_profiles import treats_sides_alike
 from trackroller.halfspace.arrays import COMPONENTS
+from trackroller.roller.case_table import CaseTable
 from trackroller.roller.dataset import VARIABLES
-from trackroller.roller.table import CaseTable
 
 LATERAL = ("x", "section_x")  # dimensions along x_C
 ODD_COMPONENTS = [name in ("tau_xy", "tau_xz") for name in COMPONENTS]

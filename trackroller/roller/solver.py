@@ -16,15 +16,14 @@ from trackroller.materials import load_database
 from trackroller.parameters import CONTACT_MODELS, MECHANICAL_MAPPINGS, OPTIONS
 from trackroller.parameters.accuracy import RUNGS, Accuracy
 from trackroller.parameters.contact_models import DECLARED
-from trackroller.roller import requirements, temperature
-from trackroller.roller.blocks import Block, join
+from trackroller.roller import distinct_contacts, temperature
+from trackroller.roller.block_results import Block, join
 from trackroller.roller.case import Case, CaseTable, is_single, to_table
 from trackroller.roller.dataset import NOTES, VARIABLES, build, file_attributes, joined
 from trackroller.roller.expected_errors import tell_errors
 from trackroller.roller.failures import with_reasons
 from trackroller.roller.limit_notes import notes_on_limits
 from trackroller.roller.options import Options, model_in_use, options_of_cases
-from trackroller.roller.record import with_coordinates, with_design, with_inputs
 from trackroller.roller.reflection import handed, reflect
 from trackroller.roller.stages import mechanics as stages
 from trackroller.roller.stages import outcome as stages_outcome
@@ -32,6 +31,7 @@ from trackroller.roller.stages import stress as stages_stress
 from trackroller.roller.stages.balance import balance
 from trackroller.roller.stages.models import depends_on_smoothing, finer_across
 from trackroller.roller.stages.scene import StageResults
+from trackroller.roller.stored_inputs import with_coordinates, with_design, with_inputs
 from trackroller.roller.told_errors import calibrate
 from trackroller.roller.tolerance import meet
 from trackroller.roller.travel import with_travel
@@ -225,7 +225,7 @@ def _solve_window(table: CaseTable, options: Options) -> Block:
     distinct, number = one_handed, np.arange(len(table))
     # limits of patches depend on the speed and on all values of the materials
     if options.shortcuts and len(table) > 1 and not stages_outcome.of_patches(_limits(one_handed, options)):
-        rows, number = requirements.distinct_mechanics(one_handed)
+        rows, number = distinct_contacts.distinct_mechanics(one_handed)
         distinct = one_handed.take(rows)
     at_temperature, block = temperature.settle(one_handed, solve_all(distinct).take(number), options, solve_all)
     calibrate(at_temperature, block, options)
@@ -249,7 +249,7 @@ def _groups(table: CaseTable, options: Options) -> Iterator[tuple[str, int, np.n
 
     Frictionless cases are a batch alone.
     """
-    bare = requirements.is_frictionless(table) & options.shortcuts
+    bare = distinct_contacts.is_frictionless(table) & options.shortcuts
     across = finer_across(table, options)
     columns = bare, *(getattr(table, name) for name in MECHANICAL_MAPPINGS), across
     keys = list(zip(*(column.tolist() for column in columns), strict=True))

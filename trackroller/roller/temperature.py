@@ -20,14 +20,14 @@ import numpy as np
 
 from trackroller.materials.temperature import FOLLOW_STRENGTH, TABLED, TemperatureTable
 from trackroller.parameters import BODIES
-from trackroller.roller.blocks import Block, join
+from trackroller.roller.block_results import Block, join
 
 if TYPE_CHECKING:
     import xarray as xr
     from numpy.typing import ArrayLike
 
+    from trackroller.roller.case_table import CaseTable, MaterialArrays
     from trackroller.roller.options import Options
-    from trackroller.roller.table import CaseTable, MaterialArrays
 
 TOLERANCE = 0.005  # change of the temperature in the last pass [K]
 PASSES = 10

@@ -9,7 +9,7 @@ import numpy as np
 
 from trackroller.damage import fatigue
 from trackroller.parameters.accuracy import RUNGS, Tolerance
-from trackroller.roller.blocks import Block, join
+from trackroller.roller.block_results import Block, join
 from trackroller.roller.dataset import validity_bit
 from trackroller.roller.expected_errors import least_errors
 from trackroller.roller.stages.outcome import solved_of

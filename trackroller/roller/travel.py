@@ -8,9 +8,9 @@ from functools import lru_cache
 
 import numpy as np
 
+from trackroller.roller.case_table import CaseTable
 from trackroller.roller.options import Options
 from trackroller.roller.reflection import handed
-from trackroller.roller.table import CaseTable
 from trackroller.roller.wearing import ENDS, Groove, Wearing, between
 
 KEPT = 64  # marches that a process keeps

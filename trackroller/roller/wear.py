@@ -18,11 +18,11 @@ from trackroller.roller.case import Case, to_table
 from trackroller.roller.dataset import NOTES
 from trackroller.roller.limit_notes import notes_on_limits
 from trackroller.roller.options import Options
-from trackroller.roller.record import CASE, MATERIALS, with_inputs
 from trackroller.roller.reflection import handed, reflect
 from trackroller.roller.solver import assemble, block_of
 from trackroller.roller.stages import outcome as stages_outcome
 from trackroller.roller.stages.scene import StageResults
+from trackroller.roller.stored_inputs import CASE, MATERIALS, with_inputs
 from trackroller.roller.wearing import ENDS, Groove, Wearing, between, travel_to_depth
 
 if TYPE_CHECKING:

@@ -13,24 +13,24 @@ from typing import Any
 
 import numpy as np
 
-from trackroller.contact.common import Resultants
 from trackroller.contact.cross_sections import Gap
 from trackroller.contact.drawn_profiles import gap, treats_sides_alike, with_wear
 from trackroller.contact.hertz import contact_modulus
 from trackroller.contact.normal.measure import Box
 from trackroller.contact.normal.wearing import WearingPatch, evened_at_rims, on_cells, smoothed
+from trackroller.contact.quantities import Resultants
 from trackroller.damage.limit import roller_overrollings
 from trackroller.damage.wear import ERROR, KM_PER_HOUR, energy_ratio, local_rates
 from trackroller.errors import InputError
 from trackroller.parameters import REGIMES
 from trackroller.roller import equilibrium as eq
+from trackroller.roller.case_table import CaseTable
 from trackroller.roller.geometry import contact_geometry
 from trackroller.roller.options import Options, model_in_use
 from trackroller.roller.stages.balance import balance
 from trackroller.roller.stages.mechanics import dissipation, prepare
 from trackroller.roller.stages.models import bodies, finer_across
 from trackroller.roller.stages.scene import StageResults, surface_tractions
-from trackroller.roller.table import CaseTable
 
 REACH = 20.0  # half width of the cells over the lateral semi-axis of the new patch
 TOLERANCE = 0.02  # largest error of the depth in a step over the elastic approach of the new bodies

@@ -9,7 +9,7 @@ from trackroller.errors import InputError, WorkError
 from trackroller.parameters import PARAMETERS
 from trackroller.roller.differences import Difference, compare
 from trackroller.roller.options import options_of_cases
-from trackroller.roller.record import solve_command
+from trackroller.roller.stored_inputs import solve_command
 from trackroller.study.design.build import case_columns
 from trackroller.study.design.growth import as_planned
 from trackroller.study.store import chunks

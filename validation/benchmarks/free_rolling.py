@@ -18,9 +18,9 @@ from typing import Any
 import numpy as np
 
 import trackroller as tr
-from trackroller.contact.common import Elastic
 from trackroller.contact.kalker import KalkerSettings
 from trackroller.contact.kalker.law import KalkerLaw
+from trackroller.contact.quantities import Elastic
 from trackroller.roller import equilibrium as eq
 from trackroller.roller.case import to_table
 from trackroller.roller.options import Options

@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from trackroller.contact.common import Ellipse
+from trackroller.contact.quantities import Ellipse
 from trackroller.contact.slip import Slip
 from trackroller.halfspace.ellipse import NO_FIELD, Room, near_parts, patch_rows, unit_rule
 from trackroller.halfspace.peak import find_peaks

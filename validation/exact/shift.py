@@ -12,10 +12,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from trackroller.contact.common import Elastic, Ellipse, Resultants
 from trackroller.contact.influence import influence
 from trackroller.contact.kalker.cells import unit_cells
 from trackroller.contact.kalker.newton import Problem, newton, room_for
+from trackroller.contact.quantities import Elastic, Ellipse, Resultants
 
 
 @dataclass(frozen=True)

@@ -10,9 +10,9 @@ from typing import Any
 import mpmath
 import numpy as np
 
-from trackroller.contact.common import Ellipse
 from trackroller.contact.hertz import axis_ratio
 from trackroller.contact.influence import displacements, pressure_displacements
+from trackroller.contact.quantities import Ellipse
 from trackroller.contact.sliding import integrals
 from trackroller.contact.slip import Slip
 from trackroller.halfspace.ellipse import patch_rows, stress_parts

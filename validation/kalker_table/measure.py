@@ -17,10 +17,10 @@ import numpy as np
 
 import trackroller as tr
 from trackroller.contact import kalker, table
-from trackroller.contact.common import Elastic, Ellipse
 from trackroller.contact.kalker import Creepage, KalkerSettings
 from trackroller.contact.linear import creepage_coefficients
 from trackroller.contact.models import CLASSES
+from trackroller.contact.quantities import Elastic, Ellipse
 from trackroller.contact.table import spline
 from trackroller.contact.table.coordinates import HALF_WAY, RATIOS, coupling_creepage
 from trackroller.materials import load_database

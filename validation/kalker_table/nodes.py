@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from trackroller.contact import kalker
-from trackroller.contact.common import Elastic, Ellipse
 from trackroller.contact.linear import creepage_coefficients
+from trackroller.contact.quantities import Elastic, Ellipse
 from trackroller.contact.table.coordinates import HALF_WAY, RATIOS, coupling_creepage, spin_arm
 
 FRICTION, SHEAR_MODULUS = 0.3, 1e3  # of the solved problem; the dimensionless results do not depend on these values

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from trackroller.contact.common import Ellipse
+from trackroller.contact.quantities import Ellipse
 from trackroller.contact.slip import Slip, spin_model_index
 from trackroller.halfspace.ellipse import patch_rows, stress_parts
 from trackroller.halfspace.stress import von_mises

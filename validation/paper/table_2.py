@@ -12,7 +12,7 @@ import xarray as xr
 from scipy.optimize import minimize
 
 from trackroller.contact import sliding
-from trackroller.contact.common import Ellipse
+from trackroller.contact.quantities import Ellipse
 from trackroller.contact.slip import Slip, spin_model_index
 from trackroller.halfspace.ellipse import patch_rows, stress_parts
 from trackroller.halfspace.stress import stress_on_grid, von_mises

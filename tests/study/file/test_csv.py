@@ -5,7 +5,7 @@ import pytest
 import trackroller as tr
 from trackroller.errors import Collector
 from trackroller.study.design.read_table import table
-from trackroller.study.file.user_table import read_table
+from trackroller.study.file.user_columns import read_table
 
 
 def test_cells_stand_by_the_number_of_their_line(tmp_path):

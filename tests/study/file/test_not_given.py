@@ -8,7 +8,7 @@ from command_line import trackroller
 
 import trackroller as tr
 from trackroller.parameters.example import EXAMPLE, drive_question, not_given, not_given_text
-from trackroller.roller.record import not_given_of
+from trackroller.roller.stored_inputs import not_given_of
 from trackroller.study.store.identity import Cases
 
 STUDY = """
@@ -49,18 +49,6 @@ def test_results_remember_the_defaults_of_their_time(study, monkeypatch):
     again = tr.open_study(solved.data)
     assert set(again.data["motor_force"].values.ravel()) == {-30.0}
     assert again.study.not_given == study.not_given and "motor_force" in study.not_given
-
-
-def test_a_study_of_an_earlier_version_keeps_the_values_that_it_calls_not_given(study):
-    plain = study.as_dict()
-    base = {name: value for name, value in plain["base"].items() if name not in study.not_given}
-    former = plain | {"base": base, "not_given": {"motor_force": -11, "axial_force": 99}}
-    again = tr.load_study(former)
-    assert set(again.design()["motor_force"].values) == {-11.0}
-    assert set(again.design()["axial_force"].values) == {22.0}, "base comes first"
-    assert {*again.not_given} == {*study.not_given} and "not_given" not in again.as_dict()
-    with pytest.raises(tr.InputError, match=r"base\.contact_angle = 95"):
-        tr.load_study(plain | {"base": base, "not_given": {"contact_angle": 95}})
 
 
 def test_columns_of_a_table_count_as_named(tmp_path):

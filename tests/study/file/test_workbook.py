@@ -15,7 +15,7 @@ import trackroller as tr
 from trackroller.errors import Collector
 from trackroller.report.workbook import write_cases, write_results
 from trackroller.study.design.read_table import table
-from trackroller.study.file.user_table import column_names, read_table
+from trackroller.study.file.user_columns import column_names, read_table
 from trackroller.study.spectrum.file import load_spectrum
 
 openpyxl = pytest.importorskip("openpyxl")
@@ -194,6 +194,7 @@ def test_formulas_without_values_are_refused(tmp_path):
         "=SUMPRODUCT(A2:A3,B2:B3)/SUM(B2:B3)",
         "=SUM(Sheet!A2:A3)",
         "=MIN('Sheet'!$A$2:$A$3)",
+        "=A3+A$2",
     ],
 )
 def test_a_formula_that_sums_up_its_column_is_no_case(text, tmp_path):
@@ -206,12 +207,8 @@ def test_a_formula_that_sums_up_its_column_is_no_case(text, tmp_path):
     "column",
     [
         ["=2*A2", "=2*A3"],  # levels that double
-        ["=A2+A$2", "=A3+A$2"],  # levels with the first one as their step
         [-200, "=A3-50"],
         [-200, "=SUM(B2:B3)"],
-        [-200, "=SUM(Sheet2!A2:A3)"],
-        [-200, "=load*A3+A2"],
-        ["=SUM(A2:A4)", -250],  # a circle, but no line above
     ],
 )
 def test_a_formula_of_a_case_keeps_its_value(column, tmp_path):
@@ -363,17 +360,14 @@ def test_cells_that_share_a_long_text_take_little_memory(letters, why, tmp_path)
 @pytest.mark.parametrize(
     ("part", "content", "why"),
     [
-        ("sheet1.xml", (ROW, 400_000), "unpacks to at most 50 MB"),
-        ("sheet1.xml", (ROW, 60_000), "about 500,000 cells"),
-        ("sheet1.xml", ("<row/>", 2_100_000), "about 500,000 cells"),
+        ("sheet1.xml", (ROW, 400_000), "unpacks to at most 25 MB"),
+        ("sheet1.xml", (ROW, 60_000), "500,000 cells"),
         ("sheet1.xml", ('<row><c r="XFD1"><v>1</v></c></row>', 1), "1,000 columns"),
         ("sheet1.xml", ('<row r="99999999"><c><v>1</v></c></row>', 1), "500,000 cells"),
-        ("styles.xml", ("<xf/>", 200_000), "500,000 cells; xl/styles.xml is larger"),
-        ("workbook.xml", ('<!DOCTYPE a [<!ENTITY b "c">]><a>&b;</a>', 1), "without a document type definition"),
     ],
 )
 def test_a_workbook_is_limited_as_it_is_unpacked(part, content, why, tmp_path):
-    """A zip of 300 kB may hold gigabytes; the limits hold before anything is parsed."""
+    """A zip of 300 kB may hold gigabytes."""
     piece, times = content
     text = SHEET.format(piece * times)
     with pytest.raises(tr.InputError, match=why):

@@ -6,8 +6,8 @@ from functools import lru_cache
 
 import numpy as np
 
-from trackroller.contact.common import Ellipse
 from trackroller.contact.grid_patch import GridPatch
+from trackroller.contact.quantities import Ellipse
 
 
 def _column_integrals(x: np.ndarray, edges: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -13,10 +13,10 @@ import dataclasses
 import numpy as np
 
 from trackroller.contact import table
-from trackroller.contact.common import Elastic, Ellipse, Resultants, Works, force_scales
 from trackroller.contact.kalker import extrapolation
 from trackroller.contact.kalker.patch import on_elements, solve_patch
 from trackroller.contact.kalker.problem import KalkerSettings, PatchSolution, Store
+from trackroller.contact.quantities import Elastic, Ellipse, Resultants, Works, force_scales
 from trackroller.contact.rollers import converged_up_to
 from trackroller.contact.slip import Creepage, Slip
 from trackroller.contact.wedge import determinant

@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 
-from trackroller.contact.common import Elastic, Ellipse, slenderness
 from trackroller.contact.grid_patch import GridPatch
 from trackroller.contact.kalker import subgrid
+from trackroller.contact.quantities import Elastic, Ellipse, slenderness
 from trackroller.contact.slip import Creepage
 
 # The forces converge with order 2 where the patch slides, and with order 1 where much of it sticks: the traction is

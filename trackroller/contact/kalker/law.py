@@ -7,10 +7,10 @@ import dataclasses
 import numpy as np
 
 from trackroller.contact import table
-from trackroller.contact.common import Elastic, Ellipse, Resultants
 from trackroller.contact.grid_patch import GridPatch
 from trackroller.contact.kalker.patch import solve_patch
 from trackroller.contact.kalker.problem import KalkerSettings, PatchSolution, joined
+from trackroller.contact.quantities import Elastic, Ellipse, Resultants
 from trackroller.contact.slip import Creepage, Slip
 
 NEAR = 0.3  # largest change of creepage, over the slip in the patch, for which the last solution is a good start

@@ -12,7 +12,6 @@ from typing import Any
 
 import numpy as np
 
-from trackroller.contact.common import Elastic, Ellipse, Resultants, SurfaceTractions
 from trackroller.contact.grid_patch import GridPatch
 from trackroller.contact.kalker import batch, extrapolation, subgrid
 from trackroller.contact.kalker.cells import cells, unit_cells
@@ -20,6 +19,7 @@ from trackroller.contact.kalker.loops import row_means
 from trackroller.contact.kalker.newton import column_ranges
 from trackroller.contact.kalker.problem import KalkerSettings, PatchSolution, joined
 from trackroller.contact.linear import LARGEST_RATIO, creepage_coefficients
+from trackroller.contact.quantities import Elastic, Ellipse, Resultants, SurfaceTractions
 from trackroller.contact.slip import Creepage
 
 BLOCK = 256  # patches that are solved together, to limit the memory for their tractions

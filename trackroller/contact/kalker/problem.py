@@ -6,8 +6,8 @@ from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
-from trackroller.contact.common import Resultants, Works
 from trackroller.contact.friction_laws import FrictionLaw, constant
+from trackroller.contact.quantities import Resultants, Works
 
 
 @dataclass(frozen=True)

@@ -14,8 +14,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from trackroller.contact.common import filled
 from trackroller.contact.kalker.cells import cells
+from trackroller.contact.quantities import filled
 from trackroller.numerics.compiled import compiled
 from trackroller.numerics.splines import interpolated
 

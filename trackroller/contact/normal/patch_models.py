@@ -12,14 +12,14 @@ from typing import Any
 import numpy as np
 
 from trackroller.contact import kalker
-from trackroller.contact.common import Patch, Resultants, SurfaceTractions, Works
 from trackroller.contact.grid_patch import GridPatch
 from trackroller.contact.kalker.law import KalkerLaw
 from trackroller.contact.normal import patch_sliding as normal_sliding
 from trackroller.contact.normal.measure import roughness
-from trackroller.contact.normal.patches import Patches, Pressing
+from trackroller.contact.normal.patches import NormalSolver, Pressing
 from trackroller.contact.normal.pressure import TOLERANCE
 from trackroller.contact.protocol import ContactModel
+from trackroller.contact.quantities import Patch, Resultants, SurfaceTractions, Works
 from trackroller.contact.rollers import Rollers
 from trackroller.contact.slip import Slip
 from trackroller.parameters.contact_models import DECLARED
@@ -43,13 +43,13 @@ class GridModel(ContactModel):
     ----------
     given : Rollers
         Elastic constants, friction law and travel speed of the rollers.
-    patches : Patches
+    patches : NormalSolver
         Solver of the normal problem of the rollers.
     """
 
     refines = True
 
-    def __init__(self, given: Rollers, patches: Patches) -> None:
+    def __init__(self, given: Rollers, patches: NormalSolver) -> None:
         self.given, self.patches = given, patches
         # of the normal problem at the last fine call, by roller and contact
         self._residual = np.zeros((len(given.travel_speed), 2))
@@ -120,7 +120,7 @@ class GridKalkerModel(GridModel):
     refines = False
     peak_error = 0.01  # of the elements that the tractions are solved on; measured on the same contacts
 
-    def __init__(self, given: Rollers, patches: Patches) -> None:
+    def __init__(self, given: Rollers, patches: NormalSolver) -> None:
         super().__init__(given, patches)
         settings = kalker.KalkerSettings(patches.elements, 1e-8, law=given.law, profile_slip=given.profile_slip)
         self._law = KalkerLaw(given.elastic, settings, given.travel_speed)

@@ -11,9 +11,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from trackroller.contact.common import Resultants, SurfaceTractions, Works
 from trackroller.contact.friction_laws import FrictionLaw, constant
 from trackroller.contact.grid_patch import GridPatch
+from trackroller.contact.quantities import Resultants, SurfaceTractions, Works
 from trackroller.contact.sliding import slip_field, slip_lines
 from trackroller.contact.slip import Slip
 

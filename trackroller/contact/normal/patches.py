@@ -7,12 +7,12 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
-from trackroller.contact.common import SurfaceTractions
 from trackroller.contact.cross_sections import Gap
 from trackroller.contact.grid_patch import GridPatch, rim_means
 from trackroller.contact.normal.family import Family, Node
 from trackroller.contact.normal.measure import Box
 from trackroller.contact.normal.pressure import lift
+from trackroller.contact.quantities import SurfaceTractions
 from trackroller.contact.slip import contour_over_tangent
 from trackroller.errors import ShapeError
 
@@ -52,7 +52,7 @@ class Pressing:
         return family.pressed(load, apart[:, flip], t.pressure[k][:, flip])
 
 
-class Patches:
+class NormalSolver:
     """Solver of the normal problem of n rollers under any load.
 
     Parameters

@@ -21,8 +21,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from trackroller.contact.common import Elastic, Patch
 from trackroller.contact.linear import logarithm
+from trackroller.contact.quantities import Elastic, Patch
 from trackroller.numerics.compiled import compiled, formula
 
 HALF_WAY = 3.0  # r at rho = 1/2

@@ -17,8 +17,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from trackroller.contact.common import Elastic, Patch, Resultants
 from trackroller.contact.linear import chebyshev
+from trackroller.contact.quantities import Elastic, Patch, Resultants
 from trackroller.contact.table.coordinates import HALF_WAY, Rolling, coordinates, in_range
 from trackroller.numerics.compiled import compiled, fast
 from trackroller.numerics.knots import interval

@@ -12,11 +12,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from trackroller.contact.common import Patch, Resultants, SurfaceTractions, Works
 from trackroller.contact.kalker.correction import SERVING
 from trackroller.contact.kalker.kalker_model import KalkerModel
 from trackroller.contact.kalker.subgrid import PARTS
 from trackroller.contact.protocol import ContactModel
+from trackroller.contact.quantities import Patch, Resultants, SurfaceTractions, Works
 from trackroller.contact.rollers import Rollers
 from trackroller.contact.slip import Slip
 from trackroller.contact.table import spline as table

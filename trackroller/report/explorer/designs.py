@@ -11,7 +11,9 @@ from trackroller.parameters import FIRST_TO_FAIL
 from trackroller.report.explorer.rows import Column
 from trackroller.report.numbers import GUIDE_UNKNOWN, Life, capital, count, part_of, with_unit
 from trackroller.report.tables.table import cell, factor_cell, goal_heading, heading
+from trackroller.results.by_tests import beyond_sn_data
 from trackroller.results.candidates import Candidates, hardest_first
+from trackroller.results.pareto import study_pareto
 from trackroller.results.results import Results
 from trackroller.study.file.goals import statistic
 
@@ -94,7 +96,7 @@ def _goals(candidates: Candidates) -> tuple[list[str], dict[tuple[Any, ...], lis
     if not any(statistic(name)[0] for name in goals):
         return [], {}, ""
     note = "The goals of this study are statistics over its scatter: they compare designs. Goals below compares cases."
-    front = candidates.results.pareto()
+    front = study_pareto(candidates.results)
     if front is None:
         return [], {}, f"{note} Their Pareto set needs sensitivity.nc beside the study; it stands in the report."
     names = [name for name in goals if name not in candidates.choices]
@@ -110,7 +112,7 @@ def _conditions(candidates: Candidates, place: np.ndarray, number: np.ndarray, w
     """List the conditions with the designs that are valid there, the worst life, and the design that does best."""
     results, rows = candidates.results, []
     values, sign = results.column(candidates.goal[0]), 1.0 if candidates.rising else -1.0
-    beyond = results.beyond_data(candidates.goal[0])
+    beyond = beyond_sn_data(results, candidates.goal[0])
     for there in (place == i for i in range(min(place.max() + 1, MOST_LISTED))):
         cases = np.flatnonzero(there & candidates.usable)
         ranked = cases[np.argsort(sign * values[cases], kind="stable")]

@@ -124,6 +124,17 @@ def secured(page: str) -> str:
     return page.replace(POLICY, "; ".join(policy), 1)
 
 
+def explorer_text(results: Results) -> str:
+    """Return the explorer of a solved study as one page of HTML."""
+    content = {
+        "name": results.config.name,
+        "description": results.config.description,
+        "notice": results.data.attrs.get("notice", ""),
+        "explorer": explorer(results),
+    }
+    return secured(render("explorer.html.j2", content))
+
+
 def write_explorer(results: Results, out: Path) -> Path:
     """Write the explorer of a solved study as one HTML file.
 
@@ -139,10 +150,4 @@ def write_explorer(results: Results, out: Path) -> Path:
     pathlib.Path
         The path of the page.
     """
-    content = {
-        "name": results.config.name,
-        "description": results.config.description,
-        "notice": results.data.attrs.get("notice", ""),
-        "explorer": explorer(results),
-    }
-    return put_text(out, secured(render("explorer.html.j2", content)))
+    return put_text(out, explorer_text(results))

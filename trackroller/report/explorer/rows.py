@@ -12,17 +12,18 @@ import xarray as xr
 
 from trackroller.damage import LIMITS
 from trackroller.parameters import BODIES, MAPPING_FIELDS, MATERIAL_FIELDS, OPTIONS, PARAMETERS, REGIME_LABELS, REGIMES
-from trackroller.parameters.of_carriage import parameter_of
+from trackroller.parameters.carriage_fields import parameter_of
 from trackroller.parameters.validity import VALIDITY
 from trackroller.report.numbers import BEYOND, capital, level_text, long_name, plain, unit_text
 from trackroller.report.tables.inputs import stored_materials
+from trackroller.results.by_tests import beyond_sn_data
 from trackroller.results.columns import BODY_RESULTS, CONTACT_RESULTS, WHOLE_RESULTS
 from trackroller.results.first_limits import first_limit
 from trackroller.results.groups import spaced_by_ratio
 from trackroller.results.results import Results
 from trackroller.roller.duty import years
 from trackroller.roller.output_names import body_of, declared, is_life
-from trackroller.roller.record import setting_text
+from trackroller.roller.stored_inputs import setting_text
 from trackroller.study.design.levels import NAMED
 from trackroller.study.file import goals
 from trackroller.study.outputs import Output, default_names, flat, outputs, parts_in
@@ -126,7 +127,7 @@ def _beyond(results: Results, columns: Sequence[Column]) -> list[Column]:
     """
     remarks = []
     for column in (c for c in columns if c.role == "output" and is_life(c.name)):
-        marks = results.beyond_data(column.name) & ~np.isnan(column.values)
+        marks = beyond_sn_data(results, column.name) & ~np.isnan(column.values)
         if marks.any():
             name = f"{column.name}:beyond"
             remarks.append(Column(name, BEYOND, "", "remark", marks.astype(int), (0.0, 1.0), ("", BEYOND)))

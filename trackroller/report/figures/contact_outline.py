@@ -10,7 +10,7 @@ from matplotlib.path import Path
 from trackroller.parameters import MAPPING_FIELDS, MATERIAL_FIELDS, PARAMETERS, REGIME_LABELS
 from trackroller.report.numbers import capital, level_text, listing, long_name, rounded, setting
 from trackroller.roller.dataset import solved_by
-from trackroller.roller.record import CASE, inputs_of, is_default
+from trackroller.roller.stored_inputs import CASE, inputs_of, is_default
 
 SLIGHT = 1e-3  # share of the largest pressure; smaller values are residuals of the solution, not loads
 

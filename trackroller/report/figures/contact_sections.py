@@ -18,7 +18,7 @@ from trackroller.report.figures import style
 from trackroller.report.figures.contact_outline import Patch, case_text, outline, widths
 from trackroller.report.numbers import near, rounded
 from trackroller.results.columns import at_surface
-from trackroller.roller.record import MATERIALS, materials_of
+from trackroller.roller.stored_inputs import MATERIALS, materials_of
 
 PLANES = (("von_mises_xz", "xz_x", "xz_z", "x", "lateral"), ("von_mises_yz", "yz_y", "yz_z", "y", "rolling"))
 TRACTIONS = ("pressure", "shear_lateral", "shear_rolling")

@@ -17,6 +17,7 @@ from trackroller.parameters import REGIME_LABELS
 from trackroller.report.figures import style
 from trackroller.report.figures.levels import held_words
 from trackroller.report.numbers import capital, factor_label, level_text, long_name, rounded, with_unit
+from trackroller.results.by_tests import beyond_sn_data
 from trackroller.results.groups import BINS, classes
 from trackroller.results.ranking import ranked_factors
 from trackroller.results.results import Results
@@ -52,7 +53,7 @@ def life_map(results: Results) -> style.Drawn:
     style.log_ticks(bar.ax.yaxis, *image.get_clim())
     axes.set(xlabel=factor_label(pair[0]), ylabel=factor_label(pair[1]))
     how = "Grey cells have no life" if results.grid else "Each cell is the median of its cases; grey cells have no life"
-    if axes.texts and (results.beyond_data(column)[rows.index] & results.rolling[rows.index]).any():
+    if axes.texts and (beyond_sn_data(results, column)[rows.index] & results.rolling[rows.index]).any():
         how += "; lives in brackets lie beyond the S-N data"
     return figure, style.FigureInfo("life_map", f"{over}. {how}. {held_words(held)}".strip())
 
@@ -108,7 +109,7 @@ def _life_cells(axes: Axes, results: Results, rows: pd.DataFrame, pair: Pair, co
     for axis, name, (_, ends) in zip((axes.xaxis, axes.yaxis), pair, sides, strict=True):
         set_ticks(axis, [cell_name(name, end) for end in ends])
     axes.grid(False)
-    beyond = pd.Series(results.beyond_data(column)[rows.index], rows.index, dtype=float)
+    beyond = pd.Series(beyond_sn_data(results, column)[rows.index], rows.index, dtype=float)
     _written(axes, life, _table(beyond.where(results.rolling[rows.index]), keys, shape) >= 0.5, image)
     return image
 

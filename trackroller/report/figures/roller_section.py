@@ -13,7 +13,7 @@ from trackroller.contact.drawn_profiles import cross_section
 from trackroller.errors import ShapeError
 from trackroller.report import html
 from trackroller.report.numbers import rounded
-from trackroller.roller.record import inputs_of
+from trackroller.roller.stored_inputs import inputs_of
 
 SIZE = np.array([340.0, 330.0])  # width and height of the drawing [px]
 LONGEST = 62.0  # the largest force [px]

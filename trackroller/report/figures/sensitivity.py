@@ -73,8 +73,9 @@ def morris_plane(sens: xr.Dataset, output: str) -> style.Drawn:
     if "mu_star" not in sens:
         return None
     part = sens.sel(output=output)
-    x, y = part["mu_star"].values, part["sigma"].values
-    if not np.isfinite(x).any():
+    x = part["mu_star"].values
+    y = part["sigma"].values
+    if not np.isfinite(x + y).any():  # one trajectory has no spread
         return None
     figure, (axes,) = style.panels(f"{title(sens, output)}: elementary effects", 64 + 1.2 * int(np.isfinite(x).sum()))
     top = float(np.nanmax(x)) * 1.15 or 1.0

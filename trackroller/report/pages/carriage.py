@@ -17,7 +17,7 @@ from trackroller.report.pages.sheet import pictures, versions_text
 from trackroller.report.tables.table import Table, cell
 from trackroller.report.terminal import print_table, print_text
 from trackroller.report.words.carriage import sentences
-from trackroller.roller.record import doubts_of
+from trackroller.roller.stored_inputs import doubts_of
 
 LARGE = "–"  # of a margin that is not reached
 UNKNOWN = "not known"

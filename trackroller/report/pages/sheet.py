@@ -49,14 +49,14 @@ from trackroller.report.words.by_tests import by_tests
 from trackroller.report.words.sentence import phrase
 from trackroller.report.words.wear import run_in
 from trackroller.results.columns import at_surface
-from trackroller.roller import record
+from trackroller.roller import stored_inputs as record
 from trackroller.roller.dataset import VARIABLES, shown, solved_by, validity_bit
 from trackroller.roller.duty import FIELD as DUTY
 from trackroller.roller.duty import duty_of, years
 from trackroller.roller.output_names import is_life
-from trackroller.roller.record import doubts_of, friction_records, inputs_of, is_default, materials_of
 from trackroller.roller.regime_limits import Limits, limits
 from trackroller.roller.settings import SHEET_FIELDS, sheet_of
+from trackroller.roller.stored_inputs import doubts_of, friction_records, inputs_of, is_default, materials_of
 from trackroller.roller.temperature import temperatures_of
 from trackroller.study.store.provenance import versions
 

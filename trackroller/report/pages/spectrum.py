@@ -35,7 +35,7 @@ from trackroller.report.tables.table import Table, cell
 from trackroller.report.terminal import print_table, print_text
 from trackroller.report.words.accuracy import flags_of
 from trackroller.report.words.spectrum import UNITS, known_damage, sentences
-from trackroller.roller.record import NOT_GIVEN, doubts_of
+from trackroller.roller.stored_inputs import NOT_GIVEN, doubts_of
 from trackroller.study.spectrum.file import LOAD_FIELDS
 
 

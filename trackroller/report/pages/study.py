@@ -27,7 +27,7 @@ from trackroller.results.looks import UNTIL
 from trackroller.results.results import Results
 from trackroller.roller.dataset import solved_by
 from trackroller.roller.doubts import doubts
-from trackroller.roller.record import NOT_GIVEN
+from trackroller.roller.stored_inputs import NOT_GIVEN
 from trackroller.study.store.seal import put_text, sealing
 
 OPTIONS = tuple(option.name for option in parameters.OPTIONS.values() if option.recorded)

@@ -17,7 +17,7 @@ from trackroller.report.tables.limits import placeholders
 from trackroller.report.tables.table import Table, cell
 from trackroller.report.words.accuracy import flags_of
 from trackroller.report.words.wear import deeper_contact, sentences
-from trackroller.roller.record import inputs_of, materials_of
+from trackroller.roller.stored_inputs import inputs_of, materials_of
 
 MOST = 12  # rows of the table
 SOLVED = 1e-6  # residual of a solved balance, over the normal force times the distance of the axes

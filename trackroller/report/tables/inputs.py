@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Any
 from trackroller.materials import Material
 from trackroller.materials.properties import ALTERNATIVES, PROPERTIES, REQUIRED
 from trackroller.parameters import MAPPING_FIELDS, MATERIAL_FIELDS, MECHANICAL_MAPPINGS, OF_LIMITS, PARAMETERS
-from trackroller.parameters.of_carriage import parameter_of
+from trackroller.parameters.carriage_fields import parameter_of
 from trackroller.report.numbers import capital, level_text, long_name, near, number, plain, rounded, row_unit, unit_text
 from trackroller.report.tables.table import Table
-from trackroller.roller.record import friction_records, is_default
+from trackroller.roller.stored_inputs import friction_records, is_default
 from trackroller.study.design.levels import NAMED, entries
 
 if TYPE_CHECKING:

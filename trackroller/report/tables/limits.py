@@ -22,8 +22,8 @@ from trackroller.report.words.by_tests import worst
 from trackroller.results.lives import past_data
 from trackroller.roller import temperature
 from trackroller.roller.limit_notes import Placeholder, given_in_vain, lacks_of, notes_of, placeholders_of
-from trackroller.roller.record import CASE, inputs_of
 from trackroller.roller.regime_limits import Limits
+from trackroller.roller.stored_inputs import CASE, inputs_of
 
 OVERLOADED = "tensile strength"  # in the reason why a body has no fatigue life
 YIELD = 1.6  # of the yield strength: the pressure at which a contact yields below its surface

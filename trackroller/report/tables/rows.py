@@ -31,6 +31,7 @@ LETTER = 7.3  # mean width of a letter of a table [px]
 WRAPPED = 24  # letters of a line of a text in a table
 LINES = 2  # of a text in a table
 WIDEST = 40  # letters of such a line; longer texts stand in the proof
+OF_RANGE = ("smallest", "median", "largest")  # columns of a row that has an output of its own
 NARROW_KINDS = ("ratio", "error")  # that a card of a narrow screen leaves out
 NARROW_NAMES = ("median", "best")
 WORDS = ("factor", "output")  # columns of words that name a row
@@ -193,7 +194,8 @@ def _percent(value: float) -> str:
 def _error_of(row: Mapping[Any, Any], column: Column) -> float:
     """Return the told error of the numbers of a row; it belongs to the output alone."""
     error = row.get("error")
-    return float(error) if error is not None and column.role == "bar" else math.nan
+    is_output = column.role == "bar" or column.name in OF_RANGE
+    return float(error) if error is not None and is_output else math.nan
 
 
 def _bounds(answer: Answer, column: Column) -> list[float]:
@@ -212,14 +214,14 @@ def _shared_text(answer: Answer, column: Column, row: Mapping[Any, Any]) -> str:
 
 
 @dataclass(frozen=True)
-class Fit:
+class ColumnSplit:
     """Which columns of a table stand on the first screen, and which ones in the proof."""
 
     shown: tuple[Column, ...]
     others: tuple[Column, ...]
 
 
-def fit_columns(answer: Answer, bars: bool, width: float = PAGE) -> Fit:
+def fit_columns(answer: Answer, bars: bool, width: float = PAGE) -> ColumnSplit:
     """Return the columns that fit a width, from the first one on; columns that name a row or are drawn stay."""
     shared = answer.shared
     left = width - (BARS if bars else 0.0)
@@ -237,7 +239,7 @@ def fit_columns(answer: Answer, bars: bool, width: float = PAGE) -> Fit:
     order = {column.name: place for place, column in enumerate(answer.columns)}
     shown.sort(key=lambda one: order[one.name])
     others.sort(key=lambda one: order[one.name])
-    return Fit(tuple(shown), tuple(others))
+    return ColumnSplit(tuple(shown), tuple(others))
 
 
 def _width(answer: Answer, column: Column) -> float:

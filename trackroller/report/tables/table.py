@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from trackroller.parameters.of_carriage import parameter_of
+from trackroller.parameters.carriage_fields import parameter_of
 from trackroller.report.numbers import (
     Life,
     capital,

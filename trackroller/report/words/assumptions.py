@@ -12,7 +12,7 @@ from trackroller.materials import Material
 from trackroller.materials.properties import PROPERTIES
 from trackroller.report.numbers import capital, listing, number, plain, unit_text
 from trackroller.report.tables.inputs import friction_source
-from trackroller.roller.record import friction_records
+from trackroller.roller.stored_inputs import friction_records
 
 ALWAYS = (
     "Dry contact: no lubricant and no dirt.",

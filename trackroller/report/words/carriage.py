@@ -11,7 +11,7 @@ from trackroller.parameters import REGIME_LABELS, REGIMES
 from trackroller.parameters.validity import VALIDITY
 from trackroller.report.numbers import lasting
 from trackroller.report.words.sentence import Sentence, say
-from trackroller.results.results import SAME_ENDS as SAME
+from trackroller.results.solved_cases import SAME_ENDS as SAME
 from trackroller.roller.dataset import validity_bit
 
 MARGINS = (("payload", "The payload"), ("loads", "All loads"))

@@ -10,7 +10,7 @@ from trackroller.parameters import BODIES
 from trackroller.report.numbers import lasting, quantity, rounded
 from trackroller.report.words.sentence import Sentence, phrase, say
 from trackroller.roller.limit_notes import placeholders_of
-from trackroller.roller.record import inputs_of
+from trackroller.roller.stored_inputs import inputs_of
 from trackroller.roller.wearing import ENDS
 
 

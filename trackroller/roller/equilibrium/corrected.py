@@ -7,9 +7,9 @@ from dataclasses import fields, replace
 
 import numpy as np
 
-from trackroller.contact.common import Resultants
+from trackroller.contact.quantities import Resultants
 from trackroller.roller.equilibrium.newton import Bounds, digits_of_forces, newton_polish, settled
-from trackroller.roller.equilibrium.roller import LAST_SLIP, ContactLaw, Loads, Roller
+from trackroller.roller.equilibrium.roller import LAST_SLIP, ContactLaw, Roller, RollerLoads
 from trackroller.roller.equilibrium.solution import FAILED, ROLLING, Equilibrium, solve_equilibrium
 
 ROUNDS = 6  # of correction at most
@@ -17,17 +17,17 @@ ROUNDS = 6  # of correction at most
 # would change the forces much less.
 SETTLED = 2e-3
 
-_ARRAYS = tuple(f.name for f in fields(Loads) if f.type == "np.ndarray")
+_ARRAYS = tuple(f.name for f in fields(RollerLoads) if f.type == "np.ndarray")
 # rollers (m,) and their equilibrium -> largest change of the law there (m,)
 Correct = Callable[[np.ndarray, Equilibrium], np.ndarray]
 
 
-def solve_corrected(loads: Loads, law: ContactLaw, correct: Correct) -> tuple[Equilibrium, np.ndarray]:
+def solve_corrected(loads: RollerLoads, law: ContactLaw, correct: Correct) -> tuple[Equilibrium, np.ndarray]:
     """Find the equilibrium of n rollers under a law that is corrected after each solution.
 
     Parameters
     ----------
-    loads : Loads
+    loads : RollerLoads
         Applied loads, friction and geometry, arrays (n,).
     law : ContactLaw
         The cheap law with its corrections.
@@ -60,11 +60,11 @@ def solve_corrected(loads: Loads, law: ContactLaw, correct: Correct) -> tuple[Eq
     return balance, np.union1d(rows, lost)
 
 
-def _rolling(balance: Equilibrium, loads: Loads, rows: np.ndarray) -> np.ndarray:
+def _rolling(balance: Equilibrium, loads: RollerLoads, rows: np.ndarray) -> np.ndarray:
     return rows[(balance.regime[rows] == ROLLING) & (loads.friction[rows] > 0.0)]
 
 
-def balance_again(loads: Loads, law: ContactLaw, rows: np.ndarray, balance: Equilibrium) -> Equilibrium:
+def balance_again(loads: RollerLoads, law: ContactLaw, rows: np.ndarray, balance: Equilibrium) -> Equilibrium:
     """Return `balance` with the rollers `rows` balanced again; the search starts from their last balance."""
     roller = Roller(loads, law, rows)
     bounds = Bounds(roller.w_of(-roller.radius), np.full(rows.size, LAST_SLIP))
@@ -87,7 +87,7 @@ def balance_again(loads: Loads, law: ContactLaw, rows: np.ndarray, balance: Equi
     return merged(found, lost, solve_some(loads, law, lost), np.arange(lost.size)) if lost.size else found
 
 
-def solve_some(loads: Loads, law: ContactLaw, rows: np.ndarray) -> Equilibrium:
+def solve_some(loads: RollerLoads, law: ContactLaw, rows: np.ndarray) -> Equilibrium:
     """Return the equilibrium of the rollers `rows`, searched without a start; arrays (m,)."""
 
     def numbered(ellipse, slip, friction, places, fine):

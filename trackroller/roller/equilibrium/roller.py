@@ -11,8 +11,8 @@ from functools import cached_property
 
 import numpy as np
 
-from trackroller.contact.common import Ellipse, Resultants
 from trackroller.contact.hertz import HertzShape
+from trackroller.contact.quantities import Ellipse, Resultants
 from trackroller.contact.slip import Slip
 from trackroller.contact.wedge import determinant
 
@@ -25,7 +25,7 @@ ContactLaw = Callable[[Ellipse, Slip, np.ndarray, np.ndarray, bool], Resultants]
 
 
 @dataclass(frozen=True)
-class Loads:
+class RollerLoads:
     """Loads and kinematics of n rollers, arrays (n,) in N, mm and rad.
 
     Attributes
@@ -88,7 +88,7 @@ class Loads:
 class Roller:
     """The equations of m rollers, the rows `rows` of the loads."""
 
-    def __init__(self, loads: Loads, law: ContactLaw, rows: np.ndarray) -> None:
+    def __init__(self, loads: RollerLoads, law: ContactLaw, rows: np.ndarray) -> None:
         self.loads, self.rows, self.law, self.step = loads, rows, law, loads.difference_step
         self.goal = TOLERANCE * loads.converged
         self.radial_force, self.axial_force = loads.radial_force[rows], loads.axial_force[rows]

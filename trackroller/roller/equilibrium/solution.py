@@ -12,13 +12,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from trackroller.contact.common import Resultants
+from trackroller.contact.quantities import Resultants
 from trackroller.contact.sliding import tractions_full_slip
 from trackroller.parameters import REGIMES
 from trackroller.roller.equilibrium.branch import follow_friction, self_locking
 from trackroller.roller.equilibrium.falling import balance_again, first_balance
 from trackroller.roller.equilibrium.newton import Bounds, Solution, bracketed, digits_of_forces, newton_polish, settled
-from trackroller.roller.equilibrium.roller import LAST_SLIP, ContactLaw, Loads, Roller
+from trackroller.roller.equilibrium.roller import LAST_SLIP, ContactLaw, Roller, RollerLoads
 
 ROLLING, FULL_SLIP, LIFT_OFF, FAILED = (REGIMES.index(name) for name in ("rolling", "full_slip", "lift_off", "failed"))
 # Largest residual of a solution. Where friction falls steeply, a patch has many states of adhesion and slip; its forces
@@ -98,12 +98,12 @@ class _Answer:
         return Equilibrium(self.regime, converged, self.residual, self.jamming, self.shift, self.normal.T, forces)
 
 
-def solve_equilibrium(loads: Loads, law: ContactLaw) -> Equilibrium:
+def solve_equilibrium(loads: RollerLoads, law: ContactLaw) -> Equilibrium:
     """Solve for the normal forces, the slip and the friction resultants of n rollers.
 
     Parameters
     ----------
-    loads : Loads
+    loads : RollerLoads
         Applied loads, friction and geometry, arrays (n,).
     law : ContactLaw
         Contact law; with `fine=False` it may be cheap and rough.
@@ -133,7 +133,7 @@ def solve_equilibrium(loads: Loads, law: ContactLaw) -> Equilibrium:
     return answer.equilibrium(loads.converged)
 
 
-def _solve_rolling(loads: Loads, law: ContactLaw, rows: np.ndarray, answer: _Answer) -> np.ndarray:
+def _solve_rolling(loads: RollerLoads, law: ContactLaw, rows: np.ndarray, answer: _Answer) -> np.ndarray:
     """Fill the rolling rows of `answer`; return the rows whose friction cannot transmit the drive torque."""
     friction = np.ones_like(loads.friction)
     friction[rows] = np.where(loads.friction[rows] > 0, loads.friction[rows], LIMIT_FRICTION)
@@ -249,7 +249,7 @@ def _forces_at(roller: Roller, w: np.ndarray) -> np.ndarray:
     return roller.contact(roller.shift(w), normal, True)
 
 
-def _solve_full_slip(loads: Loads, law: ContactLaw, rows: np.ndarray, answer: _Answer) -> None:
+def _solve_full_slip(loads: RollerLoads, law: ContactLaw, rows: np.ndarray, answer: _Answer) -> None:
     """Fill the rows of `answer` that slip completely along the track.
 
     ASSUME: the slip speed is beyond the range of the friction law, so that friction has its value at high speed.

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from trackroller.contact.common import Patch, Resultants
+from trackroller.contact.quantities import Patch, Resultants
 from trackroller.contact.slip import Slip
 from trackroller.roller import equilibrium as eq
 from trackroller.roller.equilibrium.corrected import balance_again, merged, solve_corrected, solve_some

@@ -16,7 +16,7 @@ from trackroller.halfspace.ellipse import FIELD, NO_FIELD, patch_rows, stress_pa
 from trackroller.halfspace.peak import LITTLE_FRICTION, Peak, find_peaks
 from trackroller.halfspace.peak_settings import PeakSettings
 from trackroller.halfspace.stress import body_stress
-from trackroller.roller.requirements import distinct_rows, normalised_patches
+from trackroller.roller.distinct_contacts import distinct_rows, normalised_patches
 from trackroller.roller.stages.patch_stresses import PatchStresses
 from trackroller.roller.stages.scene import surface_tractions
 

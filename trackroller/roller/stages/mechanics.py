@@ -9,20 +9,20 @@ from dataclasses import replace
 
 import numpy as np
 
-from trackroller.contact.common import Elastic, error_of_work
 from trackroller.contact.drawn_profiles import inclined
 from trackroller.contact.friction_laws import law_of
 from trackroller.contact.hertz import contact_modulus, shape
 from trackroller.contact.normal.patches import Boxes
+from trackroller.contact.quantities import Elastic, error_of_work
 from trackroller.contact.slip import pole_rolling, turning_of
 from trackroller.contact.wedge import determinant, own_change
 from trackroller.numerics.numbers import rounded
 from trackroller.roller import equilibrium as eq
 from trackroller.roller.case import CaseTable
+from trackroller.roller.distinct_contacts import Mirror, is_frictionless, is_mirror_symmetric
 from trackroller.roller.expected_errors import expected_errors
 from trackroller.roller.geometry import contact_geometry, lever_arms
 from trackroller.roller.options import Options
-from trackroller.roller.requirements import Mirror, is_frictionless, is_mirror_symmetric
 from trackroller.roller.stages.models import bodies, model_of
 from trackroller.roller.stages.scene import Scene, StageResults, surface_tractions
 from trackroller.roller.stop import stops_at
@@ -60,7 +60,7 @@ def prepare(table: CaseTable, options: Options, across: int = 1, near: Boxes | N
         hertz = replace(hertz, lateral=np.where(np.isnan(turning), np.nan, hertz.lateral))
     law = law_of(table.friction_law[0] if len(table) else None)
     model = model_of(table, options, r_a, law, table.velocity * MM_PER_S, across, near)
-    loads = eq.Loads(
+    loads = eq.RollerLoads(
         rounded(table.radial_force / unit**2),
         rounded(table.axial_force / unit**2),
         rounded(table.motor_force / unit**2),

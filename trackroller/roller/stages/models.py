@@ -8,14 +8,14 @@ from typing import Any
 
 import numpy as np
 
-from trackroller.contact.common import Elastic
 from trackroller.contact.drawn_profiles import gap, has_details, smoothed_otherwise, treats_sides_alike
 from trackroller.contact.friction_laws import FrictionLaw
 from trackroller.contact.hertz import contact_modulus
 from trackroller.contact.models import contact_model
 from trackroller.contact.normal.family import Family, nearest_lattice
-from trackroller.contact.normal.patches import Boxes, GapOf, Patches
+from trackroller.contact.normal.patches import Boxes, GapOf, NormalSolver
 from trackroller.contact.protocol import ContactModel
+from trackroller.contact.quantities import Elastic
 from trackroller.errors import ShapeError
 from trackroller.roller.case import CaseTable
 from trackroller.roller.geometry import contact_geometry
@@ -76,10 +76,10 @@ def _elements(options: Options) -> int:
 
 def _patches(
     table: CaseTable, options: Options, rolling_radius: np.ndarray, across: int, near: Boxes | None
-) -> Patches:
+) -> NormalSolver:
     """Return the solver of the normal problem. It solves contacts with the same gap only once."""
     gaps = _gaps(table, rolling_radius)
-    return Patches(gaps, contact_modulus(*bodies(table)), _elements(options), across, near)
+    return NormalSolver(gaps, contact_modulus(*bodies(table)), _elements(options), across, near)
 
 
 def finer_across(table: CaseTable, options: Options) -> np.ndarray:

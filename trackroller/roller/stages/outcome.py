@@ -12,19 +12,20 @@ import numpy as np
 from trackroller.contact.drawn_profiles import gap
 from trackroller.contact.slip import pole_split
 from trackroller.damage import LIMITS, computed, judged, verdict
-from trackroller.damage.histories import Tractions
+from trackroller.damage.histories import RollerTractions
 from trackroller.damage.limit import TRACTIONS, Limit, SolvedRollers, Verdict
 from trackroller.damage.wear import KM_PER_HOUR
+from trackroller.halfspace.tractions import Tractions
 from trackroller.numerics.rows import distinct
 from trackroller.parameters import CONTACT_MODELS, MAPPING_FIELDS, PARAMETERS
 from trackroller.parameters.validity import VALIDITY
 from trackroller.roller.case import CaseTable
+from trackroller.roller.case_table import TEXTS
 from trackroller.roller.geometry import rolling_radius
 from trackroller.roller.stages.scene import StageResults, surface_tractions
-from trackroller.roller.table import TEXTS
 
 if TYPE_CHECKING:
-    from trackroller.roller.blocks import Block
+    from trackroller.roller.block_results import Block
     from trackroller.roller.options import Options
 
 LIFE_CONVENTIONS = (
@@ -155,12 +156,12 @@ def patch_limits(results: StageResults, options: Options, wanted: tuple[Limit, .
     if not own and not shared:
         return
 
-    def fields() -> Tractions:
+    def fields() -> RollerTractions:
         t = surface_tractions(results)
-        names = [field.name for field in dataclasses.fields(Tractions) if field.name != "mirrored"]
+        names = [field.name for field in dataclasses.fields(Tractions)]
         own = {name: results.full(getattr(t, name)) for name in names}
         own |= {name: own[name] * scene.unit[:, None, None] for name in ("x", "y")}
-        return Tractions(**own, mirrored=scene.mirror.symmetric)
+        return RollerTractions(**own, mirrored=scene.mirror.symmetric)
 
     solved = dataclasses.replace(solved_of(scene.table, results.values, options, results.regime), tractions=fields)
     for limit in own:

@@ -10,13 +10,13 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from trackroller.contact.common import Patch, Resultants, SurfaceTractions
 from trackroller.contact.protocol import ContactModel
+from trackroller.contact.quantities import Patch, Resultants, SurfaceTractions
 from trackroller.contact.slip import Slip
 from trackroller.roller import equilibrium as eq
 from trackroller.roller.case import CaseTable
 from trackroller.roller.dataset import VARIABLES, validity_bit
-from trackroller.roller.requirements import Mirror
+from trackroller.roller.distinct_contacts import Mirror
 
 JAMMING = validity_bit("jamming")
 _LENGTHS = {"mm": 1, "mm2": 2, "N": 2, "J m-1": 2, "N mm": 3}  # N = MPa mm2, J m-1 = N
@@ -40,7 +40,7 @@ class Scene:
     """
 
     table: CaseTable
-    loads: eq.Loads
+    loads: eq.RollerLoads
     model: ContactModel
     unit: np.ndarray
     mirror: Mirror

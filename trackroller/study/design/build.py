@@ -18,8 +18,8 @@ from trackroller.methods import METHODS, Design
 from trackroller.methods.factor import parse, readable
 from trackroller.methods.method import study_keys
 from trackroller.parameters import FRICTION_LEVELS, MAPPING_FIELDS, MATERIAL_FIELDS, PARAMETERS
+from trackroller.parameters.carriage_fields import field_of, long_name_of
 from trackroller.parameters.example import EXAMPLE
-from trackroller.parameters.of_carriage import field_of, long_name_of
 from trackroller.roller.fields import own_frictions
 from trackroller.study.design.roles import scattered
 from trackroller.study.design.sampling import sample

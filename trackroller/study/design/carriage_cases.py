@@ -21,7 +21,7 @@ from trackroller.carriage.lives import Lives, hours_per_km
 from trackroller.carriage.solve import forces_of
 from trackroller.errors import InputError
 from trackroller.parameters import MATERIAL_FIELDS, PARAMETERS, REGIMES
-from trackroller.parameters.of_carriage import field_of
+from trackroller.parameters.carriage_fields import field_of
 from trackroller.roller.settings import LOADS
 from trackroller.study.design.build import build, columns_of, dataset_of
 from trackroller.study.design.entries import GEOMETRY

@@ -14,7 +14,7 @@ from trackroller.methods.factor import LISTS, parse
 from trackroller.numerics.numbers import number_or_nan
 from trackroller.numerics.parameter import Parameter
 from trackroller.parameters import MAPPING_FIELDS, MATERIAL_FIELDS, OPTIONS, PARAMETERS, expressions
-from trackroller.parameters.of_carriage import OF_LOAD_CASE, OF_WHOLE, PREFIX, field_of
+from trackroller.parameters.carriage_fields import OF_LOAD_CASE, OF_WHOLE, PREFIX, field_of
 from trackroller.roller.aliases import ALIASES, RADII
 from trackroller.roller.dataset import FLAGS, VARIABLES
 from trackroller.roller.fields import mapping_text

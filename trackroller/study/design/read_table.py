@@ -13,13 +13,14 @@ import numpy as np
 from trackroller.errors import Collector, InputError, contained, listing, nearest, unknown_name
 from trackroller.files import read_bytes
 from trackroller.methods.factor import column
-from trackroller.numerics.cells import Refused, Stored, is_number, split_head
 from trackroller.numerics.numbers import read_number
+from trackroller.numerics.table_cells import Refused, Stored, is_number, split_head
 from trackroller.numerics.units import PLAIN, in_unit
 from trackroller.parameters import PARAMETERS
 from trackroller.roller.aliases import AXIS_DISTANCE, RADII
 from trackroller.study.design.entries import FACTOR_NAMES, check_own_name, field_value
-from trackroller.study.file.user_table import UserTable, read_table
+from trackroller.study.file.user_columns import read_table
+from trackroller.tables.user_table import UserTable
 
 
 def table(path: Any, used: Collection[str] = ()) -> dict[str, np.ndarray]:

@@ -28,7 +28,7 @@ from trackroller.study.file.goals import check, check_scatter
 from trackroller.study.file.search import check_search
 from trackroller.study.file.study import Study
 from trackroller.study.file.until import check_first_look, check_until
-from trackroller.study.file.user_table import column_names
+from trackroller.study.file.user_columns import column_names
 
 if TYPE_CHECKING:
     from trackroller.materials import Material, MaterialDatabase

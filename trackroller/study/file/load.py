@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import warnings
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
@@ -19,11 +18,9 @@ from trackroller.files import files_beside, find_beside, noted_reads, read_text
 from trackroller.materials import load_database
 from trackroller.numerics.plain import mapping_of
 from trackroller.parameters import MATERIAL_FIELDS
+from trackroller.parameters.carriage_fields import field_of
 from trackroller.parameters.example import not_given
-from trackroller.parameters.of_carriage import field_of
 from trackroller.roller.aliases import ALIASES, study_with_radii
-from trackroller.roller.output_names import present_names
-from trackroller.roller.record import NOT_GIVEN
 from trackroller.study.design.carriage_cases import common_values, given_by
 from trackroller.study.file.checks import check_cells, check_geometry, cross_check, named_materials
 from trackroller.study.file.config import StudyFile
@@ -31,7 +28,7 @@ from trackroller.study.file.goals import Analysis, check_analysed, to_first_limi
 from trackroller.study.file.search import Budget
 from trackroller.study.file.study import Study
 from trackroller.study.file.until import Until
-from trackroller.study.file.user_table import column_names
+from trackroller.study.file.user_columns import column_names
 from trackroller.yaml_file import errors_by_line, parse_mapping
 
 if TYPE_CHECKING:
@@ -50,14 +47,7 @@ EXAMPLES = {  # of keys that are mappings or lists
     "own": "{heat_per_force: friction_power_2 / normal_force_2}",
 }
 ROOMS = {"analysis": Analysis.model_fields, "until": Until.model_fields, "budget": Budget.model_fields}
-NAMING = ("analysis", "requirement", "own", "pareto", "goals", "constraints", "until")  # keys that name results
 OTHER_NAMES = {"design": "method", "analysis.target": "requirement"}  # keys that have two names, and today's name
-FORMER = ("measures", "resamples")  # keys of `analysis` that studies of earlier versions hold
-FORMER_KEYS = {  # keys of the study itself that earlier versions held, and what the program does now
-    "exchange": "saltelli exchanges the groups of analysis.groups",
-    "grown_from": "a Latin hypercube is drawn at once, and the samples of design sobol grow",
-    "point_samples": "the plan of a study remembers how far `until` has grown its sample",
-}
 
 
 def _translated(detail: Mapping[str, Any]) -> InputError:
@@ -84,32 +74,6 @@ def _translated(detail: Mapping[str, Any]) -> InputError:
     if where == "table" and isinstance(detail.get("input"), (list, dict)):
         remedy = "Write the table to a file, as frame.to_csv('cases.csv', index=False), and give the path: cases.csv."
     return InputError(where, detail.get("input"), allowed, remedy)
-
-
-def former_defaults(data: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the values that an earlier version stated for parameters that a study file does not name."""
-    named = {*_mapping(data.get("base")), *_mapping(data.get("factors"))}
-    return {name: value for name, value in _mapping(data.get(NOT_GIVEN)).items() if name not in named}
-
-
-def without_former(data: Mapping[str, Any]) -> Mapping[str, Any]:
-    """Return a study file without keys of earlier versions.
-
-    The values of `not_given` join those of `base`. A warning names other keys, which chose nothing else.
-    """
-    if NOT_GIVEN in data:
-        base = {**_mapping(data.get("base")), **former_defaults(data)}
-        data = {key: value for key, value in data.items() if key != NOT_GIVEN} | {"base": base}
-    given = _mapping(data.get("analysis"))
-    former = [f"analysis.{key}" for key in FORMER if key in given] + [key for key in FORMER_KEYS if key in data]
-    if not former:
-        return data
-    now = ["every analysis takes all its measures, and 300 resamples"] if former[0].startswith("analysis.") else []
-    now += [words for key, words in FORMER_KEYS.items() if key in data]
-    warnings.warn(f"Ignored: {' and '.join(former)}, because {'; '.join(now)}.", stacklevel=4)
-    kept = {key: value for key, value in data.items() if key not in FORMER_KEYS}
-    own = {key: value for key, value in given.items() if key not in FORMER}
-    return kept | ({"analysis": own} if given else {})
 
 
 def with_present_keys(data: Mapping[str, Any]) -> dict[str, Any]:
@@ -155,40 +119,10 @@ def _renamed(error: InputError, names: Mapping[str, str]) -> InputError:
     return error.named(f"{names[head]}{dot}{tail}") if head in names else error
 
 
-def with_present_names(data: Mapping[str, Any], former: set[str] | None = None) -> dict[str, Any]:
-    """Return a study file in which results have the names of today; texts that change are added to `former`."""
-
-    def present(text: str) -> str:
-        now = present_names(text)
-        if former is not None and now != text:
-            former.add(text)
-        return now
-
-    def renamed(value: Any) -> Any:
-        if isinstance(value, str):
-            return present(value)
-        if isinstance(value, Mapping):
-            return {present(str(name)): renamed(own) for name, own in value.items()}
-        return [renamed(one) for one in value] if isinstance(value, (list, tuple)) else value
-
-    return {key: renamed(value) if key in NAMING else value for key, value in data.items()}
-
-
-def _check_names_of_results(data: Mapping[str, Any], wrong: Collector) -> None:
-    """Refuse names of results as earlier versions wrote them."""
-    for key in NAMING:
-        former: set[str] = set()
-        with_present_names({key: data.get(key)}, former)
-        for text in sorted(former):
-            allowed = "names of results as tables have them"
-            wrong.errors.append(InputError(key, text, allowed, f"Write {present_names(text)}."))
-
-
 def checked_keys(data: Mapping[str, Any]) -> StudyFile:
     """Return the keys of a study file, each checked by itself; raise `InputError` if one is wrong."""
     wrong = Collector()
-    _check_names_of_results(data, wrong)
-    data = study_with_radii(with_present_keys(without_former(data)), wrong)
+    data = study_with_radii(with_present_keys(data), wrong)
     try:
         config: StudyFile = StudyFile.model_validate(dict(data))
         wrong.check()
@@ -212,13 +146,12 @@ def _mapping(value: Any) -> Mapping[str, Any]:
     return value if isinstance(value, Mapping) else {}
 
 
-def complete(study: Study, former: Collection[str] = ()) -> Study:
+def complete(study: Study) -> Study:
     """Return a study whose key `base` holds a value of every parameter that varies in no factor.
 
     Parameters
     ----------
     study : the study as its file states it
-    former : parameters that an earlier version has completed already
     """
     config = study.config
     names = {*config.base, *study.factors}
@@ -233,7 +166,7 @@ def complete(study: Study, former: Collection[str] = ()) -> Study:
     if config.until is not None and "samples" not in config.model_fields_set:
         update["samples"] = config.until.replicates * config.method.first_look
     update |= to_first_limit(config)
-    return replace(study, config=config.model_copy(update=update), not_given=(*former, *values))
+    return replace(study, config=config.model_copy(update=update), not_given=tuple(values))
 
 
 def _on_carriage(study: Study, whole: Carriage, names: set[str]) -> tuple[dict[str, Any], dict[str, Any]]:
@@ -301,7 +234,7 @@ def parse_study(
                 base, factors = (_mapping(data.get(key)) for key in ("base", "factors"))
                 named_materials(base, factors, database or load_database())
             wrong.check()
-        study = complete(Study(config, path, database, inputs), former_defaults(data))
+        study = complete(Study(config, path, database, inputs))
         with wrong.part():
             cross_check(study)
         with wrong.part():

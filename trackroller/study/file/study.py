@@ -16,7 +16,7 @@ from trackroller.materials import MaterialDatabase, load_database
 from trackroller.methods.factor import Factor, parse
 from trackroller.parameters import MATERIAL_FIELDS
 from trackroller.roller.doubts import doubts
-from trackroller.roller.record import NOT_GIVEN
+from trackroller.roller.stored_inputs import NOT_GIVEN
 from trackroller.study.design import build, carriage_cases
 from trackroller.study.design.entries import OPTION_FACTORS
 from trackroller.study.file.config import IN_STUDY, StudyFile

@@ -41,7 +41,8 @@ from trackroller.roller.case import FIELDS, Case
 from trackroller.roller.duty import checked_duty
 from trackroller.roller.geometry import rolling_radius
 from trackroller.roller.options import Options
-from trackroller.study.file.user_table import UserTable, read_table
+from trackroller.study.file.user_columns import read_table
+from trackroller.tables.user_table import UserTable
 from trackroller.yaml_file import errors_by_line, parse_mapping
 
 # what the use of the roller sets; placeholders and worn profiles are the same in all blocks

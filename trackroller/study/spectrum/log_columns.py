@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import codecs
+import csv
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
@@ -13,11 +14,12 @@ import pandas as pd
 
 from trackroller.errors import Collector, InputError
 from trackroller.files import opened
-from trackroller.numerics.cells import Refused, decimal_signs, plain_column
 from trackroller.numerics.numbers import number_or_nan
+from trackroller.numerics.table_cells import Refused, decimal_signs, plain_column
 from trackroller.numerics.units import in_unit, split_quantity
 from trackroller.roller.log_answers import LogAnswers
-from trackroller.study.file.user_table import UserTable, is_workbook, read_table
+from trackroller.study.file.user_columns import read_table
+from trackroller.tables.user_table import UserTable, is_workbook
 
 COLUMNS = {"time": "s", "distance": "m", "radial_force": "N", "axial_force": "N", "velocity": "m/min", "speed": "m/s"}
 FIELD = "--from"
@@ -128,8 +130,10 @@ def _pieces(path: Path, heads: UserTable) -> Iterator[tuple[np.ndarray, dict[str
         return
     first_line = next(iter(heads.lines))
     with opened(path, FIELD, MOST_BYTES, SMALLER) as stream:
-        wide = stream.read(2) in UTF_16
+        first = stream.read(FIRST_BYTES)
+        wide = first.startswith(UTF_16)
         _refuse_zeros(stream, path, wide)
+    quoted = '"'.encode("utf-16-le") in first if wide else b'"' in first
     try:
         with pd.read_csv(
             path,
@@ -141,6 +145,8 @@ def _pieces(path: Path, heads: UserTable) -> Iterator[tuple[np.ndarray, dict[str
             keep_default_na=False,
             skip_blank_lines=False,
             skipinitialspace=True,
+            # without quotes in the first lines a mark further down is a letter, which no number has
+            quoting=csv.QUOTE_MINIMAL if quoted else csv.QUOTE_NONE,
             encoding="utf-16" if wide else "utf-8-sig",
             chunksize=PIECE,
         ) as reader:
@@ -158,7 +164,10 @@ def _pieces(path: Path, heads: UserTable) -> Iterator[tuple[np.ndarray, dict[str
 
 def _refuse_zeros(stream: object, path: Path, wide: bool) -> None:
     """Refuse zero bytes, at which a reader of CSV would end a cell."""
-    while not wide and (piece := stream.read(1 << 22)):  # type: ignore[attr-defined]
+    if wide:
+        return
+    stream.seek(0)  # type: ignore[attr-defined]
+    while piece := stream.read(1 << 22):  # type: ignore[attr-defined]
         if b"\0" in piece:
             remedy = "Save the file as UTF-8."
             raise InputError(FIELD, str(path), "a text", remedy, "holds zero bytes, so it is no text")

@@ -21,6 +21,8 @@ MOSTLY = 0.5  # of the lines: radial forces above 0 in more of them have another
 SMALL = 1.0  # N: a force that stays below is more likely in kN
 FAR = 3.0  # times the range of all other values: a value that repeats there is more likely a mark than a load
 CLIPPED = 0.03  # of the lines at exactly the largest load
+FROZEN = 20  # lines on end with the same load
+STEADY = 0.5  # of the other lines that repeat the load before: a load that is often constant is not frozen
 FEW = 0.03  # of the lines
 MOST_OF_IT = 0.8  # of a sum that these lines hold
 MARKS = (6999.0, 7999.0)  # of loggers, beside 9999, 8888, limits of whole numbers and numbers from 1e20 on
@@ -63,6 +65,8 @@ TOLD = {
     "drift": "{column} drifts: its median moves by {value:.4g} N from the first to the last fifth.",
     "clipped": "{column} stands at exactly its largest load, {value:.4g} N, in {share:.3g} % of the lines, the first "
     "line {line}: a sensor at the end of its range hides larger loads.",
+    "frozen": "{column} stands at exactly {value:.4g} N in {counted} on end, the first line {line}, while it changes "
+    "from line to line otherwise: a sensor that has stopped hides the loads.",
     "few_lines": "{counted}, the first line {line}, hold {share:.3g} % of {sum}: the life rests on them.",
 }
 COUNTED = {  # one, and several
@@ -77,6 +81,7 @@ COUNTED = {  # one, and several
     "jump": ("once", "{} times"),
     "spike": ("1 spike", "{} spikes"),
     "speed_spike": ("1 spike", "{} spikes"),
+    "frozen": ("1 line", "{} lines"),
     "few_lines": ("1 line", "{} lines"),
 }
 UNITS = {"m/s": 60.0, "km/h": 1e3 / 60, "m/min": 1.0, "mm/s": 0.06, "mm/min": 1e-3}  # in m/min
@@ -234,7 +239,8 @@ def force_doubts(column: str, force: np.ndarray, size: float, lines: np.ndarray)
         worst = spikes[np.argmax(np.abs(force[spikes]))]
         values = {"column": column, "value": float(force[worst]), "unit": "N"}
         doubts.append(Doubt("spike", int(spikes.size), int(lines[worst]), values))
-    doubts += _clipped(column, force, lines)
+    clipped = _clipped(column, force, lines)
+    doubts += clipped or _frozen(column, force, lines)
     fifth = max(1, force.size // 5)
     spread = float(np.ptp(np.percentile(force, [5, 95])))
     moved = float(np.median(force[-fifth:]) - np.median(force[:fifth]))
@@ -257,6 +263,21 @@ def _clipped(column: str, force: np.ndarray, lines: np.ndarray) -> list[Doubt]:
         values = {"column": column, "value": float(different[end]), "share": 100 * float(np.mean(here))}
         doubts.append(Doubt("clipped", int(counts[end]), int(lines[np.argmax(here)]), values))
     return doubts
+
+
+def _frozen(column: str, force: np.ndarray, lines: np.ndarray) -> list[Doubt]:
+    """Return a doubt if a force other than 0 stands still for many lines, but changes in most of the others."""
+    starts = np.flatnonzero(np.append(True, np.diff(force) != 0))
+    sizes = np.diff(np.append(starts, force.size))
+    sizes = np.where(force[starts] == 0, 0, sizes)
+    longest = int(np.argmax(sizes))
+    size = int(sizes[longest])
+    others = np.delete(sizes, longest)
+    repeated = float((others[others > 1] - 1).sum()) / max(force.size - size, 1)
+    if size < FROZEN or not others.size or repeated > STEADY:
+        return []
+    first = int(starts[longest])
+    return [Doubt("frozen", size, int(lines[first]), {"column": column, "value": float(force[first])})]
 
 
 def few_lines(effects: np.ndarray, lines: np.ndarray, what: str) -> list[Doubt]:

@@ -24,7 +24,7 @@ from trackroller.parameters import BODIES, PARAMETERS
 from trackroller.roller.case import Case, to_table
 from trackroller.roller.doubts import doubts
 from trackroller.roller.duty import with_duty
-from trackroller.roller.record import DOUBTS, NOT_GIVEN, material_values, plain_inputs
+from trackroller.roller.stored_inputs import DOUBTS, NOT_GIVEN, material_values, plain_inputs
 from trackroller.roller.temperature import temperatures_of
 from trackroller.study.spectrum.file import LOAD_FIELDS, Spectrum, overrollings_per_shift
 

@@ -30,8 +30,8 @@ from trackroller.materials import MaterialDatabase
 from trackroller.parameters import MAPPING_FIELDS, OPTIONS, PARAMETERS
 from trackroller.parameters.contact_models import DECLARED
 from trackroller.roller.case import CaseTable, MaterialArrays, to_table
+from trackroller.roller.case_table import TEXTS
 from trackroller.roller.options import options_of_cases
-from trackroller.roller.table import TEXTS
 from trackroller.study.design.carriage_cases import ROW
 from trackroller.study.store.sources import solver_digest
 

@@ -13,7 +13,7 @@ from trackroller.methods import Design
 from trackroller.methods.factor import Factor, readable
 from trackroller.numerics.numbers import all_equal
 from trackroller.parameters import FRICTION_LEVELS, MATERIAL_FIELDS
-from trackroller.roller.record import MATERIALS, materials_of_design
+from trackroller.roller.stored_inputs import MATERIALS, materials_of_design
 from trackroller.study.design.carriage_cases import of_worst_rollers
 from trackroller.study.design.stored import FACTOR, META, PLACE
 from trackroller.study.store import provenance

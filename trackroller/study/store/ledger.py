@@ -32,7 +32,6 @@ from trackroller.study.design.build import case_columns
 from trackroller.study.design.growth import sample_of
 from trackroller.study.design.levels import in_words
 from trackroller.study.file.config import check_name
-from trackroller.study.file.load import without_former
 from trackroller.study.store import chunks, digests, ownership
 from trackroller.study.store.folder import StudyFolder, Tell, unheard, wait_for_lock
 from trackroller.study.store.identity import Cases, chunk_name, solver_and_materials
@@ -382,7 +381,7 @@ def _plan(study: Study, folder: StudyFolder, tell: Tell, rerun_failed: bool) -> 
 
 def _check_same_study(study: Study, folder: StudyFolder) -> None:
     """Refuse the folder of another study that was given the name of this one; a study may have been renamed itself."""
-    earlier, now = without_former(folder.earlier()), parse_mapping(study.merged(), "study file")
+    earlier, now = folder.earlier(), parse_mapping(study.merged(), "study file")
     other = earlier.get("name", study.name)
     if other != study.name and any(earlier.get(key) != now.get(key) for key in ("base", "factors")):
         remedy = "Give this study another name, choose another --results, or rename the folder."

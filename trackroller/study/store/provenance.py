@@ -16,7 +16,7 @@ from trackroller import __version__
 from trackroller.damage.own import digests
 from trackroller.parameters import OPTIONS
 from trackroller.roller.dataset import file_attributes
-from trackroller.roller.record import NOT_GIVEN
+from trackroller.roller.stored_inputs import NOT_GIVEN
 from trackroller.study.store.folder import STORE_FORMAT
 from trackroller.study.store.sources import solver_digest
 

@@ -43,6 +43,7 @@ ROOMS = (  # a room imports from the rooms before it only
     "files",
     "yaml_file",
     "numerics",
+    "tables",
     "halfspace",
     "damage",
     "parameters",

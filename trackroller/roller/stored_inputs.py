@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
     from trackroller.materials import MaterialDatabase
-    from trackroller.roller.table import CaseTable
+    from trackroller.roller.case_table import CaseTable
 
 CASE, MATERIALS = "case", "materials"  # names of attributes, JSON both
 NOT_GIVEN = "not_given"  # attribute: JSON list of the parameters that were not given

@@ -92,16 +92,14 @@ def decimal_signs(cells: Iterable[str]) -> frozenset[str]:
         Empty if no cell decides.
     """
     texts = [cell for cell in cells if not isinstance(cell, Stored)]
-    pairs = ((".", ","), (",", "."))
-    return frozenset(
-        sign
-        for sign, other in pairs
-        if any((sign in cell or cell.count(other) > 1) and _shows(cell, sign) for cell in texts)
-    )
+    return frozenset(sign for sign in ".," if any(_shows(cell, sign) for cell in texts))
 
 
 def _shows(cell: str, sign: str) -> bool:
     """Return whether a sign certainly stands before the decimals of a cell."""
+    other = "," if sign == "." else "."
+    if sign not in cell and cell.count(other) < 2:  # as most cells, which need no parsing
+        return False
     parts = _parts(_tidy(cell))
     return parts is not None and parts.certain and parts.mark == sign
 
@@ -141,10 +139,13 @@ def plain_cell(cell: str, signs: Collection[str]) -> str:
         if len(signs) != 1:
             both = f"{whole}.{decimals} or {whole}{decimals}"
             why = f"a number that is clear: other cells do not tell whether this is {both}"
-            raise AmbiguousNumber(why, f"Write {sign}{whole}{decimals} or {sign}{whole}{mark}{decimals}0.")
+            clear = f"{sign}{whole}{mark}{decimals}0"
+            remedy = f"Write {sign}{whole}{decimals} or {clear}; one number such as {clear} decides for the whole file."
+            raise AmbiguousNumber(why, remedy)
         if mark not in signs:
             whole, decimals = whole + decimals, ""
-    return f"{sign.strip('+')}{whole}{'.' * bool(decimals)}{decimals}{rest}"
+    number = f"{whole}.{decimals}" if decimals else whole
+    return f"{sign.strip('+')}{number}{rest}"
 
 
 def plain_quantity(text: str) -> str:
@@ -222,14 +223,16 @@ def plain_labels(cells: Sequence[str], signs: Collection[str]) -> Sequence[str]:
     for cell in cells:
         number = cell
         if not fast and not isinstance(cell, Stored):
-            try:
-                number = plain_cell(cell, signs) if is_number(cell) else ""
-            except AmbiguousNumber:
-                return cells
-        if not isinstance(cell, Stored) and not (_reads_back(number) and number == cell.replace(",", ".")):
+            number = _plain_or_refused(cell, signs)
+        if not isinstance(cell, Stored) and not _is_written_as(cell, number):
             return cells
         numbers.append(Stored(number))
     return numbers
+
+
+def _is_written_as(cell: str, number: str) -> bool:
+    """Return whether a cell is written as its number is, but for the decimal sign."""
+    return not isinstance(number, Refused) and number == cell.replace(",", ".") and _reads_back(number)
 
 
 def _reads_back(text: str) -> bool:

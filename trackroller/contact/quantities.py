@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, ClassVar, Literal, Protocol, Self
 
 import numpy as np
 
+from trackroller.halfspace.tractions import Tractions
 from trackroller.numerics.rows import Rows
 
 if TYPE_CHECKING:
@@ -199,28 +200,15 @@ class Elastic(Rows):
 
 
 @dataclass(frozen=True)
-class SurfaceTractions:
-    """Tractions on the roller over a grid of each patch.
+class SurfaceTractions(Tractions):
+    """Tractions on the roller over a grid of each of n patches, and where the surfaces stick.
 
     Attributes
     ----------
-    x, y : numpy.ndarray, shape (n, nx) and (n, ny)
-        Coordinates of the grid [mm].
-    pressure, shear_lateral, shear_rolling : numpy.ndarray, shape (n, ny, nx)
-        Tractions [MPa].
-    slip_lateral, slip_rolling : numpy.ndarray, shape (n, ny, nx)
-        Slip velocity of the roller relative to the guide per travel speed [1].
     stick : numpy.ndarray of bool, shape (n, ny, nx)
         True where the surfaces stick.
     """
 
-    x: np.ndarray
-    y: np.ndarray
-    pressure: np.ndarray
-    shear_lateral: np.ndarray
-    shear_rolling: np.ndarray
-    slip_lateral: np.ndarray
-    slip_rolling: np.ndarray
     stick: np.ndarray
 
     @classmethod

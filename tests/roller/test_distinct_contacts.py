@@ -5,7 +5,7 @@ import pytest
 from reference_cases import solve_sliding
 
 import trackroller as tr
-from trackroller.roller import requirements
+from trackroller.roller import distinct_contacts
 from trackroller.roller.case import to_table
 from trackroller.roller.explain import explain
 from trackroller.roller.options import Options
@@ -100,7 +100,7 @@ def test_frictionless_loads_share_one_search(monkeypatch):
 def test_velocity_counts_where_friction_depends_on_it():
     law = {"kind": "exponential", "speed": 5.0, "lowest": 0.3}
     table = to_table([*({"velocity": v, "friction_law": law} for v in (10.0, 80.0)), {"velocity": 1.0}])
-    assert len(requirements.distinct_mechanics(table)[0]) == 3
+    assert len(distinct_contacts.distinct_mechanics(table)[0]) == 3
 
 
 @pytest.mark.slow

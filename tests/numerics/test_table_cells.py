@@ -7,7 +7,8 @@ import random
 import pytest
 from examples import EXAMPLES
 
-from trackroller.numerics.cells import (
+from trackroller.numerics.numbers import number_or_nan
+from trackroller.numerics.table_cells import (
     AmbiguousNumber,
     Refused,
     Stored,
@@ -17,7 +18,6 @@ from trackroller.numerics.cells import (
     plain_labels,
     split_head,
 )
-from trackroller.numerics.numbers import number_or_nan
 from trackroller.numerics.units import split_quantity
 
 

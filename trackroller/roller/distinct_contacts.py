@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from trackroller.contact.common import Resultants, SurfaceTractions
 from trackroller.contact.drawn_profiles import treats_sides_alike
+from trackroller.contact.quantities import Resultants, SurfaceTractions
 from trackroller.numerics.numbers import rounded
 from trackroller.parameters import MECHANICAL_MAPPINGS, OF_LIMITS, PARAMETERS
 from trackroller.roller.case import CaseTable

@@ -1,0 +1,1 @@
+"""Tables of users: CSV files and workbooks in one dialect, which `user_table` states."""
