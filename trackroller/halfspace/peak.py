@@ -201,9 +201,9 @@ def best_rival(depth, values):
 def best_seeds(points, values, count, apart):
     """Return the indices of up to `count` scan points (m, 3) with the largest `values` (m,).
 
-    They have at least the share SEED_WORTH of the largest value. The second one is the best of the other kind, see
-    `best_rival`: the highest stress at the surface and the highest below it are separate hills. The others are `apart`
-    from each other.
+    They have at least the share SEED_WORTH of the largest value, and are `apart` from each other. If all the others are
+    of the kind of the first, the last one is the best of the other kind, see `best_rival`: the highest stress at the
+    surface and the highest below it are separate hills.
     """
     left, chosen, number = values.copy(), np.empty(count, np.int64), 0
     enough, rival = SEED_WORTH * values.max(), best_rival(points[:, 2], values)
@@ -211,12 +211,14 @@ def best_seeds(points, values, count, apart):
         rival = -1
     while number < count:
         best = left.argmax()
-        if number == 1 and rival >= 0:
+        if rival >= 0 and number > 0 and (number == count - 1 or not left[best] > enough):
             best = rival
         elif not left[best] > enough:
             break
         chosen[number] = best
         number += 1
+        if rival >= 0 and (points[best, 2] == 0.0) == (points[rival, 2] == 0.0):
+            rival = -1
         for k in range(left.size):
             if ((points[k] - points[best]) ** 2).sum() < apart * apart:
                 left[k] = 0.0
@@ -474,32 +476,34 @@ def polish(target, climbs, k, rules, smallest, sweeps):
 
 @compiled
 def standing(climbs, share, gap, most):
-    """Return which climbs stand, (m,): up to `most` of each body, or two; the others are given up.
+    """Return which climbs stand, (m,): up to `most` of each body; the others are given up.
 
-    The highest climb and those above its `share` stand. The best of the other kind, see `best_rival`, is the second of
-    them: it may lie RIVAL_LAG times as far behind. Of points closer than `gap` only the highest stands.
+    The highest climb and those above its `share` stand. Of points closer than `gap` only the highest stands. If all of
+    them are of one kind, the best of the other kind stands too, see `best_rival`: it may lie RIVAL_LAG times as far
+    behind.
     """
     count = climbs.f.size // 2
     stand = np.zeros(climbs.f.size, np.bool_)
     for body in range(2):
         first = body * count
         left = climbs.f[first : first + count].copy()
-        rival = best_rival(climbs.u[first : first + count, 2], left)
-        if rival >= 0 and left[rival] < (1.0 - RIVAL_LAG * (1.0 - share)) * left.max():
-            rival = -1
+        depth = climbs.u[first : first + count, 2]
+        rival = best_rival(depth, left)
+        lowest = max((1.0 - RIVAL_LAG * (1.0 - share)) * left.max(), 0.0)
+        alone = not (rival >= 0 and left[rival] > lowest)
         enough = share * left.max()
-        slots = max(most, 2) if rival >= 0 else most
-        for number in range(min(slots, count)):
+        for _ in range(min(most, count)):
             best = left.argmax()
-            if number == 1 and rival >= 0 and left[rival] > 0.0:
-                best = rival
-            elif not left[best] >= enough:
+            if not left[best] >= enough:
                 break
             stand[first + best] = True
             left[best] = -1.0
+            alone = alone or (depth[best] == 0.0) == (depth[rival] == 0.0)
             for other in range(count):
                 if ((climbs.u[first + other] - climbs.u[first + best]) ** 2).sum() < gap * gap:
                     left[other] = -1.0
+        if not alone:
+            stand[first + rival] = True
     for k in range(climbs.f.size):
         if not stand[k]:
             climbs.f[k] = -1.0
@@ -653,8 +657,15 @@ def _write_highest(fine, climbs, rule, out):
     """Write the highest climb of each body, in normalised coordinates, into `out` (2, 6)."""
     count = climbs.f.size // 2
     for body in range(2):
-        best = body * count + climbs.f[body * count : (body + 1) * count].argmax()
+        first = body * count
+        heights = climbs.f[first : first + count]
+        best = first + heights.argmax()
         summit = stress_at(fine, body, climbs.u[best], rule)
+        other = best_rival(climbs.u[first : first + count, 2], heights)
+        if other >= 0 and heights[other] > 0.0:  # rough rules err otherwise at the surface than below it
+            beside = stress_at(fine, body, climbs.u[first + other], rule)
+            if beside > summit:
+                best, summit = first + other, beside
         out[body, 0] = summit
         assign(out[body, 1:4], climbs.u[best])
         out[body, 4] = 4.0 * (abs(summit - climbs.f[best]) + climbs.gained[best]) / summit

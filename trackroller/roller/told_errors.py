@@ -21,7 +21,7 @@ from trackroller.roller.options import model_in_use
 if TYPE_CHECKING:
     import xarray as xr
 
-    from trackroller.roller.blocks import Block
+    from trackroller.roller.block_results import Block
     from trackroller.roller.case import Case, CaseTable
     from trackroller.roller.options import Options
 
