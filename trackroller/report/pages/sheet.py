@@ -16,7 +16,7 @@ from trackroller.damage.verdict import STATES
 from trackroller.parameters import FIRST_TO_FAIL, REGIME_LABELS, REGIMES
 from trackroller.report import html
 from trackroller.report.figures.roller_section import drawing
-from trackroller.report.headlines import headline_of
+from trackroller.report.headlines import headline_of, warning_line
 from trackroller.report.numbers import lives_in_years, number, plain
 from trackroller.report.pages.record import (
     body_materials,
@@ -144,6 +144,11 @@ def print_facts(ds: xr.Dataset) -> None:
     if any(row[3] == "example" for row in rows):
         print_text("Values from 'example' were not given: the paper's example has them. Give yours.")
     print_text(options_text(ds), "options")
+    if answer.facts["regime"] == "failed":  # nothing else is known
+        for caution in answer.warnings:
+            if caution.code == "not_given":
+                print_text(warning_line(caution))
+        return
     for heading, texts in notes_of_sheet(ds).items():
         if heading == "Values of the materials":
             for text in texts:
