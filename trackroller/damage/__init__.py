@@ -147,7 +147,7 @@ def others(names: Collection[str]) -> tuple[str, ...]:
     return () if "all" in names else tuple(limit.name for limit in judged() if limit.name not in names)
 
 
-def word_of(name: str) -> str:
+def limit_word(name: str) -> str:
     """Return the word for a limit by its name, and any other text as it is."""
     return LIMITS[name].word if name in LIMITS else name
 

@@ -46,7 +46,6 @@ from trackroller.yaml_file import read_mapping
 FITTED = ("fatigue_strength", "slope", "scatter", "wear_coefficient", "friction_coefficient")
 OWN = ("test", "base", "travel_from", "travel_to", "end", "contact", "drive_force", "note")
 COLUMNS = (*OWN, *PARAMETERS, *MATERIAL_FIELDS, *ALIASES)
-OPTIONS_OF_LIFE = ("contact_model", "life_criterion", "accuracy")
 MODES = ("fatigue", *(name for name in LIMITS if name != "fatigue"), "other")
 FRICTIONS = (0.01, 0.03, 0.06, 0.1, 0.15, 0.2, 0.3, 0.4, 0.55, 0.7, 0.9)  # at which a drive force is solved
 UNIT_WEAR = 1e-6  # wear coefficient with which travels to a depth are computed [mm3/(N m)]

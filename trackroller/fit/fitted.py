@@ -11,7 +11,6 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from scipy.special import ndtri
 
 from trackroller.errors import InputError, check_names, checked_text, listing
 from trackroller.files import all_or_none, write_whole
@@ -477,25 +476,3 @@ def check_texts(**texts: Any) -> None:
 
 
 ENTRY = ("fatigue_limit", "woehler_exponent", "scatter_in_cycles", "scatter_in_stress", "wear_coefficient")
-
-
-def log_life_of(ds: xr.Dataset, log_stress: np.ndarray, probability: float) -> np.ndarray:
-    """Return ln N at each point of the posterior of a stored fit without a fatigue limit.
-
-    Parameters
-    ----------
-    ds : xarray.Dataset
-        What `Fit.data` holds.
-    log_stress : numpy.ndarray
-        ln S, (n,) [ln MPa].
-    probability : float
-        Failure probability [1].
-
-    Returns
-    -------
-    numpy.ndarray
-        ln N, (n, points).
-    """
-    level, slope, scatter = (ds[f"fatigue_{name}"].values for name in ("level", "slope", "log_scatter"))
-    away = log_stress[:, None] - float(ds.attrs["fatigue_reference"])
-    return np.asarray(level - slope * away + float(ndtri(probability)) * np.exp(scatter))

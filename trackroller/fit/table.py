@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import sys
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -20,7 +19,6 @@ from trackroller.numerics.units import PLAIN, in_unit, split_quantity
 from trackroller.study.file.user_columns import UNITS, line_of_names, read_table
 
 FIELD = "tests"
-LARGEST = sys.float_info.max
 
 
 @dataclass(frozen=True)

@@ -79,11 +79,6 @@ def life(value: float) -> str:
     return "unknown" if math.isnan(value) else "unlimited" if value == math.inf else rounded(value)
 
 
-def life_range(low: float, high: float) -> str:
-    """Write a life between two ends without its unit: '26 to 860', or one number where the ends round alike."""
-    return " to ".join(dict.fromkeys((life(low), life(high))))
-
-
 _duty: ContextVar[Mapping[str, float] | None] = ContextVar("duty", default=None)
 
 

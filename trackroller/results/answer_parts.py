@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from trackroller.damage import LIMITS, word_of
-from trackroller.parameters import BODIES, PARAMETERS
+from trackroller.damage import LIMITS, limit_word
+from trackroller.parameters import BODIES
 from trackroller.parameters.carriage_fields import long_name_of
 from trackroller.results.answer import Caution
 from trackroller.results.candidates import slip_margin
@@ -121,7 +121,7 @@ def given_for_nothing(results: SolvedCases) -> dict[str, str]:
     unknown = names_not_given(results.data.attrs)
     idle = given_in_vain(results.config.base, unchecked_names(results))
     return {
-        name: "needed by " + " and ".join(word_of(one) for one in limits)
+        name: "needed by " + " and ".join(limit_word(one) for one in limits)
         for name, limits in idle.items()
         if name not in unknown
     }
@@ -217,7 +217,7 @@ def case_cautions(results: SolvedCases, ranges: CaseRanges, rows: np.ndarray) ->
     unknown = rows & ~ranges.judged
     for code, hit in (("not_held", lost), ("not_judged", unknown)):
         if hit.any():
-            reasons = pd.Series(ranges.reason[hit]).map(lambda word: word_of(str(word).removeprefix("limit ")))
+            reasons = pd.Series(ranges.reason[hit]).map(lambda word: limit_word(str(word).removeprefix("limit ")))
             counts = ", ".join(f"{word} {count:,}" for word, count in reasons.value_counts().items())
             where = where_text(results, hit, rows)
             found.append(Caution(code, int(hit.sum()), total, f"{counts}: {where}" if where else counts))
@@ -295,10 +295,3 @@ def _unequal_loads(own: Comparison) -> Mapping[str, float]:
         if apart > UNEQUAL:
             found[name] = apart
     return found
-
-
-def parameter_words(name: str) -> str:
-    """Return the name of a parameter in words with its unit."""
-    known = PARAMETERS.get(name)
-    unit = "" if known is None or known.unit == "-" else f" [{known.unit}]"
-    return long_name_of(name) + unit

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from trackroller.damage import LIMITS, word_of
+from trackroller.damage import LIMITS, limit_word
 from trackroller.errors import InputError, listing
 from trackroller.methods.optimise import nondominated_ranks
 from trackroller.parameters import BODIES, REGIMES
@@ -506,7 +506,7 @@ def _missed(found: _Found, number: int) -> str:
     if not causes:
         return ""
     cause = causes.most_common(1)[0][0]
-    return REASONS.get(cause, word_of(cause.removeprefix("limit ")))
+    return REASONS.get(cause, limit_word(cause.removeprefix("limit ")))
 
 
 def _at_ends(found: _Found, number: int) -> list[str]:
@@ -592,7 +592,7 @@ def _exceeded(found: _Found, number: int) -> dict[str, Any] | None:
     case, limit, body = np.unravel_index(np.nanargmax(known), known.shape)
     after = float(hours[case, limit, body])
     return {
-        "limit": word_of(limits[limit]),
+        "limit": limit_word(limits[limit]),
         "body": BODIES[body],
         "use": float(known[case, limit, body]),
         "hours": after,

@@ -37,9 +37,6 @@ from trackroller.study.outputs import Output, of_fatigue, of_first_limit, output
 
 PARTS = 8  # of equal weight, into which each value of a line divides its posterior
 DRAWS = PARTS**3  # one for each part of level, slope and scatter
-POSITIONS = tuple(
-    range(DRAWS // 20, DRAWS, DRAWS // 10)
-)  # draws at which candidates of the same materials are compared
 BAND = (0.05, 0.95)  # quantiles of the draws between which a life lies by the tests
 WANTED = "fitted"
 DEVIATES = math.log(10.0)

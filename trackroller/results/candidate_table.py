@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from trackroller.damage import word_of
+from trackroller.damage import limit_word
 from trackroller.parameters import BODIES
 from trackroller.parameters.carriage_fields import long_name_of, parameter_of
 from trackroller.results.answer import STATES, Column
@@ -211,7 +211,7 @@ def _end_words(own: Comparison, case: np.ndarray, end: str) -> tuple[list[str], 
         word = "" if row < 0 else str(own.ranges.reason[row])
         ended = row >= 0 and not word and np.isfinite(value[row])
         word = str(names[row]) if ended else word
-        words.append(word_of(word.removeprefix("limit ")))
+        words.append(limit_word(word.removeprefix("limit ")))
         bodies.append(BODIES[int(guide[row])] if ended and word else "")
     return words, bodies
 
@@ -318,7 +318,7 @@ def _where(own: Comparison, names: list[str], number: int, good: np.ndarray) -> 
     reasons = pd.Series(own.ranges.reason[rows][~good[rows]]).replace(
         "", "too short" if own.ranges.rises else "too much"
     )
-    counts = reasons.map(lambda word: word_of(str(word).removeprefix("limit "))).value_counts()
+    counts = reasons.map(lambda word: limit_word(str(word).removeprefix("limit "))).value_counts()
     return ", ".join(f"{word} in {count}" for word, count in counts.items())
 
 
@@ -357,7 +357,7 @@ def _second_models(own: Comparison) -> dict[str, Any]:
         longest = np.where(shorter, ends[1], longest)
     known = which != ""
     found = {
-        "second": [word_of(str(name)) for name in which],
+        "second": [limit_word(str(name)) for name in which],
         "second_low": np.where(known, shortest, np.nan),
         "second_high": np.where(known, longest, np.nan),
     }
@@ -404,8 +404,8 @@ def _exceeded(own: Comparison) -> dict[str, Any]:
                 out[name].append(value)
             continue
         limit, body = divmod(int(place[row]), len(BODIES))
-        out["exceeded"].append(f"{word_of(names[limit])} of the {BODIES[body]} {100 * worst[row]:.3g} %")
-        out["exceeded_by"].append(word_of(names[limit]))
+        out["exceeded"].append(f"{limit_word(names[limit])} of the {BODIES[body]} {100 * worst[row]:.3g} %")
+        out["exceeded_by"].append(limit_word(names[limit]))
         out["exceeded_body"].append(BODIES[body])
         out["use"].append(float(worst[row]))
         out["use_hours"].append(np.nan if hours is None else float(hours[row, limit, body]))

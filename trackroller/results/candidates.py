@@ -288,19 +288,6 @@ class Candidates:
         rows: np.ndarray = self.place == design
         return rows
 
-    def targets_met(self) -> tuple[np.ndarray, np.ndarray] | None:
-        """Return how many cases of each design meet every target of the study, and of how many, shape (designs,) each.
-
-        Rows of a table that only some designs were tried under count, too. None without the key `requirement`.
-        """
-        results, own = self.results, self.design >= 0
-        if not (targets := results.config.requirement):
-            return None
-        rows = own & results.held & ~np.isnan(results.column(self.goal[0]))
-        rows &= np.all([*map(results.meets, targets)], axis=0)
-        met, of = (np.bincount(self.design[these], minlength=len(self.size)) for these in (rows, own))
-        return met, of
-
     def worst_cases(self, values: np.ndarray, way: str) -> np.ndarray:
         """Return the case of each design with the worst value among its valid cases, -1 without one.
 

@@ -17,7 +17,7 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from trackroller.damage import word_of
+from trackroller.damage import limit_word
 from trackroller.parameters import REGIME_LABELS, REGIMES
 from trackroller.parameters.validity import VALIDITY
 from trackroller.results.answer import Answer, Caution, Column, Part
@@ -176,7 +176,7 @@ def _headline(ds: xr.Dataset) -> dict[str, Any]:
     head["part"] = float(damage.sel(load_case=case) / damage.sum())
     head["km"] = float(own["life_km"])
     head["body"] = str(own["first_body"].item())
-    head["limit"] = word_of(str(own["first_limit"].item()))
+    head["limit"] = limit_word(str(own["first_limit"].item()))
     return head | {"low": float(own["life_hours_low"]), "high": float(own["life_hours_high"])}
 
 
@@ -252,7 +252,7 @@ def _end_of(own: xr.Dataset) -> str:
     """Return the limit that a roller or its rail reaches first, and the body; '' where it is not known."""
     if "first_limit" not in own or not str(own["first_limit"].item()):
         return ""
-    return f"{word_of(str(own['first_limit'].item()))} of the {own['first_body'].item()}"
+    return f"{limit_word(str(own['first_limit'].item()))} of the {own['first_body'].item()}"
 
 
 def _worst_case(ds: xr.Dataset, roller: str) -> tuple[str, float]:

@@ -16,7 +16,6 @@ from trackroller.results.solved_cases import SolvedCases
 from trackroller.roller.output_names import body_of, is_life
 from trackroller.study.outputs import flat, of_fatigue, of_first_limit
 
-PROBABLE = (0.05, 0.95)  # the band of a fitted material holds 90 % of its posterior
 NOT_JUDGED = (
     "value not known",
     "fatigue not known",

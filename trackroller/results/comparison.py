@@ -30,7 +30,6 @@ from trackroller.study.design.levels import OF_MATERIALS
 from trackroller.study.outputs import flat
 
 EQUAL = 1e-9  # relative difference of numbers that count as equal
-ONE_NUMBER = 1e-6  # relative difference of the ends of a range below which it is one number
 STRESSES = (
     ("peak_stress_roller", "peak stress of the roller", "MPa"),
     ("peak_stress_guide", "peak stress of the guide", "MPa"),

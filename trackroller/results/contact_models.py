@@ -196,12 +196,6 @@ def compared(one: xr.Dataset) -> int:
     return max((int(one[q.name].notnull().sum()) for q in measured(one)), default=0)
 
 
-def good_share(error: np.ndarray) -> float:
-    """Return the share of cases whose error is at most `GOOD`, among those that have one; NaN without any."""
-    error = error[~np.isnan(error)]
-    return float(np.mean(error <= GOOD)) if error.size else np.nan
-
-
 def spread(error: np.ndarray) -> tuple[float, float, float]:
     """Return the median, the 90th percentile and the largest error; each is the error of one case."""
     return tuple(float(np.percentile(error, p, method="nearest")) for p in (50, 90, 100))  # type: ignore[return-value]

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from trackroller.damage import word_of
+from trackroller.damage import limit_word
 from trackroller.parameters.carriage_fields import long_name_of
 from trackroller.results.answer import Answer
 from trackroller.results.answer_parts import (
@@ -330,7 +330,7 @@ def not_held_by_any(own: Comparison) -> dict[str, Any]:
 
 def causes_text(own: Comparison, rows: np.ndarray) -> str:
     """Return the causes by which some cases are not held, the most frequent one first."""
-    words = pd.Series(own.ranges.reason[rows]).map(lambda word: word_of(str(word).removeprefix("limit ")))
+    words = pd.Series(own.ranges.reason[rows]).map(lambda word: limit_word(str(word).removeprefix("limit ")))
     return " or ".join(words.value_counts().index[:2])
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pandas as pd
 
-from trackroller.damage import word_of
+from trackroller.damage import limit_word
 from trackroller.parameters import BODIES
 from trackroller.parameters.carriage_fields import long_name_of
 from trackroller.results.case_ranges import CaseRanges
@@ -28,11 +28,11 @@ def end_of_case(ranges: CaseRanges) -> np.ndarray:
     out = np.empty(len(names), dtype=object)
     for row, (reason, name) in enumerate(zip(ranges.reason, names, strict=True)):
         if reason:
-            out[row] = word_of(str(reason).removeprefix("limit "))
+            out[row] = limit_word(str(reason).removeprefix("limit "))
         elif np.isposinf(ranges.value[row]):
             out[row] = NOTHING
         elif name:
-            out[row] = f"{word_of(str(name))} of the {BODIES[int(guide[row])]}"
+            out[row] = f"{limit_word(str(name))} of the {BODIES[int(guide[row])]}"
         else:
             out[row] = UNKNOWN
     return out

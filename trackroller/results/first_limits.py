@@ -84,19 +84,6 @@ def first_at(results: SolvedCases, end: str, reached: np.ndarray | None = None) 
     return np.where(known, names, ""), np.asarray(known & (place % reached.shape[2] == BODIES.index("guide")))
 
 
-def outlasted(results: SolvedCases, first: str, rows: np.ndarray) -> dict[str, float]:
-    """Return the hours before which each other limit ends no case, by its name.
-
-    Nothing unless the limit `first` ends all these cases at both ends of the ranges of the placeholders.
-    """
-    if not all((first_at(results, end)[0][rows] == first).all() for end in ("_low", "_high")):
-        return {}
-    least = reached_by_body(results, "_low")[rows].min(axis=(0, 2))
-    names = results.data["limit"].values.tolist()
-    own = {name: float(hours) for name, hours in zip(names, least, strict=True) if 0 < hours < np.inf}
-    return {name: hours for name, hours in own.items() if name != first and not LIMITS[name].beside}
-
-
 # values that are known within a range only
 COEFFICIENT, POSITION = "wear_coefficient_factor", "placeholder_position"
 UNSURE = (COEFFICIENT, POSITION)

@@ -25,8 +25,6 @@ from trackroller.study.file.goals import names_in, statistic
 from trackroller.study.file.search import judged_by
 from trackroller.study.outputs import regimes
 
-HOLE = 0.15  # of the range of a Pareto set: a step between its designs that is wider may leave a hole
-
 
 def given_pareto(results: SolvedCases) -> xr.Dataset | None:
     """Return the Pareto set for the goals that a study or a search gives; None without goals of its own."""
@@ -344,32 +342,3 @@ def pareto_of_search(results: SolvedCases) -> xr.Dataset:
 def goals_of(front: xr.Dataset) -> list[tuple[str, str]]:
     """List the goals of a Pareto set: (name, 'min' or 'max')."""
     return [tuple(item.split(" ")) for item in front.attrs["objectives"].split(", ")]
-
-
-def holes_of(front: xr.Dataset) -> tuple[str, list[tuple[float, float]]]:
-    """Return a goal of a Pareto set and the widest steps between its designs that leave a hole, at most two.
-
-    The goal is the first life, otherwise the first goal. A step is a hole if it takes `HOLE` of the range of the set,
-    and twice an even step; lives that span a decade count by their logarithm. So is a step over a decade.
-    """
-    names = [name for name, _ in goals_of(front)]
-    goal = next((name for name in names if is_life(statistic(name)[1])), names[0])
-    values = front[goal].values[front["optimal"].values == 1].astype(float)
-    values = np.unique(values[np.isfinite(values)])
-    if len(values) < 2:
-        return goal, []
-    places = np.log(values) if values[0] > 0 and values[-1] > 10 * values[0] else values
-    steps = np.diff(places) / (places[-1] - places[0])
-    decade = (values[:-1] > 0) & (values[1:] > 10 * values[:-1])
-    wide = [i for i in np.argsort(-steps)[:2] if steps[i] > max(HOLE, 2 / len(steps)) or decade[i]]
-    return goal, [(float(values[i]), float(values[i + 1])) for i in sorted(wide)]
-
-
-def end_places(front: xr.Dataset) -> list[int]:
-    """Return for each goal the place of the optimal design that is best in it, shape (goals,).
-
-    Of designs that tie in a goal, the other goals decide in their order.
-    """
-    best = np.flatnonzero(front["optimal"].values == 1)
-    costs = [front[name].values[best].astype(float) * (-1.0 if way == "max" else 1.0) for name, way in goals_of(front)]
-    return [int(best[np.lexsort([*reversed(costs), cost])[0]]) for cost in costs]

@@ -13,10 +13,8 @@ import xarray as xr
 
 from trackroller.methods import METHODS, Method
 from trackroller.methods.method import Index, index_of
-from trackroller.roller.output_names import is_life, pair_first
 
 ENDS = ("low", "high")
-USABLE = 0.5  # share of the design below which an index decides nothing
 
 
 class Rank(NamedTuple):
@@ -52,27 +50,6 @@ def robust_design(sens: xr.Dataset) -> bool:
     return method is not None and method.points
 
 
-def main_lives(sens: xr.Dataset) -> list[str]:
-    """Name the lives of design points that a report shows: those that the study asks for, otherwise the deciding one.
-
-    The life of the pair decides, or that of the roller where the guide's hours are unknown.
-    """
-    lives = [str(n) for n in sens["output"].values if is_life(str(n))]
-    lives = [n for n in lives if np.isfinite(sens["percentile_value"].sel(output=n)).any()]
-    return lives if sens.attrs.get("outputs_named") else pair_first(lives)[:1]
-
-
-def best_points(part: xr.Dataset) -> np.ndarray:
-    """Return the numbers of the design points, the best B10 first; the one with other cases as life 0 decides.
-
-    Parameters
-    ----------
-    part : analysis of an inner/outer design for one life
-    """
-    safe, b10s = (np.nan_to_num(part[name].values, nan=-1.0) for name in ("b10_safe", "b10"))
-    return np.lexsort((-b10s, -safe))
-
-
 def headline(sens: xr.Dataset) -> str:
     """Name the index that ranks the factors of a design: ST, mu_star, main_share, effect or first."""
     method = method_of(sens)
@@ -96,11 +73,6 @@ def order(sens: xr.Dataset, output: str, index: str = "") -> list[Rank]:
 def used_share(sens: xr.Dataset, output: str) -> float:
     """Return the share of the design that the indices of an output use [1]."""
     return float(sens["used_share"].sel(output=output)) if "used_share" in sens else 1.0
-
-
-def decisive(sens: xr.Dataset, output: str) -> bool:
-    """Return whether an output has an index that uses at least half of the design."""
-    return bool(order(sens, output)) and used_share(sens, output) >= USABLE
 
 
 def ranked_factors(sens: xr.Dataset | None, output: str, among: Sequence[str]) -> dict[str, float]:

@@ -17,7 +17,7 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from trackroller.damage import judged, word_of
+from trackroller.damage import judged, limit_word
 from trackroller.damage.limit import OF_GUIDE
 from trackroller.damage.verdict import STATES
 from trackroller.damage.wear import KM_PER_HOUR
@@ -461,7 +461,7 @@ def _not_used(ds: xr.Dataset) -> dict[str, str]:
     idle = given_in_vain(record.inputs_of(ds), unchecked(ds))
     unknown = record.names_not_given(ds.attrs)
     return {
-        name: f"needed by {listing([word_of(one) for one in users])}"
+        name: f"needed by {listing([limit_word(one) for one in users])}"
         for name, users in idle.items()
         if name not in unknown
     }

@@ -23,7 +23,7 @@ from trackroller.results.comparison import compared_output
 from trackroller.results.effect_curves import Effects
 from trackroller.results.first_ends import ends_by_factor
 from trackroller.results.places import level_text
-from trackroller.results.ranking import estimate, headline, index_words, order, robust_design, used_share
+from trackroller.results.ranking import estimate, headline, index_words, order, robust_design
 from trackroller.results.requirement import required_of
 from trackroller.results.sensitivity import analysis_of
 from trackroller.results.solved_cases import SolvedCases
@@ -261,9 +261,3 @@ def _columns(ranges: CaseRanges, table: pd.DataFrame, sens: xr.Dataset | None) -
         Column("lost", "Rows lost", "", "cases that are not held: most of a level less fewest of a level", "count"),
     ]
     return tuple(columns)
-
-
-def share_used(results: SolvedCases, output: str) -> float:
-    """Return the share of the rows that the indices of an output use [1]."""
-    sens = analysis_of(results)
-    return 1.0 if sens is None or output not in sens["output"].values else used_share(sens, output)

@@ -6,7 +6,6 @@ note writes its sentence and reads it back, so that no other file depends on the
 
 from __future__ import annotations
 
-import json
 import re
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
@@ -29,10 +28,6 @@ if TYPE_CHECKING:
 
     from trackroller.roller.options import Options
 
-OF_SN_LINE = (
-    *("fatigue_limit", "fatigue_strength_ratio", "cycles_at_fatigue_limit", "cycles_at_tensile_strength"),
-    *("woehler_exponent", "second_exponent"),
-)
 _LACK = re.compile(
     r"(?P<limit>\w+): (?:the case gives|material '(?P<material>.+?)' has) no (?P<name>\w+)\. (?P<remedy>.*)"
 )
@@ -145,16 +140,6 @@ def placeholders_of(ds: xr.Dataset) -> list[Placeholder]:
                 texts = found["limit"], found["material"], one["name"], one["note"] or ""
                 out.append(Placeholder(*texts, low, high, one["units"] or ""))
     return out
-
-
-def guessed_lines(ds: xr.Dataset) -> dict[str, list[str]]:
-    """Return the materials whose S-N line rests on guesses without a source, with the names of these values.
-
-    Such values have no range, so that a life by fatigue stays one number, and the notes on limits do not name them.
-    """
-    stored = json.loads(str(ds.attrs.get("materials", "{}")))
-    own = {name: [n for n in values.get("guesses", ()) if n in OF_SN_LINE] for name, values in stored.items()}
-    return {name: guesses for name, guesses in own.items() if guesses}
 
 
 def notes_on_limits(table: CaseTable, options: Options) -> list[str]:

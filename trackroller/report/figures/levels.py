@@ -8,18 +8,10 @@ from typing import Any
 import numpy as np
 
 from trackroller.report.numbers import level_text, long_name, number, rounded, setting
-from trackroller.results.groups import DRIVE, Groups, classes
+from trackroller.results.groups import DRIVE, classes
 from trackroller.results.results import Results
 
 COLOURS = 5  # most groups that get a colour each
-
-
-def group_texts(along: Groups) -> list[str]:
-    """Return the level or the range of each group in words."""
-    ends = list(zip(along.low, along.high, strict=True))
-    if along.name == DRIVE and not along.ordered:
-        return [_drive(*pair) for pair in ends]
-    return short_levels([span(along.name, *pair) for pair in ends])
 
 
 def short_levels(names: Sequence[str]) -> list[str]:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import re
-import textwrap
 from collections.abc import Mapping
 from typing import Any
 
@@ -12,10 +10,6 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.ticker import MaxNLocator
-
-from trackroller.report.figures.levels import group_texts
-from trackroller.results.groups import Groups
 
 CLASSES, FEWEST = 8, 5  # most classes of a sample along an axis, and fewest rows of a class
 Entries = list[tuple[str, dict[str, Any]]]
@@ -39,15 +33,6 @@ def capped(life: np.ndarray) -> tuple[np.ndarray, float | None]:
     top = float(10 ** (np.ceil(np.log10(finite.max())) + 1)) if finite.size else 1.0
     values = np.where(np.isposinf(life), top, np.where(life > 0, life, np.nan))
     return values, top if np.isposinf(life).any() else None
-
-
-def mark_unlimited(axes: Axes, height: float | None) -> None:
-    """Draw a dotted line and a word at the height of the unlimited lives."""
-    if height is None:
-        return
-    axes.axhline(height, color="0.35", linewidth=0.8, linestyle=(0, (1, 2)), zorder=0)
-    place = axes.get_yaxis_transform()
-    axes.text(0.995, height, "unlimited", transform=place, ha="right", va="bottom", fontsize=7, color="0.25")
 
 
 def legend(figure: Figure, entries: Entries | Mapping[str, Artist], columns: int = 3) -> None:
@@ -106,18 +91,3 @@ def running(axes: Axes, x: np.ndarray, y: np.ndarray, look: dict[str, Any]) -> N
     count = int(index.max(initial=-1)) + 1
     at = np.array([np.median(x[index == k]) for k in range(count)])
     band(axes, at, quantiles(y, index, count), look, ordered=True)
-
-
-def set_axis(axes: Axes, along: Groups, letters: int, named: bool = True) -> None:
-    """Write the names of groups without an order under an axis that is `letters` letters wide, or the ticks of numbers.
-
-    A line breaks between words, but not between a number and its unit. Without `named` the ticks have no text.
-    """
-    if along.ordered:
-        axes.xaxis.set_major_locator(MaxNLocator(5))
-        return
-    width = max(6, letters // len(along))
-    kept = [re.sub(r"(\d) ", "\\1\u00a0", text) for text in (group_texts(along) if named else [""] * len(along))]
-    texts = [textwrap.fill(text, width).replace("\u00a0", " ") for text in kept]
-    axes.set_xticks(along.at, texts, linespacing=0.95)
-    axes.set_xlim(-0.6, len(along) - 0.4)

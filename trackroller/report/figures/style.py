@@ -18,7 +18,6 @@ from pathlib import Path
 from typing import Any
 
 import matplotlib
-import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter, NullLocator
@@ -110,13 +109,6 @@ def panels(title: str, height_mm: float, count: int = 1, **shared: Any) -> tuple
 def colour_bar(figure: Figure, image: Any, axes: Sequence[Axes], label: str) -> None:
     """Draw the scale of the colours below maps."""
     figure.colorbar(image, ax=axes, location="bottom", aspect=60, pad=0.02, ticks=MaxNLocator(6), label=label)
-
-
-def name_rows(axes: Axes, places: Sequence[float] | np.ndarray, names: Sequence[str]) -> None:
-    """Write names beside the rows of a figure, in place of ticks and grid lines."""
-    axes.set_yticks(places, names)
-    axes.tick_params(axis="y", length=0)
-    axes.grid(axis="y", visible=False)
 
 
 def log_ticks(axis: Any, low: float, high: float) -> None:
