@@ -403,10 +403,10 @@ def _goal_columns(found: _Found) -> list[Column]:
 def _required_columns(found: _Found) -> list[Column]:
     """Return a column for the output of each requirement at `reference`."""
     columns = []
-    for place, (_, own) in enumerate(found.judges):
+    for place, (_, own) in enumerate(found.judges, 1):
         _, words, units = own.output
         meaning = f"{words} at the worst condition, at `reference`; of a range its worse end"
-        columns.append(Column(REQUIRED.format(place + 1), words, units, meaning))
+        columns.append(Column(REQUIRED.format(place), words, units, meaning))
     return columns
 
 

@@ -344,13 +344,13 @@ def _second_models(own: Comparison) -> dict[str, Any]:
     for place, name in enumerate(names):
         if name not in BESIDE or np.isnan(low[rows, place]).all():
             continue
-        known = np.ones(len(low), dtype=bool)
+        has_life = np.ones(len(low), dtype=bool)
         ends = []
         for values in (low, high):
             of_pair = np.fmin.reduce(values[:, place], axis=1)
-            known &= ~np.isnan(of_pair)
+            has_life &= ~np.isnan(of_pair)
             ends.append(_least(own, of_pair, rows))
-        unknown = np.bincount(own.place[rows & ~known], minlength=own.count) > 0
+        unknown = np.bincount(own.place[rows & ~has_life], minlength=own.count) > 0
         shorter = ~unknown & ~np.isnan(ends[0]) & ((which == "") | (ends[0] < shortest))
         which[shorter] = name
         shortest = np.where(shorter, ends[0], shortest)

@@ -18,7 +18,7 @@ from trackroller.results.by_tests import beyond_sn_data
 from trackroller.results.case_ranges import CaseRanges
 from trackroller.results.comparison import Comparison
 from trackroller.results.constraints import Column
-from trackroller.results.solved_cases import OUTSIDE, SolvedCases
+from trackroller.results.solved_cases import OUTSIDE, SolvedCases, made_once
 from trackroller.roller.output_names import is_life
 from trackroller.roller.requirement import Requirement
 from trackroller.study.file.search import judged_by
@@ -194,6 +194,7 @@ def _to_meet(results: SolvedCases) -> dict[str, Requirement]:
     return {name: own for name, own in wanted.items() if own.in_shares or name not in chances}
 
 
+@made_once
 def judges_of(results: SolvedCases) -> list[tuple[Required, CaseRanges]]:
     """Return each requirement that the designs of a search have to meet, with the output that judges it."""
     own = Comparison.of(results)
@@ -227,6 +228,7 @@ class Shares:
         return np.asarray(shares >= self.wanted - SHARE_ROUNDING)
 
 
+@made_once
 def shares_of(results: SolvedCases, exact: bool = False) -> list[Shares]:
     """Return the share of the conditions in which each design meets each requirement of a search.
 
