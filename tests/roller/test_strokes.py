@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from carriage.carts import ROLLER, SIDES
 
 import trackroller as tr
 from trackroller.carriage.file import load_carriage
@@ -19,19 +20,9 @@ from trackroller.yaml_file import write_yaml
 # 400 strokes of 0.9 m are 360 m a day, which take 0.1 h at 60 m/min
 DUTY = {"strokes_per_day": 400, "stroke": "0.9 m", "days_per_year": 300}
 PER_HOUR = 4000.0  # strokes in an hour of travel: 400 in 0.1 h; each roller passes a point once in each of them
-STEEL = "1.7225-quenched-tempered"
-ROLLER = {
-    "roller_material": STEEL,
-    "guide_material": STEEL,
-    "contact_model": "sliding",
-    "motor_force": 0,
-    "friction_coefficient": 0.1,
-    "guide_curve_radius": "inf",
-}
-PLACES = {"FL": (150, 40), "FR": (150, -40), "RL": (-150, 40), "RR": (-150, -40)}
 
 
-def cart(stroke="0.9 m", speeds=("1 m/s",), places=PLACES, **more):
+def cart(stroke="0.9 m", speeds=("1 m/s",), places=SIDES, **more):
     down = {"pushes": [0, 0, -1], "x_R": [0, 1, 0], "roller": ROLLER}
     rollers = {name: {"at": [*at, 0], **down} for name, at in places.items()}
     cases = [{"name": f"run {i}", "speed": speed} for i, speed in enumerate(speeds)]

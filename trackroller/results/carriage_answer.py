@@ -22,9 +22,8 @@ from trackroller.parameters import REGIME_LABELS, REGIMES
 from trackroller.parameters.validity import VALIDITY
 from trackroller.results.answer import Answer, Caution, Column, Part
 from trackroller.results.lives import FIRST_LIMIT
-from trackroller.results.roller_answer import CODES
+from trackroller.results.roller_answer import CODES, facts_of_data
 from trackroller.roller.dataset import validity_bit
-from trackroller.roller.duty import duty_of
 from trackroller.roller.stored_inputs import doubts_of
 
 LOADS = {"payload": "payload", "loads": "all loads"}  # parts of the loads that a margin multiplies
@@ -105,19 +104,15 @@ def answer_of_carriage(ds: xr.Dataset) -> Answer:
         columns=tuple(known),
         parts=tuple(_parts(ds)),
         warnings=tuple(_warnings(ds)),
-        facts={
-            "name": str(ds.attrs["title"]),
-            "description": str(ds.attrs.get("description", "")),
-            "date": "",
-            "cases": ds.sizes["load_case"],
-            "counted": "load cases",
-            "candidates": None,
-            "conditions": None,
-            "drawn": False,
-            "models": [],
-            "accuracy": "",
-            "duty": duty_of(ds),
-        },
+        facts=facts_of_data(
+            ds,
+            name=str(ds.attrs["title"]),
+            description=str(ds.attrs.get("description", "")),
+            cases=ds.sizes["load_case"],
+            counted="load cases",
+            models=[],
+            accuracy="",
+        ),
     )
 
 

@@ -126,7 +126,7 @@ def answer_of_roller(ds: xr.Dataset, ranges: Limits | None = None) -> Answer:
         not_used=_not_used(ds),
         not_given=not_given_words(ds),
         warnings=tuple(warnings_of(ds, own, first)),
-        facts=facts_of(ds),
+        facts=_facts(ds),
     )
 
 
@@ -137,26 +137,41 @@ def materials_of_case(ds: xr.Dataset, inputs: Mapping[str, Any]) -> dict[str, Ma
     return {body: record.as_material(stored[f"{body}_material"]).at(at) for body, at in zip(BODIES, warm, strict=True)}
 
 
-def facts_of(ds: xr.Dataset) -> dict[str, Any]:
-    """Return the facts of the title line of one roller."""
-    used = str(solved_by(ds).item()) if "contact_model_used" in ds else str(ds.attrs["contact_model"])
+def facts_of_data(ds: xr.Dataset, **own: Any) -> dict[str, Any]:
+    """Return the facts of the title line of a result that belongs to no study.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        Result of a roller, a roller that wears, a spectrum or a carriage.
+    **own
+        Facts in place of the usual ones, and further ones.
+    """
     return {
         "name": "",
         "description": "",
         "date": "",
         "cases": 1,
-        "models": [str(ds.attrs["contact_model"])],
-        "solved_by": used,
-        "accuracy": str(ds.attrs.get("accuracy", "")),
-        "duty": duty_of(ds),
         "candidates": None,
         "conditions": None,
         "drawn": False,
-        "probability": float(ds.attrs["failure_probability"]),
-        "regime": REGIMES[int(ds["regime"])],
-        "converged": bool(int(ds["converged"])) if "converged" in ds else True,
-        "reason": str(ds["reason"].item()) if "reason" in ds else "",
-    }
+        "models": [str(ds.attrs.get("contact_model", ""))],
+        "accuracy": str(ds.attrs.get("accuracy", "")),
+        "duty": duty_of(ds),
+    } | own
+
+
+def _facts(ds: xr.Dataset) -> dict[str, Any]:
+    """Return the facts of the title line of one roller."""
+    used = str(solved_by(ds).item()) if "contact_model_used" in ds else str(ds.attrs["contact_model"])
+    return facts_of_data(
+        ds,
+        solved_by=used,
+        probability=float(ds.attrs["failure_probability"]),
+        regime=REGIMES[int(ds["regime"])],
+        converged=bool(int(ds["converged"])) if "converged" in ds else True,
+        reason=str(ds["reason"].item()) if "reason" in ds else "",
+    )
 
 
 def _kind(ds: xr.Dataset, own: Sequence[Margin], first: First | None) -> str:

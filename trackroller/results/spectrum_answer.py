@@ -29,9 +29,8 @@ from trackroller.results.lives import FIRST_LIMIT, past_data
 from trackroller.results.margins import First, Margin
 from trackroller.results.placeholders import guess_cautions, placeholders_part
 from trackroller.results.places import level_text
-from trackroller.results.roller_answer import CODES, checks_left_out
+from trackroller.results.roller_answer import CODES, checks_left_out, facts_of_data
 from trackroller.roller.dataset import validity_bit
-from trackroller.roller.duty import duty_of
 from trackroller.roller.limit_notes import notes_of, placeholders_of
 from trackroller.roller.stored_inputs import NOT_GIVEN, doubts_of
 from trackroller.roller.temperature import HEAD as OF_TEMPERATURE
@@ -90,20 +89,14 @@ def answer_of_spectrum(ds: xr.Dataset) -> Answer:
         not_checked=_not_checked(ds),
         not_given=_not_given(ds),
         warnings=tuple(_warnings(ds)),
-        facts={
-            "name": str(ds.attrs["title"]),
-            "description": str(ds.attrs.get("description", "")),
-            "date": "",
-            "cases": ds.sizes["block"],
-            "counted": "blocks",
-            "candidates": None,
-            "conditions": None,
-            "drawn": False,
-            "models": [str(ds.attrs.get("contact_model", ""))],
-            "accuracy": str(ds.attrs.get("accuracy", "")),
-            "duty": duty_of(ds),
-            "probability": float(ds.attrs.get("failure_probability", 0.5)),
-        },
+        facts=facts_of_data(
+            ds,
+            name=str(ds.attrs["title"]),
+            description=str(ds.attrs.get("description", "")),
+            cases=ds.sizes["block"],
+            counted="blocks",
+            probability=float(ds.attrs.get("failure_probability", 0.5)),
+        ),
     )
 
 

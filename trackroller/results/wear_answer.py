@@ -21,8 +21,7 @@ from trackroller.parameters.carriage_fields import long_name_of
 from trackroller.results.answer import Answer, Caution, Column, Part
 from trackroller.results.flags import flags_of
 from trackroller.results.placeholders import guess_cautions, placeholders_part
-from trackroller.results.roller_answer import CODES, not_given_words
-from trackroller.roller.duty import duty_of
+from trackroller.results.roller_answer import CODES, facts_of_data, not_given_words
 from trackroller.roller.limit_notes import placeholders_of
 from trackroller.roller.stored_inputs import NOT_GIVEN, inputs_of
 from trackroller.roller.wearing import ENDS
@@ -72,18 +71,7 @@ def answer_of_wear(ds: xr.Dataset) -> Answer:
         parts=(states_part(ds), *([guesses] if not guesses.table.empty else [])),
         not_given=not_given_words(ds) if NOT_GIVEN in ds.attrs else {},
         warnings=tuple(_warnings(ds, guesses)),
-        facts={
-            "name": "A track roller while it wears",
-            "description": "",
-            "date": "",
-            "cases": 1,
-            "candidates": None,
-            "conditions": None,
-            "drawn": False,
-            "models": [str(ds.attrs.get("contact_model", ""))],
-            "accuracy": str(ds.attrs.get("accuracy", "")),
-            "duty": duty_of(ds),
-        },
+        facts=facts_of_data(ds, name="A track roller while it wears"),
     )
 
 
