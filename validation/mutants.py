@@ -150,11 +150,11 @@ DECISIONS = {
     "curve-in-words": ("report/numbers.py", "'outer' if value > 0", "'outer' if value < 0", WORDS),
     "drive-in-words": ("report/numbers.py", "'driven' if value < 0", "'driven' if value > 0", WORDS),
     "fold": ("report/numbers.py", "ratio = max(ratio, 1", "ratio = min(ratio, 1", WORDS),
-    "pareto-end": (
-        "results/pareto.py",
-        '-1.0 if way == "max" else 1.0',
-        '1.0 if way == "max" else -1.0',
-        WORDS,
+    "way-of-a-goal": (
+        "results/judging.py",
+        '== "max", -1.0, 1.0',
+        '== "max", 1.0, -1.0',
+        ("results/test_best.py", "results/test_optimum.py"),
     ),
     "told-peaks": ("roller/stages/stress.py", "(peak.error + ", "(0.5 * peak.error + ", ("roller/test_tolerance.py",)),
     "told-forces": (
