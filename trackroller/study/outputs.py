@@ -110,7 +110,10 @@ def parts_in(ds: xr.Dataset, names: Iterable[str], dims: tuple[str, ...]) -> dic
         own = declared(name)
         if name not in VARIABLES:  # of another solver
             own = replace(own, units=str(var.attrs.get("units", "1")), long_name=words)
-        asked = set(map(str, ds["limit"].values)) if "limit" in inner else set()
+        if "limit" in inner:
+            asked = set(map(str, ds["limit"].values))
+        else:
+            asked = set()
         limits = [LIMITS[limit] for limit in LIMITS if limit in asked]
         found |= {part.name: part for part in parts_of(replace(own, dims=inner), limits)}
     return found
@@ -162,7 +165,9 @@ def _usable(
     """Return True for converged, allowed rows of the regimes to keep, and the number of other rows by reason."""
     usable = np.isin(regime, [REGIMES.index(name) for name in keep])
     lost = {REGIME_LABELS[i]: int((regime == i).sum()) for i, name in enumerate(REGIMES) if name not in keep}
-    converged = flat(ds, "converged", dims) != 0 if "converged" in ds else None
+    converged = None
+    if "converged" in ds:
+        converged = flat(ds, "converged", dims) != 0
     for why, good in (("not converged", converged), ("outside the constraints", allowed)):
         if good is not None:
             lost[why] = int((usable & ~good).sum())
@@ -234,7 +239,10 @@ def outputs(
     keep = tuple(keep)
     regime = regimes(ds, dims)
     usable, lost = _usable(ds, dims, regime, keep, allowed)
-    stopped = flat(ds, "stopped", dims) == 1 if "stopped" in ds else np.zeros(len(regime), dtype=bool)
+    if "stopped" in ds:
+        stopped = flat(ds, "stopped", dims) == 1
+    else:
+        stopped = np.zeros(len(regime), dtype=bool)
     free = available(ds, factors, dims)
     known = parts_in(ds, free, dims)
     columns = []

@@ -85,7 +85,8 @@ def shown_steps() -> Iterator[Callable[[str], None]]:
     callable
         Prints a line on standard error, also without a terminal.
     """
-    console, log = Console(file=sys.stderr, soft_wrap=True), logging.getLogger("trackroller")
+    console = Console(file=sys.stderr, soft_wrap=True)
+    log = logging.getLogger("trackroller")
     level = log.level
     with console.status("") as shown:
         handler = _Last(shown)

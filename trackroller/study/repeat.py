@@ -75,7 +75,8 @@ def repeat_case(study: Study, number: int, folder: StudyFolder) -> Repeat:
 
     study = as_planned(study, folder.record())
     ledger = Ledger(Cases(study), folder)
-    design, place = ledger.cases.design, ledger.place
+    design = ledger.cases.design
+    place = ledger.place
     if not 0 <= number < len(place):
         raise InputError("case", number, f"a case number from 0 to {len(place) - 1}")
     if place[number] < 0:

@@ -77,7 +77,9 @@ class Runner:
     def solved(self, study: Study, rerun_failed: bool = False) -> Iterator[Ledger]:
         """Plan a study, solve its missing cases, and keep its ledger as it is until the context ends."""
         with working_ledger(study, self.results, tell=self.tell, rerun_failed=rerun_failed) as ledger:
-            left, tell, progress = ledger.open, self.tell, self.progress
+            left = ledger.open
+            tell = self.tell
+            progress = self.progress
             self.started(ledger.distinct, ledger.distinct - sum(ledger.chunks[name] for name in left))
             for name in left:
                 how: dict[str, Any] = {"executor": self.executor, "tell": tell, "progress": progress}

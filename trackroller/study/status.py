@@ -142,7 +142,8 @@ def status_of(study: Study, folder: StudyFolder) -> Status:
     solved = np.flatnonzero(ledger.place >= 0)
     states = ledger.states.isel(case=ledger.place[solved])
     bad = states["regime"].values == FAILED
-    failed, seconds = solved[bad], ledger.states.attrs["seconds"]
+    failed = solved[bad]
+    seconds = ledger.states.attrs["seconds"]
     status = Status(
         total=len(ledger.place),
         done=len(solved),
@@ -179,7 +180,11 @@ def plan_rows(study: Study, status: Status) -> list[tuple[str, str]]:
         Its state, see `status_of`.
     """
     chunk = chunk_size(study, status.missing)
-    parts, size = -(-status.missing // chunk), "1 case" if chunk == 1 else f"up to {chunk} cases"
+    parts = -(-status.missing // chunk)
+    if chunk == 1:
+        size = "1 case"
+    else:
+        size = f"up to {chunk} cases"
     seconds = status.seconds_left + START
     source = "measured" if status.measured else "estimated"
     times = f"{duration(seconds)} on one core, {duration(seconds / 2)} on two"
@@ -188,7 +193,10 @@ def plan_rows(study: Study, status: Status) -> list[tuple[str, str]]:
     small = bool(parts) and not grows and seconds / 2 < SHORT
     most = study.config.budget.designs
     generations = f"these are the first generation; it goes on to {most} design{'s' * (most != 1)}, and checks the best"
-    until, where = study.config.until, " at unsure design points" if study.config.method.points else ""
+    until = study.config.until
+    where = ""
+    if study.config.method.points:
+        where = " at unsure design points"
     rows = [
         ("study", f"{study.name} ({study.config.design})"),
         ("cases", f"{status.total}, {status.done} of them solved already"),
@@ -218,4 +226,6 @@ def _upcoming(folder: StudyFolder) -> str:
 
 def _level(name: str, level: Any) -> str:
     """Return a level with all its digits, so that neighbouring levels remain distinct."""
-    return f"{level:.10g}" if isinstance(level, float) else in_words(name, level)
+    if isinstance(level, float):
+        return f"{level:.10g}"
+    return in_words(name, level)

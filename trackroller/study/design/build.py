@@ -120,7 +120,8 @@ def dataset_of(
     places : further coordinates
     attrs : attributes
     """
-    data, n = {}, len(columns["radial_force"])
+    data = {}
+    n = len(columns["radial_force"])
     for name, parameter in PARAMETERS.items():
         meta = {"units": parameter.units, "long_name": parameter.long_name, "symbol": parameter.symbol}
         data[name] = ("case", columns.pop(name), meta)
@@ -197,7 +198,9 @@ def _friction(materials: MaterialDatabase, columns: dict[str, np.ndarray]) -> tu
     def known(value: Any, roller: str, guide: str) -> float:
         if isinstance(value, (int, float)) and not math.isnan(value):
             return float(value)
-        level = value if isinstance(value, str) and value in FRICTION_LEVELS else None
+        level = None
+        if isinstance(value, str) and value in FRICTION_LEVELS:
+            level = value
         records.append(materials.friction_record(roller, guide, level))
         return float(records[-1]["value"])
 

@@ -34,7 +34,11 @@ if TYPE_CHECKING:
     from trackroller.methods import Design
     from trackroller.study.file.config import StudyFile
 
-ROW, ROLLER, LOAD_CASE, SHARE, HOURS = "design_row", "carriage_roller", "load_case", "share", "hours_per_km"
+ROW = "design_row"
+ROLLER = "carriage_roller"
+LOAD_CASE = "load_case"
+SHARE = "share"
+HOURS = "hours_per_km"
 REASONS = "carriage_reasons"  # attribute: JSON, why the rollers do not hold the carriage, by the number of its row
 STIFF = (*GEOMETRY, *MATERIAL_FIELDS)  # on these parameters the stiffness of the contacts depends
 DIGITS = 8  # of a force: the last digits depend on the processor, and a case is known by its numbers
@@ -44,7 +48,9 @@ def given_by(whole: Carriage) -> tuple[str, ...]:
     """Return the parameters of a roller that a carriage gives, so that no study may."""
     if np.isfinite(whole.stroke):
         return (*OF_LOADS, OVERROLLINGS)
-    return OF_LOADS if any(case.speed is not None for case in whole.cases) else LOADS
+    if any(case.speed is not None for case in whole.cases):
+        return OF_LOADS
+    return LOADS
 
 
 def common_values(whole: Carriage) -> dict[str, Any]:
@@ -78,7 +84,9 @@ def expanded(config: StudyFile, design: Design, materials: MaterialDatabase, who
     places, reasons = _loads(design, whole)
     number = places["roller"]
     shares = np.array([case.share for case in whole.cases])
-    parts, order, hours = [], [], []
+    parts = []
+    order = []
+    hours = []
     for j, roller in enumerate(whole.rollers):
         own = np.flatnonzero(number == j)
         if not len(own) or roller.case is None:
@@ -89,7 +97,8 @@ def expanded(config: StudyFile, design: Design, materials: MaterialDatabase, who
         columns, friction = columns_of(base, given, len(own), materials)
         for name in LOADS:
             columns[name] = places[name][own]
-        velocity, speed = columns["velocity"].astype(float), places["speed"][own]
+        velocity = columns["velocity"].astype(float)
+        speed = places["speed"][own]
         hours.append(hours_per_km(shares, places["speeds"][own], velocity))
         columns["velocity"] = np.where(np.isnan(speed), velocity, 60 * speed)
         if np.isfinite(whole.stroke):
@@ -153,7 +162,9 @@ def _statics(whole: Carriage, fields: Mapping[str, float], stiff: Mapping[str, A
         own = changed(replace(whole, rollers=rollers), fields)
         ds = forces_of(own)
     except InputError as error:
-        return f"{error.field} {error.value}: {error.wrong}" if error.wrong else str(error)
+        if error.wrong:
+            return f"{error.field} {error.value}: {error.wrong}"
+        return str(error)
     unsettled = ds["load_case"].values[~ds["converged"].values]
     if unsettled.size:
         return f"case {', '.join(unsettled)}: no forces of the rollers fulfil all conditions of an equilibrium"
@@ -194,7 +205,8 @@ def of_worst_rollers(
         its `reason` says why.
     """
     names, rollers = np.unique(cases[ROLLER].values.astype(str), return_inverse=True)
-    group, kmh = cases[ROW].values * len(names) + rollers, 0.06 * cases["velocity"].values
+    group = cases[ROW].values * len(names) + rollers
+    kmh = 0.06 * cases["velocity"].values
     lives = Lives(group, cases[SHARE].values, kmh, cases[HOURS].values, solved)
     row = cases[ROW].values[lives.first]
     order = np.lexsort((lives.rank, row))
@@ -213,7 +225,9 @@ def of_worst_rollers(
     for name in (*PARAMETERS, *MATERIAL_FIELDS):
         if name in cases and not np.array_equal(cases[name].values, plain[name].values):
             values = cases[name].values[np.maximum(place, 0)]
-            missing = np.nan if values.dtype.kind == "f" else plain[name].values
+            missing: Any = plain[name].values
+            if values.dtype.kind == "f":
+                missing = np.nan
             plain[name] = ("case", np.where(held, values, missing), plain[name].attrs)
     for name, label in ((ROLLER, "worst roller"), (LOAD_CASE, "load case that uses most of its life")):
         values = np.where(held, cases[name].values[np.maximum(place, 0)], "")
@@ -225,7 +239,12 @@ def _without_results(shown: xr.Dataset, gone: np.ndarray, reasons: list[str]) ->
     """Make the rows without a case rows of a lift-off without results, each with its reason."""
     for variable in shown.data_vars.values():
         values = variable.values
-        values[gone] = np.nan if values.dtype.kind == "f" else "" if values.dtype.kind in "OUT" else 0
+        if values.dtype.kind == "f":
+            values[gone] = np.nan
+        elif values.dtype.kind in "OUT":
+            values[gone] = ""
+        else:
+            values[gone] = 0
         variable.values = values
     shown["regime"][gone] = REGIMES.index("lift_off")
     if "reason" in shown:

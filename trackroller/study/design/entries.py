@@ -132,7 +132,9 @@ def field_value(key: str, value: Any, where: str) -> Any:
         return choice(value, where, OPTION_FACTORS[key])
     if key in MATERIAL_FIELDS:
         return _material_name(value, where)
-    return _mapping(key, value, where) if key in MAPPING_FIELDS else _number(PARAMETERS[key], value, where)
+    if key in MAPPING_FIELDS:
+        return _mapping(key, value, where)
+    return _number(PARAMETERS[key], value, where)
 
 
 def _material_name(value: Any, where: str) -> str:
@@ -159,7 +161,10 @@ def _mapping(name: str, value: Any, where: str) -> str:
             )
         return text
     except InputError as exc:
-        field = exc.field.replace(name, where, 1) if exc.field.startswith(name) else f"{where}: {exc.field}"
+        if exc.field.startswith(name):
+            field = exc.field.replace(name, where, 1)
+        else:
+            field = f"{where}: {exc.field}"
         raise exc.named(field) from None
 
 
@@ -197,7 +202,9 @@ def factor(key: Any, spec: Any, factors: Mapping[Any, Any], on_carriage: bool = 
     InputError : unknown name, or an entry that is not allowed
     """
     where = f"factors.{key}"
-    field = field_of(key) if on_carriage and isinstance(key, str) else None
+    field = None
+    if on_carriage and isinstance(key, str):
+        field = field_of(key)
     parameter = PARAMETERS.get(key, field)
     own = key not in FACTOR_NAMES and field is None
     if own and not (isinstance(key, str) and key.isidentifier() and _used(key, factors)):
@@ -228,7 +235,9 @@ def _in_expressions(factors: Mapping[Any, Any]) -> set[str]:
 
 def _unused(name: str, factors: Mapping[Any, Any], on_carriage: bool) -> InputError:
     """Return the error for a factor that is no parameter, no field of the carriage and no name of an expression."""
-    fields = (*OF_WHOLE, *OF_LOAD_CASE) if on_carriage else ()
+    fields: tuple[str, ...] = ()
+    if on_carriage:
+        fields = (*OF_WHOLE, *OF_LOAD_CASE)
     if on_carriage and field_of(own := f"{PREFIX}{name}"):
         allowed = f"parameters of a roller, and fields of the carriage, whose names begin with {PREFIX}"
         return InputError("factors", name, allowed, f"Write {own}.", "is not known")
@@ -274,7 +283,9 @@ def _entries(key: str, kind: Any, value: Any, where: str, parameter: Parameter |
         _refuse_equal_names(key, levels, where)
         return levels
     unit = None if parameter is None else parameter.unit
-    spread = 1 if kind in ("normal", "truncnormal") else None
+    spread = None
+    if kind in ("normal", "truncnormal"):
+        spread = 1
     plain = 1 if kind in ("lognormal", "weibull") else None  # a number without unit beside the median or scale
     numbers = [
         _to_float(entry, "-" if place == plain else unit, where, place == spread) for place, entry in enumerate(value)
@@ -297,5 +308,8 @@ def _refuse_equal_names(key: str, levels: list[Any], where: str) -> None:
 
 
 def _to_float(value: Any, unit: str | None, where: str, difference: bool) -> Any:
-    number = number_or_nan(value, unit, where, difference) if isinstance(value, str) else math.nan
+    if isinstance(value, str):
+        number = number_or_nan(value, unit, where, difference)
+    else:
+        number = math.nan
     return value if math.isnan(number) else number

@@ -47,7 +47,10 @@ def table(path: Any, used: Collection[str] = ()) -> dict[str, np.ndarray]:
     for j, name in enumerate(found.names):
         cells = {number: line[j] for number, line in found.lines.items()}
         numbers = _numbers_of(name, cells)
-        columns[name] = _cells_of(name, cells, path, wrong) if numbers is None else numbers
+        if numbers is None:
+            columns[name] = _cells_of(name, cells, path, wrong)
+        else:
+            columns[name] = numbers
     wrong.check()
     return columns
 
@@ -75,7 +78,8 @@ def read_cases(path: Path, wrong: Collector, used: Collection[str] = ()) -> User
 
 def _check_names(found: UserTable, used: Collection[str], path: Any) -> None:
     """Refuse further columns of a table that look like a parameter, and a table with further columns only."""
-    own, wrong = [name for name in found.names if name not in FACTOR_NAMES and name not in used], Collector()
+    own = [name for name in found.names if name not in FACTOR_NAMES and name not in used]
+    wrong = Collector()
     for name in own:
         with wrong.part():
             bare, unit = split_head(name)  # the name of a further column holds its unit
@@ -117,7 +121,18 @@ def _numbers_of(name: str, cells: Mapping[int, str]) -> np.ndarray | None:
         numbers = np.array([read_number(cell) for cell in cells.values()], dtype=float)
     except ValueError:
         return None
-    return numbers if PARAMETERS[name].accepts(numbers).all() else None
+    if PARAMETERS[name].accepts(numbers).all():
+        return numbers
+    return None
+
+
+def _value_of(name: str, cell: str) -> Any:
+    """Return the checked value of a cell; a column that is no factor holds words."""
+    if name == "material_pair":
+        return field_value(name, [part.strip() for part in cell.split("/")], name)
+    if name in FACTOR_NAMES:
+        return field_value(name, cell, name)
+    return str(cell)
 
 
 def _cells_of(name: str, cells: Mapping[int, str], path: Any, wrong: Collector) -> np.ndarray:
@@ -127,8 +142,7 @@ def _cells_of(name: str, cells: Mapping[int, str], path: Any, wrong: Collector) 
         if not cell or isinstance(cell, Refused):  # the reader has added its error
             continue
         try:
-            pair = [part.strip() for part in cell.split("/")] if name == "material_pair" else cell
-            values.append(field_value(name, pair, name) if name in FACTOR_NAMES else str(cell))
+            values.append(_value_of(name, cell))
         except InputError as error:
             wrong.errors += [one.at(path, number) for one in error.errors]
     return column(values, name in PARAMETERS and not any(isinstance(value, str) for value in values))

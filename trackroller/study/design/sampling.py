@@ -61,7 +61,8 @@ def sample(
     ------
     InputError : unknown method or option, a factor the method cannot take, a value outside its bounds
     """
-    settings, drawn_by = _settings(method, options), METHODS[method]
+    settings = _settings(method, options)
+    drawn_by = METHODS[method]
     if drawn_by.observed:
         used = {name for spec in factors.values() for name in expressions.names(spec.get("expression", "0"))}
         columns = table(settings["table"], used)
@@ -110,10 +111,14 @@ def _settings(method: str, options: Mapping[str, Any]) -> dict[str, Any]:
 
 def _check_weights(free: Mapping[str, Factor], method: str) -> None:
     """Refuse weights in a design that does not draw the values of a list at random."""
-    drawing, outer = those_with("weighs"), METHODS[method].points
+    drawing = those_with("weighs")
+    outer = METHODS[method].points
     for name, factor in free.items():
         if factor.weights and not METHODS[method].random(factor):
-            where = f"the outer array of {method}" if outer else f"design {method}"
+            if outer:
+                where = f"the outer array of {method}"
+            else:
+                where = f"design {method}"
             known = f"a design that draws values at random ({', '.join(drawing)})"
             remedy = f"Remove the weights, or {'add scatter: true' if outer else f'choose design {drawing[0]}'}."
             allowed = f"{known}; {where} takes each value equally often"

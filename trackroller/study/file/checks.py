@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -90,7 +90,9 @@ def cross_check(study: Study) -> None:
             f"base.{name}", config.base[name], "", "Remove one of them.", wrong=f"stands beside a factor {name}"
         )
     if not config.method.proposes and config.method.observed != (config.table is not None):
-        remedy = "Write 'design: table' too." if config.table else "Write 'table: cases.csv' too, with your file."
+        remedy = "Write 'table: cases.csv' too, with your file."
+        if config.table:
+            remedy = "Write 'design: table' too."
         raise InputError("table", config.table, "design: table and the path of a CSV or Excel file together", remedy)
     config.method.check(study.parsed)
     if config.method.proposes and (several := [n for n in OPTION_FACTORS if n in study.factors]):
@@ -118,10 +120,14 @@ def _check_roles(study: Study) -> None:
 def _check_parts(study: Study) -> None:
     """Check `analysis.groups` and `analysis.conditional_on` of a study."""
     config = study.config
-    groups, category = config.analysis.groups, config.analysis.conditional_on
+    groups = config.analysis.groups
+    category = config.analysis.conditional_on
     if not groups and category is None:
         return
-    free = study.drawn.factors if config.method.observed else {n: f for n, f in study.parsed.items() if f.varies}
+    if config.method.observed:
+        free = study.drawn.factors
+    else:
+        free = {n: f for n, f in study.parsed.items() if f.varies}
     if groups:
         _check_groups(config, groups, free, study.factors)
     if category is not None:
@@ -131,7 +137,8 @@ def _check_parts(study: Study) -> None:
 def _check_groups(
     config: Any, groups: Mapping[str, tuple[str, ...]], free: Mapping[str, Factor], specs: Mapping[str, Any]
 ) -> None:
-    names, seen = list(free), set()
+    names = list(free)
+    seen = set()
     if not config.method.grouped:
         allowed = f"design {listing(those_with('grouped'), 'or')}, not {config.design}"
         raise InputError("analysis.groups", list(groups), allowed, "Take design: saltelli.")
@@ -155,7 +162,10 @@ def _check_category(config: Any, name: str, free: Mapping[str, Factor]) -> None:
     where = "analysis.conditional_on"
     by_group = "groups" in config.method.takes and bool(config.analysis.groups)
     if not config.method.conditional or by_group:
-        own = f"{config.design} with analysis.groups" if by_group else config.design
+        if by_group:
+            own = f"{config.design} with analysis.groups"
+        else:
+            own = config.design
         raise InputError(where, name, f"design {listing(those_with('conditional'), 'or')}, not {own}")
     if name not in free:
         raise unknown_name(where, name, [n for n, f in free.items() if f.discrete])
@@ -209,17 +219,23 @@ def _names_of_materials(base: Mapping[str, Any], factors: Mapping[str, Any]) -> 
     roller, guide = MATERIAL_FIELDS
     for field, bodies in ((roller, BODIES[:1]), (guide, BODIES[1:]), ("material_pair", BODIES)):
         spec = factors.get(field)
-        listed = spec.get("values") if isinstance(spec, Mapping) else ()
+        listed = None
+        if isinstance(spec, Mapping):
+            listed = spec.get("values")
         entries = [(f"base.{field}", base.get(field))]
-        entries += [(f"factors.{field}.values", one) for one in listed] if isinstance(listed, (list, tuple)) else []
+        if isinstance(listed, (list, tuple)):
+            entries += [(f"factors.{field}.values", one) for one in listed]
         for where, entry in entries:
-            names = entry if isinstance(entry, (list, tuple)) else (entry,)
+            names: Sequence[Any] = (entry,)
+            if isinstance(entry, (list, tuple)):
+                names = entry
             yield from ((where, body, name) for body, name in zip(bodies, names, strict=False) if isinstance(name, str))
 
 
 def check_cells(study: Study) -> None:
     """Check the names and cells of a table of cases; raise the errors of all its lines together."""
-    wrong, known = Collector(), (*MATERIAL_FIELDS, "material_pair")
+    wrong = Collector()
+    known = (*MATERIAL_FIELDS, "material_pair")
     with wrong.part():
         _ = study.drawn  # names and numbers
     if set(known) & set(column_names(study.table_path, "table")):
@@ -267,7 +283,9 @@ def check_geometry(study: Study) -> None:
         rows = np.array(list(itertools.product(*levels)), dtype=float)
         problem = geometry_problem({name: rows[:, i] for i, name in enumerate(GEOMETRY)})
     if problem is not None:
-        where = "factors" if problem.field in study.factors else "base"
+        where = "base"
+        if problem.field in study.factors:
+            where = "factors"
         raise problem.named(f"{where}.{problem.field}")
 
 
@@ -279,7 +297,10 @@ def _ends(study: Study, name: str) -> list[float]:
         return [float(level) for level in factor.levels]
     if factor.kind in UNBOUNDED:
         return [factor.numbers[0]]
-    low, high = factor.numbers[-2:] if factor.kind == "truncnormal" else (factor.numbers[0], factor.numbers[-1])
+    if factor.kind == "truncnormal":
+        low, high = factor.numbers[-2:]
+    else:
+        low, high = factor.numbers[0], factor.numbers[-1]
     if low < 0 < high and PARAMETERS[name].nonzero:
         raise InputError(f"factors.{name}", [low, high], PARAMETERS[name].allowed(), wrong="holds 0")
     return [low, high]

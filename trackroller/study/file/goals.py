@@ -44,7 +44,9 @@ STATISTICS_OF = {  # by the key of a study file
 
 def without_spaces(value: Any) -> Any:
     """Return a mapping from outputs with their names as they are stored; the type of the field refuses other values."""
-    return {str(name).replace(" ", ""): own for name, own in value.items()} if isinstance(value, Mapping) else value
+    if isinstance(value, Mapping):
+        return {str(name).replace(" ", ""): own for name, own in value.items()}
+    return value
 
 
 class Analysis(BaseModel):
@@ -90,7 +92,9 @@ class Analysis(BaseModel):
     def _outputs(cls, value: tuple[str, ...] | None) -> tuple[str, ...] | None:
         if value is not None and not value:
             raise InputError("analysis.outputs", [], "at least one output", "Remove the key for the usual outputs.")
-        return None if value is None else tuple(dict.fromkeys(value))
+        if value is None:
+            return None
+        return tuple(dict.fromkeys(value))
 
     @field_validator("material_scatter", mode="before")
     @classmethod
@@ -245,7 +249,8 @@ def check(config: Any, factors: Mapping[str, Factor]) -> None:
 
 def check_analysed(config: Any) -> None:
     """Check that the outputs under `analysis` and `requirement` are results of the study; raise all errors together."""
-    known, scale = names_of_outputs(config), config.analysis.scale
+    known = names_of_outputs(config)
+    scale = config.analysis.scale
     asked = {
         "analysis.outputs": (*(config.analysis.outputs or ()), *(scale if isinstance(scale, dict) else ())),
         KEY: config.requirement,
@@ -288,7 +293,9 @@ def check_statistic(config: Any, entry: tuple[str, str], kind: str, output: str,
 def statistic(name: str, kinds: tuple[str, ...] = STATISTICS) -> tuple[str, str]:
     """Split 'b10(roller_life_hours)' into the statistic and its output; ('', name) for a plain name."""
     kind, bracket, output = name.replace(" ", "").partition("(")
-    return (kind, output[:-1]) if bracket and kind in kinds and output.endswith(")") else ("", name)
+    if bracket and kind in kinds and output.endswith(")"):
+        return kind, output[:-1]
+    return "", name
 
 
 def _check_constraints(config: Any, factors: Mapping[str, Factor], free: list[str]) -> None:
@@ -307,7 +314,9 @@ def unknown_result(where: str, name: str, known: Iterable[str], groups: Iterable
     if kinds := STATISTICS_OF.get(where) if "(" in name else None:
         allowed = f"a result, or {listing(kinds, 'or')} of one"
         return InputError(where, name, allowed, f"For example {kinds[0]}({name.partition('(')[2].rstrip(') ')}).")
-    variable = PARTS[name].variable if name in PARTS else VARIABLES.get(name)
+    variable = VARIABLES.get(name)
+    if name in PARTS:
+        variable = PARTS[name].variable
     if variable is not None and variable.group not in set(groups):
         if variable.group == "status":
             return InputError(where, name, "a result or a factor")

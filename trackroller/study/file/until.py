@@ -51,8 +51,11 @@ def check_until(config: Any) -> None:
     for key, drawn in (("design", config.design), ("inner", config.inner)):
         if drawn is not None and not METHODS[drawn].grows:
             allowed = f"with until: {listing(those_with('grows'), 'or')}, which grow by more samples"
-            allowed = allowed if key == "design" else "with until: sobol, whose rows stay as the sample grows"
-            remedy = f"Write {key}: sobol" if METHODS[drawn].weighs else "Choose one of them"
+            if key != "design":
+                allowed = "with until: sobol, whose rows stay as the sample grows"
+            remedy = "Choose one of them"
+            if METHODS[drawn].weighs:
+                remedy = f"Write {key}: sobol"
             raise InputError(key, drawn, allowed, f"{remedy}, or remove until.")
     if "groups" in config.method.takes and config.analysis.groups:
         groups = list(config.analysis.groups)
@@ -69,7 +72,10 @@ def check_until(config: Any) -> None:
 def _check_of(config: Any, name: str, known: list[str]) -> None:
     """Check one entry of `until.of`."""
     points = config.method.points
-    kind, output = statistic(name) if points else ("", name)
+    if points:
+        kind, output = statistic(name)
+    else:
+        kind, output = "", name
     if kind == "probability" and output in (*config.requirement, *REGIMES):
         return
     if kind == "probability":

@@ -178,7 +178,9 @@ class Spectrum:
         with wrong.part():
             found["failure_probabilities"] = _probabilities(values.get("failure_probabilities", PROBABILITIES))
         with wrong.part():
-            found["duty"] = checked_duty(values["duty"]) if values.get("duty") is not None else None
+            found["duty"] = None
+            if values.get("duty") is not None:
+                found["duty"] = checked_duty(values["duty"])
         left_out = {}
         with wrong.part():
             if "limits" in values:
@@ -249,15 +251,20 @@ def _blocks(given: Any, base: Any) -> tuple[tuple[Block, ...], bool]:
     Raises the errors of all blocks and of `base` together.
     """
     wrong = Collector()
-    path = find_beside(given, "blocks") if isinstance(given, str) else None
-    table = None if path is None else read_table(path, "blocks", "block", wrong, optional=OPTIONAL)
-    blocks = given if table is None else _entries(table, path, wrong)
+    table = None
+    path = None
+    blocks = given
+    if isinstance(given, str):
+        path = find_beside(given, "blocks")
+        table = read_table(path, "blocks", "block", wrong, optional=OPTIONAL)
+        blocks = _entries(table, path, wrong)
     if not isinstance(blocks, list) or not blocks:
         example = "Write - {name: loaded, distance: 4000, radial_force: -300}."
         raise InputError("blocks", blocks, "a list of blocks that is not empty, or the name of a table", example)
     if not isinstance(base, Mapping):
         raise InputError("base", base, "a mapping of case fields to values")
-    base, made = renamed(base), []
+    base = renamed(base)
+    made = []
     try:
         Case.from_dict(base)
     except InputError as error:
@@ -267,9 +274,7 @@ def _blocks(given: Any, base: Any) -> tuple[tuple[Block, ...], bool]:
         try:
             made.append(_block(entry, base, i + 1))
         except InputError as error:
-            for one in error.errors:
-                one.path = ("blocks", str(i))
-                wrong.errors.append(one if table is None else one.at(path, list(table.lines)[i]))
+            wrong.errors += [_placed(one, i, table, path) for one in error.errors]
     wrong.check()
     names = Counter(block.name for block in made).most_common(1)
     if names[0][1] > 1:
@@ -282,13 +287,22 @@ def _blocks(given: Any, base: Any) -> tuple[tuple[Block, ...], bool]:
     return tuple(made), any(by_share)
 
 
+def _placed(error: InputError, i: int, table: UserTable | None, path: Path | None) -> InputError:
+    """Return an error of a block with its place: its line in a table, or its number in `blocks`."""
+    error.path = ("blocks", str(i))
+    if table is None:
+        return error
+    return error.at(path, list(table.lines)[i])
+
+
 def _check_shares(made: list[Block], by_share: list[bool]) -> None:
     """Refuse shares beside distances or hours, and shares that do not add up to 1."""
     if not all(by_share):
         other = made[by_share.index(False)].name
         allowed = "a share in each block, because a share of the time is no part of a shift"
         raise InputError(f"block '{other}'.share", None, allowed, "Give share in all blocks, or hours in all of them.")
-    if abs((whole := sum(block.hours for block in made)) - 1.0) > 1e-6:
+    whole = sum(block.hours for block in made)
+    if abs(whole - 1.0) > 1e-6:
         remedy = "Write 0.2 or 20 % for a fifth of the time of travel."
         raise InputError("share", whole, "shares of the blocks that add up to 1", remedy)
 
@@ -324,7 +338,8 @@ def _block(entry: Any, base: Mapping[str, Any], number: int) -> Block:
         raise InputError(f"blocks[{number}]", entry, "a mapping such as {distance: 4000, radial_force: -300}")
     entry = renamed(entry)
     name = checked_text(str(entry.get("name") or f"block {number}"), "name of a block")
-    where, wrong = f"block '{name}'", Collector()
+    where = f"block '{name}'"
+    wrong = Collector()
     with wrong.part():
         _check_fields(list(entry), where, entry)
     made: dict[str, Any] = {"name": name}
@@ -406,7 +421,11 @@ def overrollings_per_shift(spectrum: Spectrum) -> np.ndarray:
         guide = block.guide_overrollings
         if guide is None:
             per_hour = case.guide_overrollings_per_hour
-            guide = math.nan if per_hour is None else per_hour * block.hours
-        guide = 0.0 if block.distance == 0 and block.guide_overrollings is None else guide
+            if per_hour is None:
+                guide = math.nan
+            else:
+                guide = per_hour * block.hours
+        if block.distance == 0 and block.guide_overrollings is None:
+            guide = 0.0
         rows.append((block.distance * 1e3 / (2 * math.pi * float(radius)), guide))
     return np.array(rows, dtype=float)

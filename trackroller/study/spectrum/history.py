@@ -69,8 +69,13 @@ def spectrum_of_log(path: Path | str, roller: Mapping[str, Any]) -> tuple[dict[s
     fields, options = parts_for_spectrum(roller)
     if any("velocity" in block for block in blocks):
         fields.pop("velocity", None)
-    duty = {"duty": given["duty"]} if "duty" in given else {}
-    levels_ = "1 level of load" if len(blocks) == 1 else f"{len(blocks)} levels of load"
+    duty = {}
+    if "duty" in given:
+        duty = {"duty": given["duty"]}
+    if len(blocks) == 1:
+        levels_ = "1 level of load"
+    else:
+        levels_ = f"{len(blocks)} levels of load"
     whole = {"lines": len(log.travel), "file": path.name, "levels": levels_}
     whole |= {"km": float(log.travel.sum() / 1e3), "hours": float(log.hours.sum())}
     log.doubts.insert(0, Doubt("lines", values=whole))

@@ -94,7 +94,9 @@ def _check_names(log: LogColumns) -> None:
     """Refuse a log without the columns that it needs, and with two that say the same."""
     has_axis = "time" in log.values or "distance" in log.values
     if not has_axis or "radial_force" not in log.values:
-        lacking = "radial_force" if has_axis else "time or distance"
+        lacking = "time or distance"
+        if has_axis:
+            lacking = "radial_force"
         allowed = "columns time or distance, radial_force, and where they vary axial_force and velocity"
         raise InputError(FIELD, ", ".join(log.names), allowed, f"Name a column {lacking}.").at(log.path, log.head)
     if {"speed", "velocity"} <= set(log.values):
@@ -167,7 +169,10 @@ def _travel_and_hours(
         doubts.append(Doubt("no_velocity", values={"velocity": velocity}))
     elif pace is not None and (pace < 0).any():
         doubts.append(Doubt("speed_back", values={"share": 100 * float(np.mean(pace < 0))}))
-    speed = np.full(len(log), velocity) if pace is None else np.abs(pace)
+    if pace is None:
+        speed = np.full(len(log), velocity)
+    else:
+        speed = np.abs(pace)
     speed = speed / 60  # m/s
     hold = answers.hold or "middle"
     if answers.hold is not None:
@@ -179,7 +184,9 @@ def _travel_and_hours(
         with np.errstate(divide="ignore", invalid="ignore"):
             return travel, np.where(speed > 0, travel / speed / 3600, 0.0)
     seconds = time_steps(log, doubts)
-    moved = distance_steps(log, seconds, doubts) if counted else None
+    moved = None
+    if counted:
+        moved = distance_steps(log, seconds, doubts)
     steps = Steps("time", seconds, moved)
     steps.cut_gaps(log, answers.hold, doubts, questions)
     held = _of_lines(steps.along, hold)
@@ -200,12 +207,17 @@ def _compare_travel(
     questions: Collector,
 ) -> None:
     """Compare what the columns of distance and speed [m/s] say of the steps that are neither gaps nor jumps."""
-    of_steps = speed[:-1] if answers.hold == "last" else (speed[:-1] + speed[1:]) / 2
+    if answers.hold == "last":
+        of_steps = speed[:-1]
+    else:
+        of_steps = (speed[:-1] + speed[1:]) / 2
     usual = steps.usual
     distance = float(moved[usual].sum())
     by_speed = float((of_steps * steps.along)[usual].sum())
     difference = abs(distance - by_speed) / max(distance, by_speed, 1e-300)
-    column = "velocity" if "velocity" in log.values else "speed"
+    column = "speed"
+    if "velocity" in log.values:
+        column = "velocity"
     if difference > ASKED_ABOVE and answers.travel is None:
         questions.errors.append(travel_question(distance, by_speed, column).at(log.path, log.head))
     elif difference > TOLD_ABOVE:

@@ -94,10 +94,15 @@ def read_columns(path: Path, answers: LogAnswers) -> LogColumns:
 def _heads(path: Path, wrong: Collector) -> UserTable:
     """Return the table of the first lines of a log, with its names, units and decimal sign; all of a workbook."""
     with opened(path, FIELD, MOST_BYTES, SMALLER) as stream:
-        first = stream.read() if is_workbook(path) else stream.read(FIRST_BYTES)
+        if is_workbook(path):
+            first = stream.read()
+        else:
+            first = stream.read(FIRST_BYTES)
     if len(first) == FIRST_BYTES and not is_workbook(path):
         wide = first.startswith(UTF_16)
-        newline = "\n".encode("utf-16-le" if first.startswith(codecs.BOM_UTF16_LE) else "utf-16-be") if wide else b"\n"
+        newline = b"\n"
+        if wide:
+            newline = "\n".encode("utf-16-le" if first.startswith(codecs.BOM_UTF16_LE) else "utf-16-be")
         end = first.rfind(newline)
         while wide and end % 2 and end > 0:  # between two letters
             end = first.rfind(newline, 0, end)
@@ -119,7 +124,9 @@ def _stated_unit(name: str, heads: UserTable) -> str:
 
 def _scale(name: str, heads: UserTable) -> float:
     unit = _stated_unit(name, heads)
-    return in_unit(1.0, unit, COLUMNS[name], name) if unit else 1.0
+    if unit:
+        return in_unit(1.0, unit, COLUMNS[name], name)
+    return 1.0
 
 
 def _pieces(path: Path, heads: UserTable) -> Iterator[tuple[np.ndarray, dict[str, list[str]]]]:
@@ -133,7 +140,10 @@ def _pieces(path: Path, heads: UserTable) -> Iterator[tuple[np.ndarray, dict[str
         first = stream.read(FIRST_BYTES)
         wide = first.startswith(UTF_16)
         _refuse_zeros(stream, path, wide)
-    quoted = '"'.encode("utf-16-le") in first if wide else b'"' in first
+    if wide:
+        quoted = '"'.encode("utf-16-le") in first
+    else:
+        quoted = b'"' in first
     try:
         with pd.read_csv(
             path,
@@ -204,8 +214,9 @@ def _numbers(
     for name, column in cells.items():
         unit = heads.units[heads.names.index(name)]
         values[name] = _numbers_of(name, column, unit, signs, answers)
-        missing = np.array([cell.lower() in answers.missing_words for cell in column]) if answers.missing else False
-        bad = ~np.isfinite(values[name]) & ~np.asarray(missing)
+        bad = ~np.isfinite(values[name])
+        if answers.missing:
+            bad &= [cell.lower() not in answers.missing_words for cell in column]
         for row in np.flatnonzero(bad)[:30]:
             wrong.errors.append(_refused(name, column[row], path, int(lines[row])))
         unit = _stated_unit(name, heads)
@@ -234,7 +245,9 @@ def _plain_numbers(cells: Sequence[str]) -> np.ndarray | None:
         numbers = np.fromiter(map(float, cells), float, len(cells))
     except ValueError:
         return None
-    return numbers if np.isfinite(numbers).all() and "_" not in "".join(cells) else None
+    if np.isfinite(numbers).all() and "_" not in "".join(cells):
+        return numbers
+    return None
 
 
 def _number_of(cell: str, unit: str, wanted: str, name: str) -> float:

@@ -106,13 +106,19 @@ class Doubt:
     def text(self) -> str:
         """Return the doubt in words."""
         one, several = COUNTED.get(self.code, ("", ""))
-        counted = one if self.count == 1 else several.format(self.count)
+        if self.count == 1:
+            counted = one
+        else:
+            counted = several.format(self.count)
         return TOLD[self.code].format(counted=counted, line=self.line, **self.values)
 
     @property
     def record(self) -> dict[str, Any]:
         """Return the doubt as the entries of a file."""
-        place = {} if self.line is None else {"count": self.count, "line": self.line}
+        if self.line is None:
+            place = {}
+        else:
+            place = {"count": self.count, "line": self.line}
         return {"code": self.code} | place | dict(self.values)
 
 
@@ -139,7 +145,9 @@ def travel_question(distance: float, speed: float, column: str) -> InputError:
     ratio = speed / distance if distance else 0.0
     size = UNITS[COLUMN_UNIT[column]]
     meant = [unit for unit, own in UNITS.items() if abs(ratio * own / size - 1) < 0.03]
-    hint = f"Write {column} [{meant[0]}] if this is its unit. " if meant else ""
+    hint = ""
+    if meant:
+        hint = f"Write {column} [{meant[0]}] if this is its unit. "
     remedy = f"{hint}Write log: {{travel: distance}} or log: {{travel: velocity}} in the case file."
     wrong = f"adds up to {distance:.4g} m, and {column} to {speed:.4g} m in the same lines"
     return InputError("distance", f"{distance:.4g} m", f"the travel that {column} gives", remedy, wrong)
@@ -189,7 +197,8 @@ def marks_of(values: np.ndarray, scale: float) -> list[float]:
         for end, (start, stop) in ends.items():
             others = different[start:stop]
             distance = abs(different[end] - (others[0] if end == low else others[-1]))
-            spread, largest = float(np.ptp(others)), float(np.abs(others).max())
+            spread = float(np.ptp(others))
+            largest = float(np.abs(others).max())
             known = is_mark(float(f"{different[end] / scale:.9g}"))
             beyond = distance > FAR * spread and abs(different[end]) > 2 * largest
             if known and distance > max(spread, 0.5 * largest):
@@ -217,7 +226,9 @@ def spikes_of(values: np.ndarray, size: float) -> np.ndarray:
         Usual size of the column: a change far below is no spike, also where the column is constant otherwise.
     """
     change = np.diff(values)
-    usual = float(np.median(np.abs(change))) if change.size else 0.0
+    usual = 0.0
+    if change.size:
+        usual = float(np.median(np.abs(change)))
     least = max(SPIKE * usual, RELEVANT * size)
     far = np.minimum(np.abs(change[:-1]), np.abs(change[1:])) > least
     return np.flatnonzero(far & (change[:-1] * change[1:] < 0)) + 1
@@ -225,7 +236,9 @@ def spikes_of(values: np.ndarray, size: float) -> np.ndarray:
 
 def usual_size(values: np.ndarray) -> float:
     """Return the size of a column (n,) without its few largest values."""
-    return float(np.percentile(np.abs(values), 90)) if values.size else 0.0
+    if values.size:
+        return float(np.percentile(np.abs(values), 90))
+    return 0.0
 
 
 def force_doubts(column: str, force: np.ndarray, size: float, lines: np.ndarray) -> list[Doubt]:

@@ -36,7 +36,8 @@ OF_CURVE = (
     *("tensile_strength", "fatigue_limit", "cycles_at_tensile_strength", "cycles_at_fatigue_limit"),
     *("scatter_in_cycles", "scatter_in_stress", "second_exponent"),
 )
-_BCB, _CB = ("block", "contact", "body"), ("contact", "body")
+_BCB = ("block", "contact", "body")
+_CB = ("contact", "body")
 
 
 def solve_spectrum(
@@ -73,7 +74,8 @@ def solve_spectrum(
         from trackroller.roller.solver import solve as solve_cases  # numba compiles on import
     else:
         solve_cases = solve
-    database = load_database() if database is None else database
+    if database is None:
+        database = load_database()
     overrollings = overrollings_per_shift(spectrum)
     cases = cases_of(spectrum, overrollings)
     wanted = dict.fromkeys(("forces", "peak_stress", "life", verdict.GROUP, *spectrum.groups))
@@ -83,7 +85,8 @@ def solve_spectrum(
 
 def curves(spectrum: Spectrum, solved: xr.Dataset, bodies: list[Material], rule: str) -> list[SNCurve]:
     """Return the S-N curves of roller and guide at their temperature in each block, values (block, 1)."""
-    reached, out = temperatures_of(solved, [[block.case.ambient_temperature] for block in spectrum.blocks]), []
+    reached = temperatures_of(solved, [[block.case.ambient_temperature] for block in spectrum.blocks])
+    out = []
     for material, at in zip(bodies, reached.T, strict=True):
         warm = [material.at(temperature) for temperature in at]
         values = {name: np.array([[getattr(own, name)] for own in warm], dtype=float) for name in OF_CURVE}
@@ -145,7 +148,8 @@ def _damage(spectrum: Spectrum, solved: xr.Dataset, database: MaterialDatabase, 
     }
     distance, duration = (float(np.sum(variables[name][1])) for name in ("distance", "duration"))
     for i, body in enumerate(BODIES):
-        index, to = ("TR", "G")[i], f"to the first failure of the {body}"
+        index = ("TR", "G")[i]
+        to = f"to the first failure of the {body}"
         for unit, name, words, scale in (
             ("1", "shifts", "shifts", 1.0),
             ("km", "km", "distance", distance / 1e3),
@@ -243,7 +247,9 @@ def cases_of(spectrum: Spectrum, overrollings: np.ndarray) -> list[Case]:
     made = []
     for block, own in zip(spectrum.blocks, overrollings, strict=True):
         known = block.guide_overrollings and block.hours > 0
-        more = {"guide_overrollings_per_hour": float(own[1]) / block.hours} if known else {}
+        more = {}
+        if known:
+            more = {"guide_overrollings_per_hour": float(own[1]) / block.hours}
         made.append(replace(block.case, **more))
     return made
 

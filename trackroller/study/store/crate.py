@@ -92,7 +92,9 @@ def _references(names: Iterable[str]) -> list[dict[str, str]]:
 def _file(root: Path, name: str, digest: str) -> dict[str, Any]:
     path = root / name
     entry = _entry(name, "File", sha256=digest, contentSize=path.stat().st_size)
-    kind = "application/yaml" if path.suffix == ".yaml" else mimetypes.guess_type(name, strict=False)[0]
+    kind = mimetypes.guess_type(name, strict=False)[0]
+    if path.suffix == ".yaml":
+        kind = "application/yaml"
     if kind is not None:
         entry["encodingFormat"] = kind
     if name == STUDY_FILE:
@@ -108,7 +110,8 @@ def _graph(
 
     `inputs` and `results` hold the digest of each file by its name.
     """
-    programs, work = versions(), "CreativeWork"
+    programs = versions()
+    work = "CreativeWork"
     return [
         _entry(CRATE, work, about={"@id": "./"}, conformsTo={"@id": "https://w3id.org/ro/crate/1.1"}),
         _entry(

@@ -229,7 +229,9 @@ class StudyFolder:
     def earlier(self) -> dict[str, Any]:
         """Return the study as it was planned last, {} if it was not planned."""
         text = self.record().get("study")
-        return {} if text is None else parse_mapping(text, str(self.plan_file))
+        if text is None:
+            return {}
+        return parse_mapping(text, str(self.plan_file))
 
     def write_record(self, record: Mapping[str, Any]) -> None:
         """Write the record of the plan with its digest, and the mark that the folder is ours."""

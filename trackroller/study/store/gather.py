@@ -26,7 +26,8 @@ MOST_MEMORY = 10_000_000  # bytes of a result in memory; a larger one lies in a 
 
 def write_design(ledger: Ledger) -> None:
     """Write `design.nc`, the cases of a study, and record its digest."""
-    design, path = ledger.cases.design, ledger.folder.design
+    design = ledger.cases.design
+    path = ledger.folder.design
     title = f"Cases of the parameter study '{ledger.study.name}' of locating-bearing track rollers"
     described = design.assign_attrs(file_attributes(title, "drawn") | design.attrs)
     encoding = {str(name): {"_FillValue": None} for name in described.variables}
@@ -60,7 +61,9 @@ def gather(ledger: Ledger, tell: Tell = unheard, attrs: Mapping[str, str] | None
     The time is proportional to the number of results. A result above `MOST_MEMORY` passes through a temporary
     file in the study's folder.
     """
-    study, folder, ledger = ledger.study, ledger.folder, ledger.anew()
+    study = ledger.study
+    folder = ledger.folder
+    ledger = ledger.anew()
     if not digests_of(folder.design):
         write_design(ledger)
     count = len(ledger.place)

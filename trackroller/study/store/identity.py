@@ -77,11 +77,15 @@ def fingerprints(table: CaseTable, *options: Mapping[str, Any], group: np.ndarra
     rows += 0.0  # -0.0 becomes 0.0
     rows[np.isnan(rows)] = np.nan  # every NaN gets the same bits
     heads = [hashlib.sha256(_prefix(one)) for one in options]
-    numbers = [0] * len(rows) if group is None else group.tolist()
+    if group is None:
+        numbers = [0] * len(rows)
+    else:
+        numbers = group.tolist()
     texts = [getattr(table, name) for name in MAPPING_FIELDS]
     texts += [text for body in (table.roller, table.guide) for text in (body.temperature_dependence, body.sn_points)]
     given = any(np.any(column != "") for column in texts)
-    data, width = rows.reshape(-1).view(np.uint8).data, rows.itemsize * rows.shape[1]
+    data = rows.reshape(-1).view(np.uint8).data
+    width = rows.itemsize * rows.shape[1]
     digests = bytearray()
     for i, number in enumerate(numbers):
         digest = heads[number].copy()

@@ -195,10 +195,12 @@ def sound_ledger(found: Ledger) -> tuple[Ledger | None, list[str]]:
     Each case must be in a solved file or in the sound list of an open chunk, and no case of an open chunk may be solved
     already, as it is after a process was killed while it forgot failed cases.
     """
-    folder, ledger = found.folder, read_ledger(found.study, found.folder)
+    folder = found.folder
+    ledger = read_ledger(found.study, found.folder)
     if ledger is None:
         return None, []
-    sound, damaged = set(ledger.uses) <= {path.name for path in found.paths}, []
+    sound = set(ledger.uses) <= {path.name for path in found.paths}
+    damaged = []
     for name in ledger.chunks:
         try:
             listed = chunks.check(folder.case_list(name))
@@ -210,7 +212,9 @@ def sound_ledger(found: Ledger) -> tuple[Ledger | None, list[str]]:
 
 def planned(found: Ledger) -> Ledger:
     """Return the ledger in which each case that no file holds has a chunk, and write the case lists of these chunks."""
-    study, folder, cases = found.study, found.folder, found.cases
+    study = found.study
+    folder = found.folder
+    cases = found.cases
     names, (options, group) = cases.fingerprints, cases.options
     wanted, first = np.unique(names, return_index=True)
     place = found.find(wanted)
@@ -243,16 +247,21 @@ def unused_cases(ledger: Ledger) -> str:
     ledger : Ledger
         The ledger of the study, whose design may differ from the one that was solved.
     """
-    study, folder = ledger.study, ledger.folder
-    solved, place = ledger.states.sizes["case"], ledger.place
+    study = ledger.study
+    folder = ledger.folder
+    solved = ledger.states.sizes["case"]
+    place = ledger.place
     if study.config.method.proposes or study.config.until is not None:  # each step is a design of its own
         return ""
     if not solved or folder.of_another_solver or not (unused := solved - len(np.unique(place[place >= 0]))):
         return ""
-    before, remedy = folder.earlier(), "They stay in chunks/."
+    before = folder.earlier()
+    remedy = "They stay in chunks/."
     earlier = before.get("factors", {})
     added = [name for name in study.config.factors if name not in earlier]
-    why = f": {' and '.join(added)} became a factor" if earlier and added else ""
+    why = ""
+    if earlier and added:
+        why = f": {' and '.join(added)} became a factor"
     if why and not study.config.method.crossed:
         remedy = (
             f"A {study.config.design} design with another factor is drawn anew. To keep both, give it another name."
@@ -273,14 +282,18 @@ def _keeps_rows(study: Study) -> bool:
 
 def _split(rows: np.ndarray, size: int) -> list[np.ndarray]:
     """Return the rows in parts of at most `size` rows."""
-    return np.array_split(rows, math.ceil(len(rows) / size)) if len(rows) else []
+    if len(rows):
+        return np.array_split(rows, math.ceil(len(rows) / size))
+    return []
 
 
 def _levels_of(study: Study, rows: np.ndarray) -> list[str]:
     """Return the levels of the cases of a chunk for each listed factor of which the chunk holds some levels only."""
     words = []
     for name, factor in study.drawn.factors.items():
-        levels = list(dict.fromkeys(study.drawn.columns[name][rows].tolist())) if factor.discrete else []
+        levels = []
+        if factor.discrete:
+            levels = list(dict.fromkeys(study.drawn.columns[name][rows].tolist()))
         if not 0 < len(levels) < len(factor.levels):
             continue
         if factor.numeric and len(levels) > 1:
@@ -341,7 +354,9 @@ def working_ledger(
     """
     folder = study_folder(study.name, results).create()
     with open(folder.lock, "rb+") as lock:
-        ledger = _plan(study, folder, tell, rerun_failed) if try_lock(lock) else None
+        ledger = None
+        if try_lock(lock):
+            ledger = _plan(study, folder, tell, rerun_failed)
         wait_for_lock(lock, shared=True)
         if ledger is None and not rerun_failed:  # another process has planned
             ledger = read_ledger(study, folder)
@@ -379,7 +394,8 @@ def _plan(study: Study, folder: StudyFolder, tell: Tell, rerun_failed: bool) -> 
 
 def _check_same_study(study: Study, folder: StudyFolder) -> None:
     """Refuse the folder of another study that was given the name of this one; a study may have been renamed itself."""
-    earlier, now = folder.earlier(), parse_mapping(study.merged(), "study file")
+    earlier = folder.earlier()
+    now = parse_mapping(study.merged(), "study file")
     other = earlier.get("name", study.name)
     if other != study.name and any(earlier.get(key) != now.get(key) for key in ("base", "factors")):
         remedy = "Give this study another name, choose another --results, or rename the folder."
@@ -403,7 +419,10 @@ def _keep(ledger: Ledger) -> None:
     manifest = Manifest(folder.root)
     earlier = folder.record()
     record = record_of(ledger, store_inputs(ledger.study, folder, ledger.cases.design))
-    record["planned"] = earlier.get("planned", now()) if earlier.get("study") == record["study"] else now()
+    if earlier.get("study") == record["study"]:
+        record["planned"] = earlier.get("planned", now())
+    else:
+        record["planned"] = now()
     if record != earlier:
         folder.write_record(record)
     for path in folder.lock.parent.iterdir():

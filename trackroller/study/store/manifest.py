@@ -53,11 +53,14 @@ from trackroller.files import (
 )
 
 WHAT = "results folder"  # in messages
-MARK, LIST, CRATE = STUDY_MARK, "plan/files.jsonl", "ro-crate-metadata.json"
+MARK = STUDY_MARK
+LIST = "plan/files.jsonl"
+CRATE = "ro-crate-metadata.json"
 LONE = ".trackroller.jsonl"  # manifest of a folder of figures that lies in no study
 STORE_FORMAT = 1  # raise it when a file of the store gets another meaning; other formats are refused by name
 OURS = {"store_format": STORE_FORMAT, "made_by": "trackroller", "manifest": LIST}  # the mark
-SCRATCH, LOCK = "plan/.scratch", "plan/.manifest"
+SCRATCH = "plan/.scratch"
+LOCK = "plan/.manifest"
 MAPPINGS = ("inputs", "chunks")  # keys of the plan that hold an entry for each name
 GATHERED = "study.nc"
 REPORT = ("sensitivity.nc", "report.html", "figures", "tables")  # what is made from the gathered results
@@ -185,7 +188,9 @@ class Manifest:
 
     def _held(self) -> contextlib.AbstractContextManager[None]:
         """Keep other processes from adding lines to the list of a study, on a network disk too."""
-        return locked(self.root / LOCK) if self.of_study else contextlib.nullcontext()
+        if self.of_study:
+            return locked(self.root / LOCK)
+        return contextlib.nullcontext()
 
     def owns(self, path: Path, new: str = "", listed: Contents | None = None) -> bool:
         """Return whether the place of a file is free, or holds a file of ours that was not changed.
@@ -261,7 +266,10 @@ class Manifest:
             wrong += f"; so it is with {', '.join(map(str, paths[1:6]))}"
         if len(paths) > 6:
             wrong += f" and {len(paths) - 6} more"
-        remedy = AGAIN if len(paths) == 1 else AGAIN.replace(" it,", " these files,")
+        if len(paths) == 1:
+            remedy = AGAIN
+        else:
+            remedy = AGAIN.replace(" it,", " these files,")
         return InputError("file", str(first), "a file as trackroller wrote it", remedy, wrong)
 
     def discard(self, *results: Path) -> None:
@@ -316,7 +324,10 @@ def replacing(path: Path) -> Iterator[Path]:
     """
     check_place(path, "file to write")
     manifest = _manifest_to_write(path)
-    beside = scratch_name(path) if manifest is None else manifest.scratch(path)
+    if manifest is None:
+        beside = scratch_name(path)
+    else:
+        beside = manifest.scratch(path)
     try:
         with disk_errors(path):
             path.parent.mkdir(parents=True, exist_ok=True)
@@ -437,7 +448,10 @@ def why_altered(path: Path) -> str | None:
 def _listed(path: Path) -> tuple[Path, Contents, Path]:
     """Return the folder of a result, the digests that are listed of its files, and the file that lists them."""
     manifest = manifest_of(path)
-    current = {} if manifest is None else manifest.current(path)
+    if manifest is None:
+        current = {}
+    else:
+        current = manifest.current(path)
     if manifest is not None and current:
         contents = manifest.contents()
         return manifest.root, {name: contents[name] for name in current}, manifest.path
@@ -465,7 +479,9 @@ def digests_of(path: Path) -> dict[str, str]:
     """Return the digest of each file of a result; {} unless it is listed and holds what was written down last."""
     root, listed, _ = _listed(path)
     newest = {name: digests[-1] for name, digests in listed.items()}
-    return newest if all(digest_of_file(root / name) == digest for name, digest in newest.items()) else {}
+    if all(digest_of_file(root / name) == digest for name, digest in newest.items()):
+        return newest
+    return {}
 
 
 def sweep(root: Path) -> None:
@@ -508,7 +524,9 @@ def sums_up(content: bytes) -> bool:
 def digest_of_file(path: Path) -> str:
     """Return the digest of a regular file, '' for anything else."""
     try:
-        return sha256(path) if stat.S_ISREG(os.lstat(path).st_mode) else ""
+        if stat.S_ISREG(os.lstat(path).st_mode):
+            return sha256(path)
+        return ""
     except OSError:
         return ""
 
