@@ -29,7 +29,7 @@ from trackroller.report.tables.table import cell
 from trackroller.results.answer import Answer
 from trackroller.results.carriage_answer import answer_of_carriage, worst_place
 from trackroller.roller.aliases import ALIASES
-from trackroller.study.store.manifest import digest_of_text
+from trackroller.study.store.digests import digest_of_text
 from trackroller.yaml_file import change_yaml, errors_by_line, parse_mapping, write_yaml
 
 LONGEST = 200_000  # bytes of a file that the list looks into

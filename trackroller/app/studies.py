@@ -34,16 +34,11 @@ from trackroller.study.file.load import parse_study
 from trackroller.study.file.study import Study
 from trackroller.study.outputs import default_names, outputs
 from trackroller.study.status import plan_rows, status_of
+from trackroller.study.store.digests import digest_of_file, digest_of_text
 from trackroller.study.store.folder import StudyFolder, delete_study
-from trackroller.study.store.manifest import (
-    Manifest,
-    check_unaltered,
-    claim,
-    digest_of_file,
-    digest_of_text,
-    is_study,
-    why_altered,
-)
+from trackroller.study.store.manifest import Manifest, check_unaltered, why_altered
+from trackroller.study.store.mark import is_study
+from trackroller.study.store.put import claim
 from trackroller.yaml_file import errors_by_line, parse_mapping, write_yaml
 
 TEXTS = Path("studies")

@@ -31,7 +31,7 @@ from trackroller.study.status import Status, find_folder, find_study, plan_rows,
 from trackroller.study.store.crate import compare_results, damaged_files, read_crate, study_of_crate, write_crate
 from trackroller.study.store.folder import StudyFolder, check_folder
 from trackroller.study.store.ledger import study_folder
-from trackroller.study.store.manifest import is_study
+from trackroller.study.store.mark import is_study
 
 EXPLORER = "explorer.html"
 MOST = 20_000  # --explain examines at most this many cases of a study

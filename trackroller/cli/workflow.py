@@ -22,7 +22,7 @@ from trackroller.study.file.study import Study
 from trackroller.study.store.folder import StudyFolder, Tell, check_for_workflow, unheard
 from trackroller.study.store.identity import Cases
 from trackroller.study.store.ledger import Ledger, read_ledger, study_folder, working_ledger
-from trackroller.study.store.manifest import claim
+from trackroller.study.store.put import claim
 
 CONFIG_KEYS = ("study", "results")
 _held = contextlib.ExitStack()  # keeps the lock of the study until this process ends

@@ -20,9 +20,10 @@ import xarray as xr
 from trackroller.files import memory
 from trackroller.parameters import REGIMES
 from trackroller.roller.dataset import file_attributes, joined
+from trackroller.study.store.digests import sums_up
 from trackroller.study.store.identity import chunk_name
-from trackroller.study.store.manifest import put_unlisted, sums_up
 from trackroller.study.store.netcdf import too_large
+from trackroller.study.store.put import put_unlisted
 
 FAILED = REGIMES.index("failed")
 _ATTRIBUTES = file_attributes("Cases of a parameter study of track rollers, named by their fingerprints", "solved")

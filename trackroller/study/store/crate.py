@@ -22,11 +22,13 @@ import numpy as np
 from trackroller.errors import InputError
 from trackroller.files import sha256
 from trackroller.roller.differences import Difference, compare
+from trackroller.study.store.crate_entries import CRATE, crate_graph
 from trackroller.study.store.folder import StudyFolder, check_readable
 from trackroller.study.store.inputs import study_of_folder
-from trackroller.study.store.manifest import CRATE, REPORT, check_unaltered, crate_graph, digests_of, put_text
+from trackroller.study.store.manifest import REPORT, check_unaltered, digests_of
 from trackroller.study.store.netcdf import read_result
 from trackroller.study.store.provenance import versions
+from trackroller.study.store.put import put_text
 
 if TYPE_CHECKING:
     from trackroller.study.file.study import Study

@@ -21,22 +21,9 @@ from trackroller.files import (
     refuse_links,
     why_not,
 )
-from trackroller.study.store.manifest import (
-    BLOCK,
-    GATHERED,
-    MARK,
-    OURS,
-    SCRATCH,
-    WHAT,
-    Manifest,
-    files_below,
-    is_study,
-    put_unlisted,
-    read_mark,
-    remove_empty,
-    signed,
-    sweep,
-)
+from trackroller.study.store.manifest import BLOCK, GATHERED, SCRATCH, WHAT, Manifest, files_below, remove_empty
+from trackroller.study.store.mark import MARK, OURS, is_study, read_mark, signed
+from trackroller.study.store.put import put_unlisted, sweep
 from trackroller.study.store.sources import solver_digest
 from trackroller.yaml_file import parse_mapping
 

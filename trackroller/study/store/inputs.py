@@ -26,7 +26,7 @@ from trackroller.study.design.growth import as_planned
 from trackroller.study.file.load import load_study
 from trackroller.study.file.study import Study
 from trackroller.study.store.folder import StudyFolder, check_readable
-from trackroller.study.store.manifest import replacing
+from trackroller.study.store.put import replacing
 
 MATERIALS = "materials.yaml"
 LIMITS_FOLDER = "limits/"  # in `inputs/`: the files of a user's own limits

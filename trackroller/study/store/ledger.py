@@ -33,11 +33,13 @@ from trackroller.study.design.growth import sample_of
 from trackroller.study.design.levels import in_words
 from trackroller.study.file.config import check_name
 from trackroller.study.store import chunks
+from trackroller.study.store.crate_entries import CRATE
 from trackroller.study.store.folder import StudyFolder, Tell, unheard
 from trackroller.study.store.identity import Cases, chunk_name, solver_and_materials
 from trackroller.study.store.inputs import store_inputs
-from trackroller.study.store.manifest import CRATE, Manifest, sweep
+from trackroller.study.store.manifest import Manifest
 from trackroller.study.store.provenance import now
+from trackroller.study.store.put import sweep
 from trackroller.study.store.sources import solver_digest
 from trackroller.yaml_file import parse_mapping
 

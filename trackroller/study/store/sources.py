@@ -33,7 +33,7 @@ from functools import cache
 from pathlib import Path
 
 from trackroller.damage.own import digests
-from trackroller.study.store.manifest import put_text
+from trackroller.study.store.put import put_text
 
 PACKAGE = Path(__file__).resolve().parents[2]
 SOLVER = "roller"  # the last room that decides the numbers of a case
