@@ -20,7 +20,8 @@ if TYPE_CHECKING:
 _TRACTIONS = 1e-3
 _SUBSURFACE = 0.1
 START = 3.0  # seconds of one core: to import, plan and load the compiled solver
-PAGES_OF_ARRAY, PAGES_OF_SAMPLE = 3.0, 5.0  # seconds: figures and page; a random sample has given-data measures
+PAGES_OF_ARRAY = 3.0  # seconds: figures and page
+PAGES_OF_SAMPLE = 5.0  # a random sample has given-data measures
 PAGES_A_CASE = 3.5e-4  # seconds: gathering, analysis, figures and page of a large study
 _BYTES = {
     "forces": 200,
@@ -48,10 +49,15 @@ def rate(options: Mapping[str, Any], friction_law: Any = None) -> float:
         cost = DECLARED[model].falling or DECLARED[model].cost
     if options.get("normal") == "halfspace":
         cost = SOLVED_PATCHES
-    seconds, searched = cost.at(accuracy if tolerance is None else tolerance.by_quantity)
+    if tolerance is not None:
+        accuracy = tolerance.by_quantity
+    seconds, searched = cost.at(accuracy)
     if peaks:  # one search serves all
         seconds += searched
-    seconds += _TRACTIONS * ("tractions" in groups) + _SUBSURFACE * ("subsurface" in groups)
+    if "tractions" in groups:
+        seconds += _TRACTIONS
+    if "subsurface" in groups:
+        seconds += _SUBSURFACE
     if verdict.GROUP in groups and "shakedown" not in options.get("not_checked", ()):
         # the materials of the database have what it needs; heat needs fields that few cases give
         groups.add("shakedown")

@@ -41,7 +41,8 @@ class Bar:
         if bar.total is not None and bar.completed > bar.total:
             self.shown.update(self.task, total=bar.completed)
         self.failed += failed
-        self.shown.update(self.task, failed=f"{self.failed} failed" if self.failed else "")
+        if self.failed:
+            self.shown.update(self.task, failed=f"{self.failed} failed")
         self.shown.update(self.task, rate=f"{self.shown.tasks[0].speed or 0:.0f}")
 
     def tell(self, line: str) -> None:

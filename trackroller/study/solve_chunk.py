@@ -30,7 +30,9 @@ Executor = Callable[[xr.Dataset, Any], Iterator[xr.Dataset]]  # solves the cases
 def load_cases(folder: StudyFolder, name: str) -> xr.Dataset:
     """Return the cases of a chunk with all fields along `case`; raise `chunks.CorruptFile` if the list is damaged."""
     cases = chunks.read(folder.case_list(name))
-    return cases.map(lambda column: column if column.dims else column.broadcast_like(cases["case"]))
+    for field in [field for field, column in cases.data_vars.items() if not column.dims]:
+        cases[field] = cases[field].broadcast_like(cases["case"])
+    return cases
 
 
 def solve_cases(cases: xr.Dataset, database: MaterialDatabase | None, solver: Solver | None = None) -> xr.Dataset:
@@ -185,7 +187,9 @@ def _summary(chunk: xr.Dataset, words: str, spent: float) -> str:
 
 def _check_unchanged(folder: StudyFolder, cases: xr.Dataset, database: MaterialDatabase | None) -> None:
     """Raise `WorkError` unless the materials and the solver are those of the plan."""
-    if cases.attrs["identity"] != solver_and_materials(load_database() if database is None else database):
+    if database is None:
+        database = load_database()
+    if cases.attrs["identity"] != solver_and_materials(database):
         raise WorkError(
             f"{folder.root}: the materials or the solver changed after the study was planned. Start the run again: it "
             "plans anew, and the cases that did not change are kept."

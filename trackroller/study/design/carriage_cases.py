@@ -16,7 +16,7 @@ import numpy as np
 import xarray as xr
 
 from trackroller.carriage.fields import changed
-from trackroller.carriage.file import OF_LOADS
+from trackroller.carriage.file import OF_LOADS, MountedRoller
 from trackroller.carriage.lives import Lives, hours_per_km
 from trackroller.carriage.solve import forces_of
 from trackroller.carriage.strokes import passes_per_km
@@ -136,20 +136,20 @@ def _loads(design: Design, whole: Carriage) -> tuple[dict[str, np.ndarray], dict
     """Return row, load case, roller, forces and speeds of each case, and why rows have none."""
     fields = [name for name in design.columns if field_of(name)]
     stiff = [name for name in design.columns if name in (*STIFF, "material_pair")]
-    found: dict[tuple[Any, ...], Any] = {}
+    loads: dict[tuple[Any, ...], Any] = {}
     columns: dict[str, list[np.ndarray]] = {}
     reasons: dict[int, str] = {}
     for row in range(design.size):
         key = tuple(design.columns[name][row] for name in (*fields, *stiff))
-        if key not in found:
+        if key not in loads:
             given = dict(zip((*fields, *stiff), key, strict=True))
-            found[key] = _statics(whole, *({name: given[name] for name in names} for names in (fields, stiff)))
-        if isinstance(found[key], str):
-            reasons[row] = found[key]
+            loads[key] = _statics(whole, *({name: given[name] for name in names} for names in (fields, stiff)))
+        if isinstance(loads[key], str):
+            reasons[row] = loads[key]
             continue
-        for name, values in found[key].items():
+        for name, values in loads[key].items():
             columns.setdefault(name, []).append(values)
-        columns.setdefault("row", []).append(np.full(len(found[key]["roller"]), row))
+        columns.setdefault("row", []).append(np.full(len(loads[key]["roller"]), row))
     return {name: np.concatenate(values) for name, values in columns.items()} or {"roller": np.empty(0, int)}, reasons
 
 
@@ -158,7 +158,7 @@ def _statics(whole: Carriage, fields: Mapping[str, float], stiff: Mapping[str, A
     given = {name: value for name, value in stiff.items() if name != "material_pair"}
     given |= dict(zip(MATERIAL_FIELDS, stiff.get("material_pair", ()), strict=False))
     try:
-        rollers = tuple(r if r.case is None else replace(r, case=replace(r.case, **given)) for r in whole.rollers)
+        rollers = tuple(_with_values(roller, given) for roller in whole.rollers)
         own = changed(replace(whole, rollers=rollers), fields)
         ds = forces_of(own)
     except InputError as error:
@@ -174,11 +174,18 @@ def _statics(whole: Carriage, fields: Mapping[str, float], stiff: Mapping[str, A
     return {"load_case": i, "roller": j, "speed": speeds[i], "speeds": np.tile(speeds, (len(i), 1)), **forces}
 
 
+def _with_values(roller: MountedRoller, values: Mapping[str, Any]) -> MountedRoller:
+    """Return a roller of the carriage with other values of its case."""
+    if roller.case is None:
+        return roller
+    return replace(roller, case=replace(roller.case, **values))
+
+
 def _rounded(values: np.ndarray) -> np.ndarray:
     """Return numbers with `DIGITS` digits, forces that are rounding beside the largest one as 0."""
     largest = np.abs(values).max(initial=0.0)
-    kept = np.where(np.abs(values) < 1e-9 * largest, 0.0, values)
-    return np.array([float(f"{value:.{DIGITS - 1}e}") for value in kept.tolist()])
+    without_rounding = np.where(np.abs(values) < 1e-9 * largest, 0.0, values)
+    return np.array([float(f"{value:.{DIGITS - 1}e}") for value in without_rounding.tolist()])
 
 
 def of_worst_rollers(
@@ -213,14 +220,14 @@ def of_worst_rollers(
     worst = order[np.unique(row[order], return_index=True)[1]]  # the first one of each row
     place = np.full(design.size, -1)
     place[row[worst]] = lives.ruling[worst]
-    held = place >= 0
+    has_worst = place >= 0
     shown = solved.isel(case=np.maximum(place, 0)).copy(deep=True)
     for name, values in lives.summed.items():
         full = shown[name].values
         full[row[worst]] = values[worst]
         shown[name].values = full
     reasons = {int(i): text for i, text in json.loads(cases.attrs.get(REASONS, "{}")).items()}
-    _without_results(shown, ~held, [reasons.get(i, "") for i in range(design.size)])
+    _without_results(shown, ~has_worst, [reasons.get(i, "") for i in range(design.size)])
     plain = build(config, design, materials)
     for name in (*PARAMETERS, *MATERIAL_FIELDS):
         if name in cases and not np.array_equal(cases[name].values, plain[name].values):
@@ -228,24 +235,24 @@ def of_worst_rollers(
             missing: Any = plain[name].values
             if values.dtype.kind == "f":
                 missing = np.nan
-            plain[name] = ("case", np.where(held, values, missing), plain[name].attrs)
+            plain[name] = ("case", np.where(has_worst, values, missing), plain[name].attrs)
     for name, label in ((ROLLER, "worst roller"), (LOAD_CASE, "load case that uses most of its life")):
-        values = np.where(held, cases[name].values[np.maximum(place, 0)], "")
+        values = np.where(has_worst, cases[name].values[np.maximum(place, 0)], "")
         plain = plain.assign_coords({f"worst_{name.removeprefix('carriage_')}": ("case", values, {"long_name": label})})
     return plain.assign_coords(case=place), shown.assign_coords(case=place)
 
 
-def _without_results(shown: xr.Dataset, gone: np.ndarray, reasons: list[str]) -> None:
+def _without_results(shown: xr.Dataset, rows: np.ndarray, reasons: list[str]) -> None:
     """Make the rows without a case rows of a lift-off without results, each with its reason."""
     for variable in shown.data_vars.values():
         values = variable.values
         if values.dtype.kind == "f":
-            values[gone] = np.nan
+            values[rows] = np.nan
         elif values.dtype.kind in "OUT":
-            values[gone] = ""
+            values[rows] = ""
         else:
-            values[gone] = 0
+            values[rows] = 0
         variable.values = values
-    shown["regime"][gone] = REGIMES.index("lift_off")
+    shown["regime"][rows] = REGIMES.index("lift_off")
     if "reason" in shown:
-        shown["reason"].values = np.where(gone, np.array(reasons, dtype=object), shown["reason"].values)
+        shown["reason"].values = np.where(rows, np.array(reasons, dtype=object), shown["reason"].values)

@@ -26,7 +26,10 @@ def doubled(study: Study, unsure: Collection[int] | None = None) -> Study:
     if not study.drawn.method.points:
         return dataclasses.replace(study, grown=(2 * study.samples,))
     sizes = [rows.stop - rows.start for rows in study.drawn.points]
-    sizes = [2 * size if unsure is None or point in unsure else size for point, size in enumerate(sizes)]
+    if unsure is None:
+        unsure = range(len(sizes))
+    for point in set(unsure):
+        sizes[point] *= 2
     return dataclasses.replace(study, grown=tuple(sizes))
 
 

@@ -65,8 +65,14 @@ def _first_entries(mapping: Mapping[str, Any]) -> str:
 def entries(mapping: Mapping[str, Any]) -> str:
     """Return the entries of a mapping as text, such as 'kind ball, rows 2'; keys in capitals come last."""
     keys = sorted(mapping, key=lambda key: (key[:1].isupper(), key))
-    values = {key: v if isinstance(v := mapping[key], (str, list)) else _number(v) for key in keys}
-    return ", ".join(f"{key} {value}".replace("_", " ") for key, value in values.items())
+    return ", ".join(f"{key} {_entry(mapping[key])}".replace("_", " ") for key in keys)
+
+
+def _entry(value: Any) -> Any:
+    """Return an entry of a mapping as it is shown."""
+    if isinstance(value, (str, list)):
+        return value
+    return _number(value)
 
 
 def in_words(name: str, value: Any) -> str:
@@ -93,9 +99,10 @@ def _number(value: Any) -> str:
 
 def _law(law: Mapping[str, Any]) -> str:
     kind = str(law.get("kind", "constant"))
-    if kind in ("linear", "exponential"):
-        lowest = law.get("lowest", 0.0 if kind == "linear" else 0.4)
-        return f"{kind} to {_number(lowest)} {'at' if kind == 'linear' else 'over'} {_number(law['speed'])} mm/s"
+    if kind == "linear":
+        return f"linear to {_number(law.get('lowest', 0.0))} at {_number(law['speed'])} mm/s"
+    if kind == "exponential":
+        return f"exponential to {_number(law.get('lowest', 0.4))} over {_number(law['speed'])} mm/s"
     if kind == "table":
         speed = law["speed"]
         friction = law["friction"]

@@ -40,12 +40,12 @@ def table(path: Any, used: Collection[str] = ()) -> dict[str, np.ndarray]:
     InputError : no such file, a line of another length, or a cell that is empty, not clear or of another kind
     """
     wrong = Collector()
-    found = read_cases(Path(path), wrong, used)
+    cases = read_cases(Path(path), wrong, used)
     with wrong.part():
-        _check_names(found, used, path)
+        _check_names(cases, used, path)
     columns = {}
-    for j, name in enumerate(found.names):
-        cells = {number: line[j] for number, line in found.lines.items()}
+    for j, name in enumerate(cases.names):
+        cells = {number: line[j] for number, line in cases.lines.items()}
         numbers = _numbers_of(name, cells)
         if numbers is None:
             columns[name] = _cells_of(name, cells, path, wrong)
@@ -76,23 +76,23 @@ def read_cases(path: Path, wrong: Collector, used: Collection[str] = ()) -> User
     return read_table(path, "table", "case", wrong, used, content=read_bytes(path, "table", math.inf))
 
 
-def _check_names(found: UserTable, used: Collection[str], path: Any) -> None:
+def _check_names(cases: UserTable, used: Collection[str], path: Any) -> None:
     """Refuse further columns of a table that look like a parameter, and a table with further columns only."""
-    own = [name for name in found.names if name not in FACTOR_NAMES and name not in used]
+    further = [name for name in cases.names if name not in FACTOR_NAMES and name not in used]
     wrong = Collector()
-    for name in own:
+    for name in further:
         with wrong.part():
             bare, unit = split_head(name)  # the name of a further column holds its unit
             check_own_name(name, "table column")
             if name in RADII:
                 remedy = f'Add factors: {{axis_distance: {{expression: "{AXIS_DISTANCE}"}}}}.'
                 raise InputError("table column", name, "a parameter, or a column that an expression uses", remedy)
-            if nearest(bare, FACTOR_NAMES) or len(own) == len(found.names):
+            if nearest(bare, FACTOR_NAMES) or len(further) == len(cases.names):
                 raise unknown_name("table column", bare, FACTOR_NAMES)
-            if found.all(found.names.index(name), is_number):
-                _check_meaning(name, bare, unit, found.names)
+            if cases.all(cases.names.index(name), is_number):
+                _check_meaning(name, bare, unit, cases.names)
     for error in wrong.errors:
-        error.at(path, found.head)
+        error.at(path, cases.head)
     wrong.check()
 
 

@@ -85,24 +85,24 @@ def restored(ds: xr.Dataset, parsed: Mapping[str, Factor], dims: tuple[str, ...]
         unit = flat(ds, PLACE, dims)
         if [str(name) for name in ds[FACTOR].values] != list(free):
             raise InputError("study", list(map(str, ds[FACTOR].values)), f"the factors {', '.join(free)}", REMEDY)
-    drawn = {name: method.values(factor, unit[:, j]) for j, (name, factor) in enumerate(free.items())}
-    _check_values(ds, free, drawn, dims)
+    levels = {name: method.values(factor, unit[:, j]) for j, (name, factor) in enumerate(free.items())}
+    _check_values(ds, free, levels, dims)
     columns = {}
     for name in names:
         if not parsed[name].discrete:
             columns[name] = _column(ds, name, dims)
-        elif name in drawn:
-            columns[name] = drawn[name]
+        elif name in levels:
+            columns[name] = levels[name]
         else:
             columns[name] = parsed[name].take(np.zeros(rows))
     return Design(columns, free, method, unit, meta)
 
 
 def _check_values(
-    ds: xr.Dataset, free: Mapping[str, Factor], drawn: Mapping[str, np.ndarray], dims: tuple[str, ...]
+    ds: xr.Dataset, free: Mapping[str, Factor], levels: Mapping[str, np.ndarray], dims: tuple[str, ...]
 ) -> None:
     """Refuse rows whose numbers are not those that the design draws."""
-    for name, values in drawn.items():
+    for name, values in levels.items():
         number = name in ds.variables and free[name].ordered and ds[name].dtype.kind in "fiu"
         if number and not np.allclose(flat(ds, name, dims), values, rtol=1e-6, atol=1e-12):
             raise InputError("study", name, "the values of its design", REMEDY)
@@ -131,4 +131,6 @@ def _column(ds: xr.Dataset, name: str, dims: tuple[str, ...]) -> np.ndarray:
     if name not in ds.variables:
         raise InputError("study", name, "a column of the results", "Gather the study again.")
     values = flat(ds, name, dims)
-    return values.astype(float if values.dtype.kind in "fiu" else object)
+    if values.dtype.kind in "fiu":
+        return values.astype(float)
+    return values.astype(object)

@@ -84,7 +84,8 @@ def cross_check(study: Study) -> None:
     single = {*study.factors, *config.base} & set(MATERIAL_FIELDS)
     if both and single:
         raise InputError("material_pair", sorted(single), "the pair or the single materials, not both")
-    if doubled := set(config.base) & set(study.factors):
+    doubled = set(config.base) & set(study.factors)
+    if doubled:
         name = min(doubled)
         raise InputError(
             f"base.{name}", config.base[name], "", "Remove one of them.", wrong=f"stands beside a factor {name}"
@@ -95,7 +96,8 @@ def cross_check(study: Study) -> None:
             remedy = "Write 'design: table' too."
         raise InputError("table", config.table, "design: table and the path of a CSV or Excel file together", remedy)
     config.method.check(study.parsed)
-    if config.method.proposes and (several := [n for n in OPTION_FACTORS if n in study.factors]):
+    several = [name for name in OPTION_FACTORS if name in study.factors]
+    if config.method.proposes and several:
         raise InputError(several[0], study.factors[several[0]]["values"], "one model: a search compares designs")
     for name in study.factors:
         check_own_name(name, f"factors.{name}")
@@ -113,8 +115,11 @@ def cross_check(study: Study) -> None:
 
 def _check_roles(study: Study) -> None:
     config = study.config
+    factors: Mapping[str, Any] = study.parsed
+    if config.roles and config.method.observed:
+        factors = study.drawn.columns
     if config.roles:
-        check_roles(config.roles, study.drawn.columns if config.method.observed else study.parsed, config.design)
+        check_roles(config.roles, factors, config.design)
 
 
 def _check_parts(study: Study) -> None:
@@ -138,7 +143,7 @@ def _check_groups(
     config: Any, groups: Mapping[str, tuple[str, ...]], free: Mapping[str, Factor], specs: Mapping[str, Any]
 ) -> None:
     names = list(free)
-    seen = set()
+    grouped = set()
     if not config.method.grouped:
         allowed = f"design {listing(those_with('grouped'), 'or')}, not {config.design}"
         raise InputError("analysis.groups", list(groups), allowed, "Take design: saltelli.")
@@ -153,9 +158,9 @@ def _check_groups(
                 if name in specs:
                     raise InputError(where, name, "factors that vary and are not computed by an expression")
                 raise unknown_name(where, name, names)
-            if name in seen:
+            if name in grouped:
                 raise InputError(where, name, "each factor in one group", "Remove it from one of the groups.")
-            seen.add(name)
+            grouped.add(name)
 
 
 def _check_category(config: Any, name: str, free: Mapping[str, Factor]) -> None:
@@ -243,12 +248,20 @@ def check_cells(study: Study) -> None:
         for name in (name for name in table.names if name in known):
             cells = {line: row[table.names.index(name)] for line, row in table.lines.items()}
             for cell, line in {cell: line for line, cell in reversed(cells.items())}.items():  # its first line
-                for material in filter(None, map(str.strip, cell.split("/") if name == "material_pair" else [cell])):
+                for material in _materials_in(cell, name):
                     try:
                         study.materials.material(material, name)
                     except InputError as error:
                         wrong.errors.append(error.at(study.table_path, line))
     wrong.check()
+
+
+def _materials_in(cell: str, name: str) -> list[str]:
+    """Return the names of materials in a cell, those of both bodies in the column `material_pair`."""
+    names = [cell]
+    if name == "material_pair":
+        names = cell.split("/")
+    return [name.strip() for name in names if name.strip()]
 
 
 def check_geometry(study: Study) -> None:
@@ -268,8 +281,8 @@ def check_geometry(study: Study) -> None:
     the rollers of a carriage are checked on the whole design before anything is solved.
     """
     config = study.config
-    drawn = config.method.observed or any(factor.kind == "expression" for factor in study.parsed.values())
-    if drawn or config.carriage is not None:
+    needs_rows = config.method.observed or any(factor.kind == "expression" for factor in study.parsed.values())
+    if needs_rows or config.carriage is not None:
         design = study.design()
         problems = list(geometry_problems({name: design[name].values for name in GEOMETRY}))
         if problems and config.method.observed:
@@ -297,10 +310,9 @@ def _ends(study: Study, name: str) -> list[float]:
         return [float(level) for level in factor.levels]
     if factor.kind in UNBOUNDED:
         return [factor.numbers[0]]
+    low, high = factor.numbers[0], factor.numbers[-1]
     if factor.kind == "truncnormal":
         low, high = factor.numbers[-2:]
-    else:
-        low, high = factor.numbers[0], factor.numbers[-1]
     if low < 0 < high and PARAMETERS[name].nonzero:
         raise InputError(f"factors.{name}", [low, high], PARAMETERS[name].allowed(), wrong="holds 0")
     return [low, high]

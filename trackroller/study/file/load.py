@@ -67,8 +67,9 @@ def _translated(detail: Mapping[str, Any]) -> InputError:
         return unknown_name("study key", where, StudyFile.model_fields)
     if detail["type"] == "missing":
         *room, key = (str(part) for part in detail["loc"])
-        needs = f"this key, in {room[-1] if room else 'every study'}"
-        return InputError(where, None, needs, f"Add {key}: ... to {room[-1]}." if room else f"Add a line '{key}: ...'.")
+        if room:
+            return InputError(where, None, f"this key, in {room[-1]}", f"Add {key}: ... to {room[-1]}.")
+        return InputError(where, None, "this key, in every study", f"Add a line '{key}: ...'.")
     allowed = detail["msg"].replace("Input should be ", "")
     if detail["type"] == "model_type":
         allowed = f"a mapping with {', '.join(ROOMS[where])}"

@@ -143,7 +143,12 @@ class Study:
         """Return a sentence for each value that is unusual, see `trackroller.roller.doubts`."""
         values = {**self.config.base, **self.drawn.columns}
         pair = np.ravel(np.array(values.get("material_pair", ()), dtype=object)).tolist()
-        names = [name for entry in pair for name in (entry if isinstance(entry, tuple) else str(entry).split(" / "))]
+        names: list[str] = []
+        for entry in pair:
+            if isinstance(entry, tuple):
+                names += entry
+            else:
+                names += str(entry).split(" / ")
         names += [name for field in MATERIAL_FIELDS for name in set(np.ravel(values.get(field, ())).tolist())]
         return doubts(values, map(self.materials.material, dict.fromkeys(names)))
 

@@ -136,8 +136,8 @@ def _doubt_loads(
         doubts.append(Doubt("lift_off", values={"share": 100 * share}))
     contact = -loads[:, 0] + np.abs(loads[:, 1]) / tangent
     power = POWERS[1]
-    what = f"the sum of travel times load to the power of {power:g}, to which damage may grow"
-    doubts += few_lines(weights, lines, "the travel") or few_lines(weights * contact**power, lines, what)
+    damage = f"the sum of travel times load to the power of {power:g}, to which damage may grow"
+    doubts += few_lines(weights, lines, "the travel") or few_lines(weights * contact**power, lines, damage)
 
 
 def levels(loads: np.ndarray, weights: np.ndarray, tangent: float) -> list[np.ndarray]:

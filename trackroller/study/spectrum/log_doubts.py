@@ -125,7 +125,10 @@ class Doubt:
 def mark_question(column: str, values: list[float], count: int, unit: str) -> InputError:
     """Ask whether values far from all others stand for no value."""
     shown = ", ".join(f"{value:g}" for value in values)
-    wrong = f"stands in {count} line{'s' if count > 1 else ''}, far from all other values, as a mark for no value does"
+    lines = f"{count} lines"
+    if count == 1:
+        lines = "1 line"
+    wrong = f"stands in {lines}, far from all other values, as a mark for no value does"
     remedy = f"Write log: {{missing: [{shown}]}} in the case file to leave such lines out, and log: {{missing: []}} "
     return InputError(column, f"{shown} {unit}", "values that were measured", f"{remedy}to keep them.", wrong)
 
@@ -196,7 +199,10 @@ def marks_of(values: np.ndarray, scale: float) -> list[float]:
         far = None
         for end, (start, stop) in ends.items():
             others = different[start:stop]
-            distance = abs(different[end] - (others[0] if end == low else others[-1]))
+            neighbour = others[-1]
+            if end == low:
+                neighbour = others[0]
+            distance = abs(different[end] - neighbour)
             spread = float(np.ptp(others))
             largest = float(np.abs(others).max())
             known = is_mark(float(f"{different[end] / scale:.9g}"))
@@ -293,7 +299,7 @@ def _frozen(column: str, force: np.ndarray, lines: np.ndarray) -> list[Doubt]:
     return [Doubt("frozen", size, int(lines[first]), {"column": column, "value": float(force[first])})]
 
 
-def few_lines(effects: np.ndarray, lines: np.ndarray, what: str) -> list[Doubt]:
+def few_lines(effects: np.ndarray, lines: np.ndarray, name: str) -> list[Doubt]:
     """Return a doubt if a few of the lines hold most of a sum of effects (n,) >= 0."""
     count = max(1, int(FEW * effects.size))
     if effects.size < 30 or not effects.sum() > 0:
@@ -304,11 +310,14 @@ def few_lines(effects: np.ndarray, lines: np.ndarray, what: str) -> list[Doubt]:
         return []
     largest = largest[np.argsort(effects[largest])[::-1]]
     needed = int(np.argmax(np.cumsum(effects[largest]) >= MOST_OF_IT * effects.sum())) + 1
-    held = float(effects[largest[:needed]].sum() / effects.sum())
+    share_of_few = float(effects[largest[:needed]].sum() / effects.sum())
     first = int(lines[largest[:needed]].min())
-    return [Doubt("few_lines", needed, first, {"share": 100 * held, "sum": what})]
+    return [Doubt("few_lines", needed, first, {"share": 100 * share_of_few, "sum": name})]
 
 
 def first_lines(lines: np.ndarray) -> str:
     """Return the first numbers of lines in words."""
-    return listing([*map(str, lines[:3].tolist()), *(["others"] if lines.size > 3 else [])])
+    words = [str(line) for line in lines[:3].tolist()]
+    if lines.size > 3:
+        words.append("others")
+    return listing(words)

@@ -187,8 +187,8 @@ def _shared(steps: np.ndarray) -> np.ndarray:
     share = np.minimum(following, usual) / sizes
     share[-1] = usual / max(float(np.median(sizes)), float(sizes[-1]))
     shared = np.repeat(share, sizes)
-    rest = following - share * (sizes - 1)
-    shared[ends[:-1]] = rest[:-1]
+    last_share = following - share * (sizes - 1)
+    shared[ends[:-1]] = last_share[:-1]
     return np.asarray(shared[: steps.size])
 
 
@@ -204,7 +204,8 @@ def distance_steps(log: LogColumns, seconds: np.ndarray | None, doubts: list[Dou
     moving = np.abs(steps[steps != 0])
     if not moving.size:
         return np.abs(steps)
-    before, after = np.append(0.0, steps[:-1]), np.append(steps[1:], 0.0)
+    before = np.append(0.0, steps[:-1])
+    after = np.append(steps[1:], 0.0)
     alone = (steps < 0) & (before >= 0) & (after >= 0)
     jumps = alone & (-steps > BACK * np.median(moving))
     if seconds is None:

@@ -68,8 +68,9 @@ def gather(ledger: Ledger, tell: Tell = unheard, attrs: Mapping[str, str] | None
     if not digests_of(folder.design):
         write_design(ledger)
     count = len(ledger.place)
-    if missing := int((ledger.place < 0).sum()):
-        damaged = "".join(f" Corrupt: {why}." for why in ledger.corrupt.values())
+    missing = int((ledger.place < 0).sum())
+    if missing:
+        damaged = "".join(f" Corrupt: {reason}." for reason in ledger.corrupt.values())
         raise WorkError(f"{missing} of {count} cases are not solved.{damaged} Start the run again.")
 
     def save(beside: Path) -> None:

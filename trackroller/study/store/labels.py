@@ -24,14 +24,14 @@ if TYPE_CHECKING:
 Variables = dict[Hashable, tuple[tuple[Hashable, ...], np.ndarray, dict[str, Any], dict[str, Any]]]
 
 
-def labelled(study: Study, drawn: Design, cases: xr.Dataset, solved: xr.Dataset) -> xr.Dataset:
+def labelled(study: Study, plan: Design, cases: xr.Dataset, solved: xr.Dataset) -> xr.Dataset:
     """Return the data set of a solved study.
 
     Parameters
     ----------
     study : Study
         The study.
-    drawn : Design
+    plan : Design
         Its design.
     cases : xarray.Dataset
         Its n cases, as `Study.design` returns them; for a study of a carriage those of all its rollers.
@@ -46,10 +46,10 @@ def labelled(study: Study, drawn: Design, cases: xr.Dataset, solved: xr.Dataset)
         to repeat the study, and the study file itself.
     """
     if study.carriage is not None:
-        cases, solved = of_worst_rollers(study.config, drawn, study.materials, cases, solved)
-    grid = drawn.factors if drawn.method.crossed else {}
+        cases, solved = of_worst_rollers(study.config, plan, study.materials, cases, solved)
+    grid = plan.factors if plan.method.crossed else {}
     if grid:
-        shape = drawn.meta["shape"]
+        shape = plan.meta["shape"]
     else:
         shape = (cases.sizes["case"],)
     sizes = dict(zip(grid or ("case",), shape, strict=True))
@@ -66,15 +66,15 @@ def labelled(study: Study, drawn: Design, cases: xr.Dataset, solved: xr.Dataset)
 
 def _attributes(study: Study, design: xr.Dataset, attrs: Mapping[str, Any]) -> dict[str, Any]:
     """Return the global attributes: what the solver wrote, and what is needed to repeat the study."""
-    own = {*study.factors, "seconds", "date_solved"}  # earlier versions dated their chunks
-    kept = {k: v for k, v in attrs.items() if isinstance(v, (str, int, float)) and k not in own}
+    of_study = {*study.factors, "seconds", "date_solved"}  # earlier versions dated their chunks
+    of_solver = {k: v for k, v in attrs.items() if isinstance(v, (str, int, float)) and k not in of_study}
     # what `solve` recorded of its materials holds, whatever the database says by now
     if MATERIALS in attrs:
         materials = attrs[MATERIALS]
     else:
         materials = materials_of_design(design, study.materials)
-    stated = {k: design.attrs[k] for k in (META, FRICTION) if k in design.attrs}
-    return kept | stated | provenance.attributes(study) | {MATERIALS: materials}
+    of_design = {k: design.attrs[k] for k in (META, FRICTION) if k in design.attrs}
+    return of_solver | of_design | provenance.attributes(study) | {MATERIALS: materials}
 
 
 def _labels(design: xr.Dataset, sizes: dict[str, int], grid: dict[str, Factor]) -> Variables:
@@ -135,5 +135,5 @@ def _variable(
     if dims and values.dtype.kind not in "OSU":
         encoding |= {"zlib": True, "complevel": 4, "shuffle": True}
     flags = ("flag_values", "flag_masks")  # these take the type of their variable
-    attributes = {key: np.asarray(value, values.dtype) if key in flags else value for key, value in attrs.items()}
-    return tuple(dims), values, attributes, encoding
+    typed = {key: np.asarray(attrs[key], values.dtype) for key in flags if key in attrs}
+    return tuple(dims), values, {**attrs, **typed}, encoding

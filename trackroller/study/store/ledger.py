@@ -132,11 +132,11 @@ class Ledger:
         """Return the hours that all runs together spent on solving."""
         return float(self.states.attrs["seconds"]) / 3600
 
-    def find(self, wanted: np.ndarray) -> np.ndarray:
+    def find(self, fingerprints: np.ndarray) -> np.ndarray:
         """Return the index of each wanted case in `states`, shape (n,); -1 marks a case that is not solved."""
         cases = self.states["case"].values
-        place = np.searchsorted(cases, wanted)
-        return np.where(np.append(cases, b"")[place] == wanted, place, -1)
+        place = np.searchsorted(cases, fingerprints)
+        return np.where(np.append(cases, b"")[place] == fingerprints, place, -1)
 
     @cached_property
     def place(self) -> np.ndarray:
@@ -191,41 +191,45 @@ def read_ledger(study: Study, folder: StudyFolder) -> Ledger | None:
     return Ledger(Cases(study), folder, record["chunks"], record["size"], record["distinct"], tuple(record["uses"]))
 
 
-def sound_ledger(found: Ledger) -> tuple[Ledger | None, list[str]]:
+def sound_ledger(files: Ledger) -> tuple[Ledger | None, list[str]]:
     """Return the ledger on the disk if it accounts for every case, and a line on each damaged case list.
 
     Each case must be in a solved file or in the sound list of an open chunk, and no case of an open chunk may be solved
     already, as it is after a process was killed while it forgot failed cases.
     """
-    folder = found.folder
-    ledger = read_ledger(found.study, found.folder)
+    folder = files.folder
+    ledger = read_ledger(files.study, files.folder)
     if ledger is None:
         return None, []
-    sound = set(ledger.uses) <= {path.name for path in found.paths}
+    sound = set(ledger.uses) <= {path.name for path in files.paths}
     damaged = []
     for name in ledger.chunks:
         try:
-            listed = chunks.check(folder.case_list(name))
-            sound &= folder.chunk(name).is_file() or bool((found.find(listed) < 0).all())
+            fingerprints = chunks.check(folder.case_list(name))
+            sound &= folder.chunk(name).is_file() or bool((files.find(fingerprints) < 0).all())
         except (chunks.CorruptFile, FileNotFoundError) as exc:
             damaged.append(f"corrupt or missing case list, its cases are planned anew: {exc}")
-    return (ledger if sound and not damaged else None), damaged
+    if not sound or damaged:
+        return None, damaged
+    return ledger, []
 
 
-def planned(found: Ledger) -> Ledger:
+def planned(files: Ledger) -> Ledger:
     """Return the ledger in which each case that no file holds has a chunk, and write the case lists of these chunks."""
-    study = found.study
-    folder = found.folder
-    cases = found.cases
-    names, (options, group) = cases.fingerprints, cases.options
-    wanted, first = np.unique(names, return_index=True)
-    place = found.find(wanted)
+    study = files.study
+    folder = files.folder
+    cases = files.cases
+    names = cases.fingerprints
+    options, group = cases.options
+    distinct, first = np.unique(names, return_index=True)
+    place = files.find(distinct)
     missing = np.sort(first[place < 0])
     size = chunk_size(study, len(missing))
     columns = {name: cases.design[name].values for name in case_columns(cases.design)}
     # a value that all cases share is written once
     shared = {name: values[:1].reshape(()) for name, values in columns.items() if all_equal(values)}
-    fields = xr.Dataset({n: ((), shared[n]) if n in shared else ("case", v) for n, v in columns.items()})
+    fields = xr.Dataset({name: ("case", values) for name, values in columns.items()})
+    fields = fields.assign({name: ((), value) for name, value in shared.items()})
     sizes: dict[str, int] = {}
     identity = solver_and_materials(study.materials)
     parts = [part for number in range(len(options)) for part in _split(missing[group[missing] == number], size)]
@@ -237,8 +241,8 @@ def planned(found: Ledger) -> Ledger:
         attrs = {"options": json.dumps(options[group[part[0]]]), "identity": identity, "words": words}
         chunks.write(folder.case_list(name), block.assign_attrs(attrs))
         sizes[name] = len(part)
-    uses = sorted(found.paths[i].name for i in np.unique(found.states["file"].values[place[place >= 0]]))
-    return replace(found, chunks=sizes, size=len(names), distinct=len(wanted), uses=tuple(uses))
+    uses = sorted(files.paths[i].name for i in np.unique(files.states["file"].values[place[place >= 0]]))
+    return replace(files, chunks=sizes, size=len(names), distinct=len(distinct), uses=tuple(uses))
 
 
 def unused_cases(ledger: Ledger) -> str:
@@ -255,7 +259,8 @@ def unused_cases(ledger: Ledger) -> str:
     place = ledger.place
     if study.config.method.proposes or study.config.until is not None:  # each step is a design of its own
         return ""
-    if not solved or folder.of_another_solver or not (unused := solved - len(np.unique(place[place >= 0]))):
+    unused = solved - len(np.unique(place[place >= 0]))
+    if not unused or folder.of_another_solver:
         return ""
     before = folder.earlier()
     remedy = "They stay in chunks/."
@@ -301,8 +306,10 @@ def _levels_of(study: Study, rows: np.ndarray) -> list[str]:
         if factor.numeric and len(levels) > 1:
             words.append(f"{name} {in_words(name, min(levels))} to {in_words(name, max(levels))}")
         else:
-            shown = ", ".join(in_words(name, level) for level in levels[:MOST_LEVELS])
-            words.append(f"{name} {shown}" + ", ..." * (len(levels) > MOST_LEVELS))
+            shown = [in_words(name, level) for level in levels[:MOST_LEVELS]]
+            if len(levels) > MOST_LEVELS:
+                shown.append("...")
+            words.append(f"{name} {', '.join(shown)}")
     return words
 
 
@@ -376,18 +383,21 @@ def _plan(study: Study, folder: StudyFolder, tell: Tell, rerun_failed: bool) -> 
     if folder.of_another_solver:
         tell(f"the solver's code has changed since {folder.root} was planned: all its cases are solved anew")
     _check_same_study(study, folder)
-    found = Ledger(Cases(study), folder)
-    _check_files(found)
+    files = Ledger(Cases(study), folder)
+    _check_files(files)
     sweep(folder.root)
     if rerun_failed:
-        tell(f"{found.forget_failed()} failed cases are solved again")
-        found = found.anew()
-    ledger, damaged = sound_ledger(found)
+        tell(f"{files.forget_failed()} failed cases are solved again")
+        files = files.anew()
+    ledger, damaged = sound_ledger(files)
     for line in damaged:
         tell(line)
     if ledger is None:
-        ledger = planned(found)
-        if found.paths and (unused := unused_cases(found)):
+        ledger = planned(files)
+        unused = ""
+        if files.paths:
+            unused = unused_cases(files)
+        if unused:
             tell(unused)
         Manifest(folder.root).discard(folder.design)
     _keep(ledger)
@@ -405,14 +415,14 @@ def _check_same_study(study: Study, folder: StudyFolder) -> None:
         raise InputError("results folder", str(folder.root), "a folder of this study", remedy, wrong)
 
 
-def _check_files(found: Ledger) -> None:
+def _check_files(files: Ledger) -> None:
     """Refuse damaged files of solved or planned cases, and what stands in the place of a result."""
-    folder = found.folder
+    folder = files.folder
     manifest = Manifest(folder.root)
     results = [folder.design, folder.gathered, folder.root / CRATE]
     results += [folder.root / name for name in manifest.current(folder.inputs)]
     lists = [folder.case_list(name) for name in folder.record().get("chunks", {})]
-    manifest.check(*results, *lists, damaged=found.corrupt)
+    manifest.check(*results, *lists, damaged=files.corrupt)
 
 
 def _keep(ledger: Ledger) -> None:

@@ -79,7 +79,8 @@ def room_files(last: str) -> list[Path]:
         the version only.
     """
     rooms = ROOMS[: ROOMS.index(last) + 1]
-    return [path for room in rooms for place in (PACKAGE / room, PACKAGE / f"{room}.py") for path in files_of(place)]
+    places = [place for room in rooms for place in (PACKAGE / room, PACKAGE / f"{room}.py")]
+    return [path for place in places for path in files_of(place)]
 
 
 def files_of(place: Path) -> list[Path]:
