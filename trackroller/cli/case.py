@@ -111,17 +111,17 @@ def _served(case: Case, options: Mapping[str, Any]) -> tuple[str, ...]:
     from trackroller.roller.options import Options
     from trackroller.roller.stages.outcome import solved_of, to_compute  # heavy: as above
 
-    wanted = Options(**{**options, "outputs": ("limits",)})
-    limits = to_compute(solved_of(to_table(case), {}, wanted), wanted)
+    of_limits = Options(**{**options, "outputs": ("limits",)})
+    limits = to_compute(solved_of(to_table(case), {}, of_limits), of_limits)
     return tuple(limit.group for limit in limits)
 
 
-def solve_case(case: Case, options: Mapping[str, Any], beside: Mapping[str, Any], **more: Any) -> xr.Dataset:
-    """Solve a case with what `case_of` returned beside it; `more` are further options of `solve`."""
+def solve_case(case: Case, options: Mapping[str, Any], beside: Mapping[str, Any], **further: Any) -> xr.Dataset:
+    """Solve a case with what `case_of` returned beside it; `further` are other options of `solve`."""
     tell_doubts(case)
     from trackroller.roller.solver import solve  # heavy: xarray and dask
 
-    return with_beside(solve(case, **{**options, **more}), beside)
+    return with_beside(solve(case, **{**options, **further}), beside)
 
 
 def writable(out: Path) -> Path:
@@ -182,7 +182,8 @@ def write_yaml_file(target: Path, values: Mapping[str, Any], comment: str = "") 
 
     A `comment` is a line below the mark.
     """
-    write_text(target, "\n".join([BY_US, *([comment] if comment else []), write_yaml(values)]))
+    parts = [BY_US, comment, write_yaml(values)]
+    write_text(target, "\n".join(part for part in parts if part))
 
 
 def free_for_page(page: Path) -> None:
@@ -225,8 +226,11 @@ def _options(given: Case, options: Mapping[str, Any], limits: str | None, sheet:
         return {}
     if limits is not None:
         return {"outputs": (*COMPLETE[:2], *groups_of(limits)), "not_checked": _left_out(limits)}
-    own = dict.fromkeys((*(SHEET_OUTPUTS if sheet else COMPLETE), "limits", *_served(given, options)))
-    return {"outputs": tuple(own)}
+    shown: tuple[str, ...] = COMPLETE
+    if sheet:
+        shown = SHEET_OUTPUTS
+    outputs = dict.fromkeys((*shown, "limits", *_served(given, options)))
+    return {"outputs": tuple(outputs)}
 
 
 def _target(out: Path | None) -> Path | None:
@@ -243,6 +247,13 @@ def _page(sheet: Path | None) -> Path | None:
     if sheet is None:
         return None
     return writable_page(sheet)
+
+
+def _name(case: Path | None) -> str:
+    """Return the name of a case for its page; an example without a file has none."""
+    if case is None:
+        return ""
+    return case.stem
 
 
 def solve_and_tell(  # noqa: PLR0913 - one argument for each option of the command
@@ -280,7 +291,7 @@ def solve_and_tell(  # noqa: PLR0913 - one argument for each option of the comma
     from trackroller.report.pages.sheet import print_facts, print_limits, write_sheet
 
     if page is not None:
-        write_sheet(dataset, page, case.stem if case is not None else "")
+        write_sheet(dataset, page, _name(case))
     shows_limits = limits is not None and not is_failed(dataset)
     if as_json:
         print(json_of(dataset))
