@@ -100,13 +100,13 @@ FORMULAS = {
     "direction": ("results/pareto.py", '"min" else -1.0', '"min" else 1.0', ("results/test_pareto.py",)),
     "wear-depth": ("damage/wear.py", "return np.asarray(1e-3 * k.reshape", "return np.asarray(1e-2 * k.reshape", WEAR),
     "wear-tied": ("damage/wear.py", "np.where(braked, pressed, rubbed)", "np.where(braked, pressed, shear)", WEAR),
-    "wear-place": ("damage/wear.py", "0.5 * (right - left)", "0.5 * (left - right)", WEAR),
+    "wear-place": ("damage/wear.py", "0.5 * (after - before)", "0.5 * (before - after)", WEAR),
     "wear-mirrored": ("damage/wear.py", "np.array([1.0, -1.0])[:, None]", "np.array([1.0, 1.0])[:, None]", WEAR),
     "wear-beyond-table": ("damage/wear.py", "slope * np.maximum(work - x[-1]", "0.0 * np.maximum(work - x[-1]", WEAR),
     "wear-gap": ("damage/wear.py", "0.5 * curvature[:, None]", "curvature[:, None]", WEAR),
     "wear-standing-roller": ("damage/wear.py", "where(locked, 1.0,", "where(locked, 0.5,", WEAR),
     "wear-run-in": ("damage/wear.py", "np.max(counted, axis=2), axis=1)", "np.min(counted, axis=2), axis=1)", WEAR),
-    "carriage-curve": ("carriage/loads.py", "- inward * left", "+ inward * left", CARRIAGE),
+    "carriage-curve": ("carriage/loads.py", "- inward * across", "+ inward * across", CARRIAGE),
     "carriage-moment": ("carriage/loads.py", "np.cross(at, force)", "np.cross(force, at)", CARRIAGE),
     "carriage-life Miner": (
         "carriage/lives.py",
@@ -123,8 +123,8 @@ FORMULAS = {
     ),
     "fit-t-interval": (
         "fit/line.py",
-        "stdtrit(left, 0.5 + 0.5 * confidence)) ** 2",
-        "stdtrit(left, confidence)) ** 2",
+        "stdtrit(freedom, 0.5 + 0.5 * confidence)) ** 2",
+        "stdtrit(freedom, confidence)) ** 2",
         FITS,
     ),
 }

@@ -62,7 +62,8 @@ def overridden(values: Mapping[str, Any], given: Mapping[str, Any]) -> dict[str,
 
 def radius(name: str, value: Any, where: str = "") -> float:
     """Return an outer radius or the depth of a groove [mm]."""
-    field, allowed = f"{where}{name}", f"a length > 0 in mm, the {name.replace('_', ' ')} of the roller"
+    field = f"{where}{name}"
+    allowed = f"a length > 0 in mm, the {name.replace('_', ' ')} of the roller"
     return number_in(value, field, allowed, math.nextafter(0.0, 1.0), PARAMETERS["axis_distance"].upper, "mm")
 
 
@@ -98,7 +99,8 @@ def with_axis_distance(values: Mapping[str, Any], number: Any) -> dict[str, Any]
     """
     if not check_radii(values):
         return dict(values)
-    known, wrong = {}, Collector()
+    known = {}
+    wrong = Collector()
     for name in (*RADII, "guide_profile_radius", "roller_profile_radius", "contact_angle"):
         with wrong.part():
             if name in RADII:

@@ -172,7 +172,8 @@ Write a number that is allowed, such as 30.
 
     def _checked_number(self, name: str) -> float:
         """Return a number of this case, which then stands as a float or None in its field; NaN if it is not given."""
-        value, parameter = getattr(self, name), PARAMETERS[name]
+        value = getattr(self, name)
+        parameter = PARAMETERS[name]
         if isinstance(value, list):
             remedy = f"Solve a list of cases: [tr.Case({name}=value) for value in values]."
             raise InputError(name, value, f"one number; {parameter.allowed()}", remedy)
@@ -214,7 +215,8 @@ Case.__signature__ = inspect.signature(_Numbers)  # type: ignore[attr-defined]
 
 def _by_field(values: Mapping[str, Any]) -> dict[str, Any]:
     """Return the values of one case by the names of its fields; `InputError` names every other name."""
-    wrong, known = Collector(), {name: value for name, value in values.items() if name not in ALIASES}
+    wrong = Collector()
+    known = {name: value for name, value in values.items() if name not in ALIASES}
     with wrong.part():
         known = renamed(values)
         known = with_axis_distance(known, number)
@@ -274,7 +276,8 @@ def _listed(cases: Any) -> list[Case]:
 
 def _of_cases(cases: Any) -> tuple[dict[str, np.ndarray], dict[str, np.ndarray]]:
     """Return the raw values of cases, object arrays (n,), and their numbers, (n,), which each `Case` has checked."""
-    columns, numbers = {}, {}
+    columns = {}
+    numbers = {}
     rows = _listed(cases)
     for name in FIELDS:
         values = [getattr(row, name) for row in rows]
@@ -313,7 +316,8 @@ def _named(design: Any) -> Any:
     Every variable, coordinate and attribute that says something about the cases is a parameter along `case`, or an
     option as a coordinate, or it is refused by name. A study's design has further coordinates of its own.
     """
-    wrong, of_study = Collector(), STUDY in design.attrs
+    wrong = Collector()
+    of_study = STUDY in design.attrs
     short = [name for name in ALIASES if name in design.variables]
     with wrong.part():
         renamed(dict.fromkeys(design.variables, "a variable"))
@@ -368,7 +372,9 @@ def _along_case(dims: tuple[Any, ...]) -> tuple[str, str]:
 
 def _in_own_unit(name: str, variable: Any) -> np.ndarray:
     """Return the values of a parameter in its unit; the attribute `units` or `unit` may name another one."""
-    values, unit, own = np.asarray(variable.values), stated_unit(variable.attrs), PARAMETERS.get(name)
+    values = np.asarray(variable.values)
+    unit = stated_unit(variable.attrs)
+    own = PARAMETERS.get(name)
     if own is None or unit in ("", own.unit, own.units) or values.dtype.kind not in "fiuO":
         return values
     found = [in_unit(float(one), unit, own.unit, name) if _is_number(one) else one for one in np.ravel(values)]

@@ -36,9 +36,11 @@ def file_attributes(title: str, action: str) -> dict[str, str]:
 NOTES = "limits_notes"  # attribute: what limits lack, and the placeholders that they rest on, a sentence a line
 _ODD = {"odd": True}  # the value changes its sign in the mirror image of a roller
 _SHOWN = {"shown": True}  # the value stands on the sheet, in the table of cases and in the explorer
-_C, _CB = ("contact",), ("contact", "body")
+_C = ("contact",)
+_CB = ("contact", "body")
 _PATCH = ("contact", "y", "x")
-_XZ, _YZ = ("contact", "body", "section_z", "section_x"), ("contact", "body", "section_z", "section_y")
+_XZ = ("contact", "body", "section_z", "section_x")
+_YZ = ("contact", "body", "section_z", "section_y")
 
 _GROUPS = {
     "forces": (

@@ -139,7 +139,7 @@ class Mirror:
 
         return one_sided
 
-    def asked(self, good: np.ndarray) -> np.ndarray:
+    def to_solve(self, good: np.ndarray) -> np.ndarray:
         """Return True for the patches among `good` (2 n,) that have to be solved, (2 n,)."""
         return good & ~np.concatenate([np.zeros_like(self.symmetric), self.symmetric])
 
@@ -158,22 +158,22 @@ class Mirror:
         return full, twin
 
     def spread(self, good: np.ndarray, values: np.ndarray, sign: float = 1.0) -> np.ndarray:
-        """Copy the values of the solved patches `asked(good)` to all patches `good`.
+        """Copy the values of the solved patches `to_solve(good)` to all patches `good`.
 
         With `sign` = -1 mirror images get the negative value.
         """
-        full, twin = self._copies(good, values, self.asked(good))
+        full, twin = self._copies(good, values, self.to_solve(good))
         if sign < 0:
             full[twin] = -full[twin] + 0.0
         return full[good]
 
     def spread_surface(self, good: np.ndarray, tractions: SurfaceTractions) -> SurfaceTractions:
-        """Copy the tractions of the solved patches `asked(good)` to all patches `good`; x rises in each patch."""
+        """Copy the tractions of the solved patches `to_solve(good)` to all patches `good`; x rises in each patch."""
         if not self.symmetric.any():
             return tractions
         out = {}
         for field in fields(SurfaceTractions):
-            full, twin = self._copies(good, getattr(tractions, field.name), self.asked(good))
+            full, twin = self._copies(good, getattr(tractions, field.name), self.to_solve(good))
             if field.name != "y":
                 full[twin] = full[twin][..., ::-1]
             if field.name in ("x", "shear_lateral", "slip_lateral"):

@@ -119,7 +119,8 @@ def doubts_of_case(case: Case, database: MaterialDatabase) -> list[str]:
 def _unusual(name: str, number: float, unit: str, usual: tuple[float, float], kind: str) -> str:
     """Return the sentence about an unusual number, '' for a usual one."""
     low, high = usual
-    size, shown = abs(number), "" if unit == "-" else f" {unit}"
+    size = abs(number)
+    shown = "" if unit == "-" else f" {unit}"
     if low <= size <= high:
         return ""
     if size < low:
@@ -181,8 +182,10 @@ def _of_points(name: str, profile: Mapping[str, Any], guide_radius: float) -> li
         return []
     points = np.asarray(profile["points"], dtype=float)
     order = in_order(points)
-    found, steps = examined(*points[order].T), np.sign(np.diff(points[:, 0]))
-    sentences, width = [], float(np.ptp(points[:, 0]))
+    found = examined(*points[order].T)
+    steps = np.sign(np.diff(points[:, 0]))
+    sentences = []
+    width = float(np.ptp(points[:, 0]))
     low, high = (size * guide_radius for size in MEASURED_WIDTH)
     if width < low or width > high:
         sentences.append(

@@ -105,7 +105,8 @@ def tell_errors(ds: xr.Dataset, table: CaseTable, options: Options) -> None:
     """Add as attributes the limit of the residual, and the errors of discretisation if they were measured."""
     ds.variables["residual"].attrs["converged_up_to"] = converged_up_to(options.contact_model, options.normal)
     constant = all(law_of(text).is_constant for text in set(table.friction_law.tolist()))
-    cheaper, model = DECLARED[options.contact_model].cheaper, options.contact_model
+    cheaper = DECLARED[options.contact_model].cheaper
+    model = options.contact_model
     if cheaper and np.any(solved_by(ds) == cheaper):
         model = cheaper
     for name, errors in error_attributes(expected_errors(options, model, constant)).items():

@@ -61,14 +61,19 @@ def explain(table: CaseTable, options: Options) -> list[Stage]:
     -----
     The counts are those known before anything is solved. Cases that lift off or slip fully leave later stages.
     """
-    n, shortcuts, wanted = len(table), options.shortcuts, set(options.outputs)
+    n = len(table)
+    shortcuts = options.shortcuts
+    wanted = set(options.outputs)
     part = table
     if shortcuts and n > 1:
         part = table.take(distinct_contacts.distinct_mechanics(table)[0])
-    mirrored, free = distinct_contacts.is_mirror_symmetric(part), distinct_contacts.is_frictionless(part)
+    mirrored = distinct_contacts.is_mirror_symmetric(part)
+    free = distinct_contacts.is_frictionless(part)
     if not shortcuts:
         mirrored = free = np.zeros(len(part), dtype=bool)
-    m, twins, frictionless = len(part), int(mirrored.sum()), int(free.sum())
+    m = len(part)
+    twins = int(mirrored.sum())
+    frictionless = int(free.sum())
     solved = (2 * m - twins, 2 * n, "patches")  # a mirror-symmetric case has one patch to solve
     bare = 2 * frictionless - int((mirrored & free).sum())  # patches without friction
     sides = ""
@@ -77,7 +82,9 @@ def explain(table: CaseTable, options: Options) -> list[Stage]:
     repeated = "every case has mechanics of its own"
     if m < n:
         repeated = f"{n - m} cases repeat the mechanics of others"
-    every, cases, asked = (2 * n, 2 * n, "patches"), (n, n, "cases"), wanted & PEAK_OUTPUTS
+    every = (2 * n, 2 * n, "patches")
+    cases = (n, n, "cases")
+    asked = wanted & PEAK_OUTPUTS
     stages = [
         Stage("geometry, Hertz or half-space pressure", True, m, n, "cases", repeated),
         Stage("equilibrium", True, *solved, _model(options) + sides),

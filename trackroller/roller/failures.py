@@ -45,7 +45,8 @@ def with_reasons(
         The same results; `reason` is "" for solved cases, and missing if all cases are solved.
     """
     regime, converged = (np.atleast_1d(ds.variables[name].values) for name in ("regime", "converged"))
-    failed, loose = regime == FAILED, (regime == ROLLING) & (converged == 0)
+    failed = regime == FAILED
+    loose = (regime == ROLLING) & (converged == 0)
     if not (failed | loose).any():
         return ds
     residual, bits = (np.atleast_1d(ds[name].values) for name in ("residual", "validity"))

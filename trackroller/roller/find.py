@@ -92,7 +92,8 @@ class Found:
     def text(self) -> str:
         """Return the answer in words."""
         unit = "" if self.unit == "-" else f" {self.unit}"
-        words, tried = PARAMETERS[self.name].long_name, f"{self.tried[0]:.4g} and {self.tried[1]:.4g}{unit}"
+        words = PARAMETERS[self.name].long_name
+        tried = f"{self.tried[0]:.4g} and {self.tried[1]:.4g}{unit}"
         if not self.met:
             return " ".join([f"No {words} between {tried} meets '{self.condition}': {self.below}", *self.notes])
         inside = self.low <= self.start <= self.high
@@ -211,7 +212,8 @@ def _toward(start: float, end: float) -> np.ndarray:
     Even steps miss what lies near the start if the end is far away, so that the steps grow where the end is more than
     `RATIO` times the start away.
     """
-    distance, near = abs(end - start), abs(start) or 1.0
+    distance = abs(end - start)
+    near = abs(start) or 1.0
     steps = np.linspace(0.0, distance, STEPS + 1)[1:]
     if distance > RATIO * near:
         steps = np.geomspace(near / STEPS, distance, STEPS)
@@ -244,7 +246,9 @@ class _Search:
     def __init__(
         self, case: Case, name: str, condition: str, database: MaterialDatabase | None, options: Mapping[str, Any]
     ) -> None:
-        self.case, self.name, self.database = case, name, database
+        self.case = case
+        self.name = name
+        self.database = database
         self.plain = without_units(condition, unit_of, "find")
         self.condition = condition
         asked = names(self.plain, "find") - set(REGIMES)
@@ -349,7 +353,8 @@ class _Search:
         unit = PARAMETERS[self.name].unit
         if not held.any():
             nearest = told[int(np.argmin(np.abs(values - start)))][1]
-            why, none = f"now {nearest}", math.nan
+            why = f"now {nearest}"
+            none = math.nan
             return Found(self.name, unit, self.condition, start, none, none, tried, why, "", (*self.notes(), *notes))
         inside = np.flatnonzero(held)[np.argmin(np.abs(values[held] - start))]
         first, last = inside, inside

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from trackroller.damage import asked, fields_of, judged
+from trackroller.damage import fields_of, judged, limits_of
 from trackroller.damage.limit import SN_SCATTER, Limit, SolvedRollers, missing
 from trackroller.materials.material import UNNAMED
 from trackroller.materials.properties import Value
@@ -148,15 +148,17 @@ def placeholders_of(ds: xr.Dataset) -> list[Placeholder]:
 
 def notes_on_limits(table: CaseTable, options: Options) -> list[str]:
     """Return one sentence for each value that a limit asked for lacks, and for each that is a placeholder."""
-    solved, bodies = solved_of(table, {}, options), {"roller": table.roller, "guide": table.guide}
+    solved = solved_of(table, {}, options)
+    bodies = {"roller": table.roller, "guide": table.guide}
     names = {body: own.name for body, own in bodies.items()}
     guesses = dict.fromkeys(
         (str(name), tuple(own.items()))
         for body in bodies.values()
         for name, own in zip(body.name, body.guesses, strict=True)
     )
-    out, served = [], to_compute(solved, options)
-    for limit in asked(options.outputs, options.not_checked):
+    out = []
+    served = to_compute(solved, options)
+    for limit in limits_of(options.outputs, options.not_checked):
         out += [lack.line for lack in _lacks(limit, solved, names)]
         required = {}
         if limit in served:

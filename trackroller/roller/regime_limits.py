@@ -24,7 +24,8 @@ if TYPE_CHECKING:
 
 # Parts into which the first round, and each further one, cuts the range of each search. Cases near lift-off are dear,
 # and many rounds of few cases need the least of them.
-FIRST, ROUNDS = 8, (4,) * 8
+FIRST = 8
+ROUNDS = (4,) * 8
 _LOCKED = validity_bit("jamming")
 _FRICTION = PARAMETERS["friction_coefficient"].upper
 _FIELD = {"locking": "friction_coefficient", "lifting": "friction_coefficient"}  # limits of one field
@@ -93,8 +94,10 @@ def limits(case: Case, contact_model: str = "kalker", database: MaterialDatabase
     def holds(cases: list[Case]) -> dict[str, np.ndarray]:
         return _conditions(solve(cases, "forces", contact_model=model, accuracy="preview", database=database))
 
-    now, free = holds([nominal]), holds([replace(nominal, **{"motor_force": 0.0})])
-    lifted, rolls = not now["axial_force"][0], free["motor_force"][0]
+    now = holds([nominal])
+    free = holds([replace(nominal, **{"motor_force": 0.0})])
+    lifted = not now["axial_force"][0]
+    rolls = free["motor_force"][0]
     start = 0.0 if lifted else case.axial_force
     searches = [("axial_force", start, -span), ("axial_force", start, span), ("locking", 0.0, _FRICTION)]
     friction = nominal.friction_coefficient
@@ -132,7 +135,8 @@ def _edges(
         found = holds([replace(case, **{field: value}) for field, value in zip(fields, values, strict=True)])
         return [bool(found[names[place]][row]) for row, place in enumerate(places)]
 
-    edges, going = [math.nan] * len(searches), {}
+    edges = [math.nan] * len(searches)
+    going = {}
     lines = [np.linspace(start, end, FIRST + 1).tolist() for _, start, end in searches]
     answers = iter(near([i for i, line in enumerate(lines) for _ in line], [v for line in lines for v in line]))
     for i, line in enumerate(lines):

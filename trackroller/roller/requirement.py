@@ -117,7 +117,8 @@ def _one(name: str, given: Any, duty: Mapping[str, float] | None) -> Requirement
         share = math.nan
     ends = {end: given[end] for end in ("min", "max") if end in given}
     numbers = collected(ends, lambda end, value: _end(name, value, f"{where}.{end}", duty))
-    least, most = numbers.get("min", -math.inf), numbers.get("max", math.inf)
+    least = numbers.get("min", -math.inf)
+    most = numbers.get("max", math.inf)
     if least >= most:
         raise InputError(where, dict(given), "min below max")
     written = {end: _again(ends[end], numbers[end]) for end in ends}
@@ -155,7 +156,8 @@ def _years(given: Any) -> float | None:
 
 def _end(name: str, given: Any, where: str, duty: Mapping[str, float] | None) -> float:
     """Return a smallest or largest value in the unit of its output, a life in years by the duty in hours."""
-    unit, in_years = unit_of(name), _years(given)
+    unit = unit_of(name)
+    in_years = _years(given)
     if in_years is not None and unit == "h":
         if duty is None:
             raise InputError(where, given, "years beside a duty, or hours of travel", EXAMPLE, "needs a duty")

@@ -43,7 +43,8 @@ def checked_sheet(value: Any) -> dict[str, str]:
         remedy = "Write sheet: {project: Lift 7, part: R-12, author: Ada}."
         raise InputError("sheet", value, f"texts by name: {', '.join(SHEET_FIELDS)}", remedy)
     check_names("sheet: key", value, SHEET_FIELDS)
-    given, wrong = {name: text for name, text in value.items() if text is not None}, Collector()
+    given = {name: text for name, text in value.items() if text is not None}
+    wrong = Collector()
     for name, text in given.items():
         with wrong.part():
             if isinstance(text, bool) or not isinstance(text, (str, int, float)) or len(str(text)) > LONGEST:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numba.core.registry import cpu_target
 
-from trackroller.damage import asked, fatigue, judged, verdict
+from trackroller.damage import fatigue, judged, limits_of, verdict
 from trackroller.damage.limit import Limit
 from trackroller.errors import InputError
 from trackroller.materials import load_database
@@ -192,7 +192,7 @@ def _solve_table(table: CaseTable, options: Options, single: bool) -> xr.Dataset
     tell_errors(ds, worn, options)
     checks_limits = verdict.GROUP in options.outputs or options.life_criterion in fatigue.STRESS_OF
     warm = temperature.notes(worn, block)
-    if checks_limits or warm or any(limit.shared for limit in asked(options.outputs)):
+    if checks_limits or warm or any(limit.shared for limit in limits_of(options.outputs)):
         ds.attrs[NOTES] = "\n".join([*notes_on_limits(worn, options), *warm])
     return ds
 
@@ -220,12 +220,14 @@ def _solve_window(table: CaseTable, options: Options) -> Block:
     if options.shortcuts:
         one_handed, mirrored = handed(table)
     else:
-        one_handed, mirrored = table, np.zeros(len(table), bool)
+        one_handed = table
+        mirrored = np.zeros(len(table), bool)
 
     def solve_all(cases: CaseTable) -> Block:
         return join([meet(few, options, _solve_block) for few in _cut(cases, BLOCK)])
 
-    distinct, number = one_handed, np.arange(len(table))
+    distinct = one_handed
+    number = np.arange(len(table))
     # limits of patches depend on the speed and on all values of the materials
     if options.shortcuts and len(table) > 1 and not stages_outcome.of_patches(_limits(one_handed, options)):
         rows, number = distinct_contacts.distinct_mechanics(one_handed)

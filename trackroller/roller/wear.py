@@ -33,7 +33,8 @@ if TYPE_CHECKING:
 
 OUTPUTS = ("forces", "contact", "friction_work", "peak_stress", "life")
 PATCH = "contact"  # group of pressure and patch, which the states of every run have: page and sentences show them
-_C, _CB = ("contact",), ("contact", "body")
+_C = ("contact",)
+_CB = ("contact", "body")
 VARIABLES = variables(
     "groove",
     ("groove_depth", _CB, "mm", "d", "depth of the deepest worn place"),
@@ -63,7 +64,9 @@ FARTHEST = 1e9  # km
 ALIKE = 1e-6
 # Error of the largest pressure times the columns of elements, and over its `roughness` within NEAR columns: wear leaves
 # a ridge at the spin pole. The sum covers the difference to finer runs in 95 % of states of random rollers.
-COLUMN_ERROR, RIDGE_ERROR, NEAR = 0.5, 0.2, 3
+COLUMN_ERROR = 0.5
+RIDGE_ERROR = 0.2
+NEAR = 3
 Tell = Callable[["xr.Dataset", float], None]
 
 
@@ -144,7 +147,11 @@ class _Record:
     """The run of one roller: its march, and the results that were made of its states."""
 
     def __init__(self, case: Case, options: Options, database: MaterialDatabase, tell: Tell | None, to: float) -> None:
-        self.case, self.options, self.database, self.tell, self.to = case, options, database, tell, to
+        self.case = case
+        self.options = options
+        self.database = database
+        self.tell = tell
+        self.to = to
         self.table, self.mirrored = handed(to_table(case, database))
         self.wearing = Wearing(self.table, options)
         self.rows: list[xr.Dataset] = []
@@ -152,7 +159,8 @@ class _Record:
     def run(self, resume: xr.Dataset | None) -> xr.Dataset:
         """Return the results up to the end."""
         if resume is None:
-            state, step = None, 0.0
+            state = None
+            step = 0.0
         else:
             state, step = self._taken_up(resume)
         before: Groove | None = None
@@ -215,7 +223,8 @@ class _Record:
     def _values(self, state: Groove, turned: Groove, onward: float) -> dict[str, Any]:
         w = self.wearing
         both = (2, *state.depth.shape[1:])
-        depth, step = np.broadcast_to(state.depth, both), w.places[1] - w.places[0]
+        depth = np.broadcast_to(state.depth, both)
+        step = w.places[1] - w.places[0]
         around = 2.0 * np.pi * (w.radius[0] + w.places * np.sin(w.alpha[0]))
         return {
             "groove_depth": depth.max(axis=2),
@@ -262,7 +271,8 @@ class _Record:
             return None, 0.0
         derived = ("fatigue_damage", "fatigue_damage_error", "life_travel", "life_travel_new", "place")
         self.rows = [ds.drop_vars(derived, errors="ignore").isel(travel=int(i)) for i in states]
-        last, m = self.rows[-1], self.wearing.contacts
+        last = self.rows[-1]
+        m = self.wearing.contacts
         known = {v.name: self._seen(last[v.name].values, v.dims) for v in VARIABLES if v.name in last}
         new = bool(np.isnan(known["start_balance"]).any())
         state = Groove(
@@ -290,7 +300,8 @@ def _pressure_error(state: Groove, results: StageResults) -> np.ndarray:
 
 def _of_lives(ds: xr.Dataset, per_km: np.ndarray) -> dict[str, Any]:
     """Return the damage sum along the travel, and the travel at which it reaches 1, with and without wear."""
-    travel, cycles = ds["travel"].values, ds["life_cycles"].transpose("travel", "contact", "body").values
+    travel = ds["travel"].values
+    cycles = ds["life_cycles"].transpose("travel", "contact", "body").values
     with np.errstate(divide="ignore", invalid="ignore"):
         rate = per_km / cycles
         one, two = rate[:-1], rate[1:]

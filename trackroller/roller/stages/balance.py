@@ -31,7 +31,7 @@ def balance(scene: Scene, near: eq.Equilibrium | None = None) -> eq.Equilibrium:
     def correct(rows: np.ndarray, balanced: eq.Equilibrium) -> np.ndarray:
         wanted = np.zeros(scene.n, bool)
         wanted[rows] = True
-        asked = np.flatnonzero(scene.mirror.asked(np.tile(wanted, 2)))
+        asked = np.flatnonzero(scene.mirror.to_solve(np.tile(wanted, 2)))
         patch, slip = scene.contacts(balanced)
         number = asked % scene.n
         change = correction.solve(patch.take(asked), slip.take(asked), scene.loads.friction[number], number)

@@ -28,7 +28,8 @@ FINER_PIECE = 16  # the same on twice the elements
 # Estimated relative error of a peak above which the patch is solved again on twice the elements, and the number of
 # elements for which it holds; it falls with the area of an element. Stresses have narrow ridges where sliding begins,
 # which carry the peaks of such patches. Their search therefore takes finer rules and steps.
-REFINED_ERROR, REFINED_AT = 1.5e-2, 28
+REFINED_ERROR = 1.5e-2
+REFINED_AT = 28
 CHANGE_WEIGHT = 1.6  # weight of the change by elements where it alone decides
 REFINED_SHARE = 0.5  # share of the error that the contact model adds to a peak, below which finer elements gain little
 FINER_SEARCH: dict[str, Any] = {"scan": 8, "polish": 24, "step": 0.004}
@@ -37,7 +38,9 @@ FINER_SEARCH: dict[str, Any] = {"scan": 8, "polish": 24, "step": 0.004}
 # the peak found by more than POLE_SPREAD, which is the error of the formula, the peak is too low by up to POLE_WEIGHT
 # times the rest. This holds for adhesion areas below SMALL_SHARE of the patch. Measured on 443 rolling designs, see
 # tests/roller/test_tolerance.py.
-POLE_SPREAD, POLE_WEIGHT, SMALL_SHARE = 0.04, 1.6, 0.01
+POLE_SPREAD = 0.04
+POLE_WEIGHT = 1.6
+SMALL_SHARE = 0.01
 UNSEEN_ERROR = 3e-4  # relative error of peaks under tractions on elements that no estimate shows
 
 
@@ -109,7 +112,8 @@ class EllipseStresses(PatchStresses):
 
     def bounds(self, wanted: np.ndarray) -> np.ndarray:
         """Return the largest of a few points of each patch, (m, 2) [MPa]."""
-        patches, parts = self.rows()[wanted[self.results.good]], []
+        patches = self.rows()[wanted[self.results.good]]
+        parts = []
         numbers = np.flatnonzero(wanted)
         for rows in _pieces(numbers.size):
             flat = numbers[rows]
@@ -135,8 +139,11 @@ class EllipseStresses(PatchStresses):
 
         `flat` are the numbers of the patches; the `second` are searched as their mirror images.
         """
-        results, settings, elements = self.results, self.options.settings.peak, self.options.settings.elements
-        own, peak = results.scene.model.peak_error, Peak.empty(len(patches))
+        results = self.results
+        settings = self.options.settings.peak
+        elements = self.options.settings.elements
+        own = results.scene.model.peak_error
+        peak = Peak.empty(len(patches))
         # adhesion and the spin pole make several summits of nearly the same height
         if own:
             seeds = QUICK_SEEDS
@@ -172,7 +179,8 @@ class EllipseStresses(PatchStresses):
         self, patches: np.ndarray, ratios: np.ndarray, flat: np.ndarray, second: np.ndarray, settings: PeakSettings
     ) -> tuple[Peak, np.ndarray]:
         """Return the peaks under tractions on twice the elements, and whether these converged, (m,)."""
-        model, none = self.results.scene.model, np.zeros(len(flat), bool)
+        model = self.results.scene.model
+        none = np.zeros(len(flat), bool)
         shares = self._shares(flat, model.finer_shares)
         if shares is None:  # the model does not refine patches
             return Peak.empty(len(flat)), none
@@ -214,7 +222,8 @@ class EllipseStresses(PatchStresses):
 
     def _field_of(self, flat: int) -> np.ndarray:
         """Return the traction over its bound on the grid on which the peak was found, (2, ny, nx)."""
-        results, number = self.results, np.array([flat])
+        results = self.results
+        number = np.array([flat])
         refined = results.refined[results.scene.mirror.source(number)][0]
         if refined:
             fields, *_ = self._shares(number, results.scene.model.finer_shares)

@@ -16,7 +16,8 @@ from trackroller.roller.stages.patch_stresses import PatchStresses
 from trackroller.roller.stages.scene import surface_tractions
 
 # A peak is refined if its estimated error exceeds both REFINED_ERROR times the tolerance and FINEST_ERROR.
-REFINED_ERROR, FINEST_ERROR = 4.0, 5e-3
+REFINED_ERROR = 4.0
+FINEST_ERROR = 5e-3
 REFINEMENTS = 2, 4  # times the elements of the solved pressure
 LARGEST_GRID = 160  # largest number of elements across after a refinement
 RIDGE_ERROR = 0.02  # error of the solved pressure's stress per `roughness`, which no other tractions on it show
@@ -58,8 +59,10 @@ class GridStresses(PatchStresses):
         the model computes the tractions on finer elements, the patch is searched again with more elements, until the
         estimated error is as small as that of other patches.
         """
-        results, options = self.results, self.options
-        flat, ratios = np.flatnonzero(asked), self.poisson_ratio[asked]
+        results = self.results
+        options = self.options
+        flat = np.flatnonzero(asked)
+        ratios = self.poisson_ratio[asked]
         loads = [self.load(place) for place in flat.tolist()]
         seeds = max(2, options.settings.peak.finalists)
         outward = np.where(flat < results.scene.n, 1.0, -1.0)

@@ -69,7 +69,8 @@ def _ends(table: CaseTable) -> dict[str, np.ndarray]:
 
     A value whose place in its range is given has no range, and a given factor replaces that of the wear coefficient.
     """
-    given, out = ~np.isnan(table.placeholder_position), {}
+    given = ~np.isnan(table.placeholder_position)
+    out = {}
     bodies = [distinct(own.ends) for own in (table.roller, table.guide)]
     for name in sorted({name for materials, _ in bodies for ends in materials for name in ends}):
         held = given
@@ -94,7 +95,8 @@ def of_patches(limits: Iterable[Limit]) -> tuple[Limit, ...]:
 def _unworn_gap(table: CaseTable, case: int, contact: int, lateral: np.ndarray) -> np.ndarray:
     """Return the gap of the undeformed profiles at lateral places of one contact of a case, see `SolvedRollers`."""
     alpha = float(np.deg2rad(table.contact_angle[case]))
-    axis, guide_radius = float(table.axis_distance[case]), float(table.guide_profile_radius[case])
+    axis = float(table.axis_distance[case])
+    guide_radius = float(table.guide_profile_radius[case])
     between = gap(
         str(table.guide_profile[case]),
         str(table.roller_profile[case]),
@@ -123,7 +125,8 @@ def limits(table: CaseTable, v: dict[str, np.ndarray], options: Options, regime:
             names = [one.name for limit in wanted for one in limit.results if one.end == end]
             v |= {name: place.values[name] for name in names}
     if verdict.GROUP in options.outputs:
-        names, counted = list(LIMITS), judged(options.outputs, options.not_checked)
+        names = list(LIMITS)
+        counted = judged(options.outputs, options.not_checked)
         known = [_nothing(limit) if limit not in wanted else limit for limit in counted]
         v |= verdict.verdict(places, known, [names.index(limit.name) for limit in counted], len(names))
     for name in [name for name in v if name.startswith("_") and name != BEYOND_TABLE]:
@@ -137,7 +140,8 @@ def _nothing(limit: Limit) -> Limit:
 
 def _at_end(solved: SolvedRollers, wanted: tuple[Limit, ...], end: int) -> SolvedRollers:
     """Return the rollers and their results with the placeholders at the worse (0) or the better (1) end."""
-    values, moved = dict(solved.values), solved.at_end(end)
+    values = dict(solved.values)
+    moved = solved.at_end(end)
     there = of_patches(wanted)
     for limit in (limit for limit in wanted if limit.moves(solved)):
         if limit in there:
@@ -154,7 +158,8 @@ def patch_limits(results: StageResults, options: Options, wanted: tuple[Limit, .
     Limits that rest on placeholders are also computed at both ends of their ranges, as `_0_NAME` and `_1_NAME`.
     """
     scene = results.scene
-    own, shared = of_patches(wanted), [limit for limit in wanted if limit.shared is not None]
+    own = of_patches(wanted)
+    shared = [limit for limit in wanted if limit.shared is not None]
     if not own and not shared:
         return
 
@@ -212,7 +217,8 @@ def validity(table: CaseTable, block: Block, options: Options) -> None:
     """Set the validity flags where the assumptions of the model do not hold, see `parameters.validity`."""
     v = block.values
     bit = {name: 1 << i for i, name in enumerate(VALIDITY)}
-    r_g, alpha = table.guide_profile_radius, np.deg2rad(table.contact_angle)
+    r_g = table.guide_profile_radius
+    alpha = np.deg2rad(table.contact_angle)
     r_a = rolling_radius(table.axis_distance, r_g, alpha)
     radii = [[table.roller_profile_radius, r_a / np.cos(alpha)], [r_g, table.guide_curve_radius / np.cos(alpha)]]
     smallest = np.min(np.abs(radii), axis=1).T

@@ -21,7 +21,8 @@ class PatchStresses:
     """
 
     def __init__(self, results: StageResults, options: Options) -> None:
-        self.results, self.options = results, options
+        self.results = results
+        self.options = options
         table = results.scene.table
         nu = np.stack([table.roller.poisson_ratio, table.guide.poisson_ratio], axis=1)
         if options.stress_bodies == "published":

@@ -51,7 +51,7 @@ def peak_stress(results: StageResults, options: Options) -> None:
     """Add the peak von Mises stress of each contact and body, its place and its error estimate."""
     good = results.good & ~np.tile(results.stopped, 2)
     mirror = results.scene.mirror
-    asked = mirror.asked(good)
+    asked = mirror.to_solve(good)
     peak = stresses_of(results, options).peaks(asked)
     quantities = {
         "peak_stress": (peak.stress, 1.0),
@@ -71,7 +71,9 @@ def peak_stress(results: StageResults, options: Options) -> None:
 
 def subsurface(results: StageResults, options: Options) -> None:
     """Add all stress components on the two section planes through each peak."""
-    m, n, v = options.settings.section_points, results.scene.n, results.values
+    m = options.settings.section_points
+    n = results.scene.n
+    v = results.values
     depths = (m + 1) // 2
     sizes: dict[str, tuple[int, ...]] = {"xz_x": (m,), "xz_z": (depths,), "yz_y": (m,), "yz_z": (depths,)}
     sizes |= {"von_mises_xz": (depths, m), "von_mises_yz": (depths, m)}
