@@ -86,7 +86,9 @@ def _difference(one: xr.Dataset, two: xr.Dataset, name: str) -> Difference:
     old = one[name].values
     new = two[name].values
     if old.dtype.kind not in "fc":
-        return Difference(0.0 if np.array_equal(_words(old), _words(new)) else np.inf, 0.0, "")
+        if np.array_equal(_words(old), _words(new)):
+            return Difference(0.0, 0.0, "")
+        return Difference(np.inf, 0.0, "")
     return Difference(apart(old, new, scale(one, name)), allowed(name), _kind(name)[1])
 
 
@@ -119,8 +121,8 @@ def scale(ds: xr.Dataset, name: str) -> np.ndarray:
 def _larger(one: xr.DataArray, two: xr.DataArray) -> xr.DataArray:
     """Return the larger value of two arrays; a NaN counts as no value."""
     larger: Any = np.fmax  # its stubs do not know labelled arrays
-    found: xr.DataArray = larger(one, two)
-    return found
+    values: xr.DataArray = larger(one, two)
+    return values
 
 
 def _inside(ds: xr.Dataset, name: str, dims: tuple[str, ...]) -> xr.DataArray:
@@ -171,8 +173,10 @@ def _patch(ds: xr.Dataset, name: str, *along: str) -> xr.DataArray:
     sides = [f"semi_axis_{axis}" for axis in along or ("lateral", "rolling")]
     if not all(side in ds.variables for side in sides):
         return 0.01 * _axis(ds) + 0.0 * abs(ds[name]).fillna(0.0)
-    first, *more = (_inside(ds, side, _dims(name)) for side in sides)
-    return _larger(first, more[0]) if more else first
+    lengths = [_inside(ds, side, _dims(name)) for side in sides]
+    if len(lengths) == 1:
+        return lengths[0]
+    return _larger(*lengths)
 
 
 def _lateral(ds: xr.Dataset, name: str) -> xr.DataArray:

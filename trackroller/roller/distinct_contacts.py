@@ -100,7 +100,10 @@ def normalised_patches(patches: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     length = np.where(plain, patches["a"], 1.0)
     out = patches.copy()
     unit = np.zeros(1, patches.dtype)  # the slip, on which the stresses do not depend
-    unit["a"], unit["sine"], unit["cosine"], unit["radius"] = 1.0, 0.5, np.sqrt(0.75), 1e3
+    unit["a"] = 1.0
+    unit["sine"] = 0.5
+    unit["cosine"] = np.sqrt(0.75)
+    unit["radius"] = 1e3
     out[plain] = unit
     out["b"][plain] = rounded(patches["b"] / patches["a"])[plain]
     for name in ("friction", "fixed"):
@@ -130,10 +133,10 @@ class Mirror:
         def one_sided(ellipse, slip, friction, rows, fine):
             half = len(rows) // 2
             twin = self.symmetric[rows[half:]]
-            asked = np.concatenate([np.ones(half, bool), ~twin])
-            resultants = law(ellipse.take(asked), slip.take(asked), friction[asked], rows[asked], fine)
+            solved = np.concatenate([np.ones(half, bool), ~twin])
+            resultants = law(ellipse.take(solved), slip.take(solved), friction[solved], rows[solved], fine)
             full = np.empty((len(rows), 3))
-            full[asked] = resultants.columns
+            full[solved] = resultants.columns
             full[half:][twin] = full[:half][twin] * (-1.0, 1.0, -1.0)
             return Resultants(*full.T)
 
@@ -150,7 +153,10 @@ class Mirror:
 
     def _copies(self, good: np.ndarray, values: np.ndarray, patches: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return the values (2 n, ...) with contact 1 copied to contact 2 of symmetric rollers, and mark the copies."""
-        full = np.full((good.size, *values.shape[1:]), np.nan, dtype=values.dtype if values.dtype != bool else float)
+        kind = values.dtype
+        if values.dtype.kind == "b":
+            kind = np.dtype(float)
+        full = np.full((good.size, *values.shape[1:]), np.nan, dtype=kind)
         full[patches] = values
         half = good.size // 2
         twin = np.concatenate([np.zeros(half, bool), self.symmetric & good[half:]])

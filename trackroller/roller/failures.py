@@ -63,7 +63,9 @@ def with_reasons(
         case = table.take(np.array([i]))
         reasons[i] = ". ".join([words, *_hints(case, options, bool(bits[i] & STEEP))])
     attrs = {"long_name": "why a case failed or misses its tolerance"}
-    return ds.assign(reason=(ds["regime"].dims, reasons if ds["regime"].dims else reasons[0], attrs))
+    if not ds["regime"].dims:
+        return ds.assign(reason=((), reasons[0], attrs))
+    return ds.assign(reason=(ds["regime"].dims, reasons, attrs))
 
 
 def _hints(case: CaseTable, options: Options, steep: bool) -> list[str]:

@@ -130,19 +130,22 @@ def notes_of(ds: xr.Dataset) -> list[str]:
 
 def lacks_of(ds: xr.Dataset) -> list[Lack]:
     """Return the values that the limits of a result lack."""
-    return [Lack(**found.groupdict(default="")) for note in notes_of(ds) if (found := _LACK.fullmatch(note))]
+    matches = map(_LACK.fullmatch, notes_of(ds))
+    return [Lack(**match.groupdict(default="")) for match in matches if match is not None]
 
 
 def placeholders_of(ds: xr.Dataset) -> list[Placeholder]:
     """Return the placeholders of materials on which the limits of a result rest."""
     out = []
     for note in notes_of(ds):
-        found = _PLACEHOLDERS.fullmatch(note)
-        if found is not None:
-            for one in _VALUE.finditer(found["values"]):
-                low, high = (float(one[end]) if one[end] else np.nan for end in ("low", "high"))
-                texts = found["limit"], found["material"], one["name"], one["note"] or ""
-                out.append(Placeholder(*texts, low, high, one["units"] or ""))
+        placeholders = _PLACEHOLDERS.fullmatch(note)
+        if placeholders is None:
+            continue
+        for value in _VALUE.finditer(placeholders["values"]):
+            low = float(value["low"] or np.nan)
+            high = float(value["high"] or np.nan)
+            texts = placeholders["limit"], placeholders["material"], value["name"], value["note"] or ""
+            out.append(Placeholder(*texts, low, high, value["units"] or ""))
     return out
 
 

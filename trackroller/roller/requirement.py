@@ -147,11 +147,12 @@ def _share(given: Any, where: str) -> float:
 
 def _years(given: Any) -> float | None:
     """Return the number of years of a text such as '3 years'; None for anything else."""
-    found = None
+    years = None
     if isinstance(given, str):
-        found = YEARS.fullmatch(given)
-    number = number_or_nan(found[1]) if found else math.nan
-    return None if math.isnan(number) else number
+        years = YEARS.fullmatch(given)
+    if years is None or math.isnan(number_or_nan(years[1])):
+        return None
+    return number_or_nan(years[1])
 
 
 def _end(name: str, given: Any, where: str, duty: Mapping[str, float] | None) -> float:
@@ -184,5 +185,5 @@ def requirement_of(ds: xr.Dataset) -> dict[str, Requirement]:
     duty = None
     if "duty" in ds.attrs:
         duty = json.loads(ds.attrs["duty"])
-    found: dict[str, Requirement] = checked_requirement(json.loads(ds.attrs.get(KEY, "{}")), duty)
-    return found
+    requirement: dict[str, Requirement] = checked_requirement(json.loads(ds.attrs.get(KEY, "{}")), duty)
+    return requirement

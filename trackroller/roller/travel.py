@@ -50,11 +50,15 @@ class _Course:
             if step is None:  # nothing wears
                 return replace(self.wearing.start, travel=travel), ""
             state, results, _, self._end = step
-            self._states.append(state if self.wearing.end(results) else self.wearing.turned(state, results))
+            if not self.wearing.end(results):
+                state = self.wearing.turned(state, results)
+            self._states.append(state)
         later = next((i for i, state in enumerate(self._states) if state.travel >= travel), None)
         if later is None:
             return self._states[-1], self._end
-        return (between(self._states[later - 1], self._states[later], travel) if later else self._states[0]), ""
+        if later == 0:
+            return self._states[0], ""
+        return between(self._states[later - 1], self._states[later], travel), ""
 
 
 @lru_cache(maxsize=KEPT)

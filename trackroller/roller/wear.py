@@ -136,10 +136,12 @@ def wear(
     allowed = "a travel > 0 km and at most 1e9 km, such as 500km"
     to = number_in(to, "to", allowed, np.nextafter(0.0, 1.0), FARTHEST, unit="km")
     check_names("option", options, OPTIONS)
-    given = Options(**{"normal": "halfspace", "outputs": OUTPUTS if outputs is None else outputs} | options)
-    if PATCH not in given.outputs:
-        given = given.changed(outputs=(*given.outputs, PATCH))
-    record = _Record(case, given, database, tell, to)
+    if outputs is None:
+        outputs = OUTPUTS
+    settings = Options(**{"normal": "halfspace", "outputs": outputs} | options)
+    if PATCH not in settings.outputs:
+        settings = settings.changed(outputs=(*settings.outputs, PATCH))
+    record = _Record(case, settings, database, tell, to)
     return record.run(resume)
 
 
@@ -225,6 +227,11 @@ class _Record:
         both = (2, *state.depth.shape[1:])
         depth = np.broadcast_to(state.depth, both)
         step = w.places[1] - w.places[0]
+        balance = boxes = np.full(3, np.nan)
+        if state.balance is not None:
+            balance = state.balance
+        if state.boxes is not None:
+            boxes = state.boxes
         around = 2.0 * np.pi * (w.radius[0] + w.places * np.sin(w.alpha[0]))
         return {
             "groove_depth": depth.max(axis=2),
@@ -238,8 +245,8 @@ class _Record:
             "closing": np.broadcast_to(state.closing, 2),
             "next_step": onward,
             "start_inclination": np.broadcast_to(state.inclined, 2),
-            "start_balance": np.full(3, np.nan) if state.balance is None else state.balance,
-            "start_box": np.broadcast_to(np.full(3, np.nan) if state.boxes is None else state.boxes, (2, 3)),
+            "start_balance": balance,
+            "start_box": np.broadcast_to(boxes, (2, 3)),
         }
 
     def _joined(self, end: str) -> xr.Dataset:
@@ -274,16 +281,15 @@ class _Record:
         last = self.rows[-1]
         m = self.wearing.contacts
         known = {v.name: self._seen(last[v.name].values, v.dims) for v in VARIABLES if v.name in last}
-        new = bool(np.isnan(known["start_balance"]).any())
         state = Groove(
             float(last.travel),
             known["worn_depth"][:m],
             known["closing"][:m],
             known["start_inclination"][:m],
             float(known["groove_step_error"]),
-            None if new else known["start_balance"],
-            None if new else known["start_box"][:m],
         )
+        if not np.isnan(known["start_balance"]).any():
+            state = replace(state, balance=known["start_balance"], boxes=known["start_box"][:m])
         return state, float(last.next_step)
 
 
@@ -291,7 +297,9 @@ def _pressure_error(state: Groove, results: StageResults) -> np.ndarray:
     """Return the estimated relative error of the largest pressure, (2,) [1]; 0 for the new groove."""
     patch: Any = results.patch
     out = np.zeros(2)
-    for k in range(2 if state.depth.any() else 0):
+    if not state.depth.any():
+        return out
+    for k in range(2):
         top = int(np.argmax(patch.pressure[k].max(axis=0)))
         ridge = roughness(patch.pressure[k][:, max(top - NEAR, 0) : top + NEAR + 1])
         out[k] = COLUMN_ERROR / patch.shape[1] + RIDGE_ERROR * ridge

@@ -142,7 +142,8 @@ class Wearing:
         if self.end(self.new):
             return
         patch: Any = self.new.patch
-        wide, (low, high) = float(np.min(patch.semi_axis_lateral)), self._gap(table, 1).limits
+        wide = float(np.min(patch.semi_axis_lateral))
+        low, high = self._gap(table, 1).limits
         step = 2.0 * wide / patch.shape[1]
         self.cells = step * np.arange(
             np.floor(max(low / step, -REACH * wide / step)), np.ceil(min(high, REACH * wide) / step) + 1
@@ -314,11 +315,16 @@ class Wearing:
         states : int
             Number of states so far, which counts towards the limit.
         """
-        at = self.start if state is None else state
-        results = self.new if state is None else self.solve(at)
+        at = self.start
+        results = self.new
+        if state is not None:
+            at = state
+            results = self.solve(at)
         reason = self.end(self.new)
         yield at, results, step, reason
-        for _ in range(states, states if reason else STEPS):
+        if reason:
+            return
+        for _ in range(states, STEPS):
             patches = self._patches(results, self.worn_table(at))
             at = self.turned(at, results)
             if any(p.edges[0] < self.cells[0] - p.width or p.edges[-1] > self.cells[-1] + p.width for p in patches):
@@ -339,9 +345,10 @@ class Wearing:
                         break
                 if reason:
                     step *= SHRINK
+                    tries += 1
                 else:
                     step *= max(SHRINK, 0.9 / np.sqrt(ratio))
-                tries = tries + 1 if reason else 0
+                    tries = 0
                 if step < least or tries == TRIES:
                     yield at, results, step, reason or "steps"
                     return
@@ -349,8 +356,7 @@ class Wearing:
             results = after
             step = step * min(GROWTH, 0.9 / np.sqrt(max(ratio, 1e-12)))
             yield at, results, step, ""
-        if not reason:
-            yield at, results, step, "steps"
+        yield at, results, step, "steps"
 
 
 def _rates(table: CaseTable, options: Options, per_km: np.ndarray) -> np.ndarray:
@@ -367,13 +373,13 @@ def _rates(table: CaseTable, options: Options, per_km: np.ndarray) -> np.ndarray
                 "wear_table", None, "a table of mass loss over frictional work for wear_law: energy", remedy
             )
         name = "density"
-        what = "a number [kg/m3]"
+        allowed = "a number [kg/m3]"
         k = np.array([1.0 / body.density[0] for body in bodies])
     else:
         name = "wear_coefficient"
-        what = "a number [mm3/(N m)]"
+        allowed = "a number [mm3/(N m)]"
         k = np.array([body.wear_coefficient[0] for body in bodies])
     if np.isnan(k).all():
         remedy = f"Give it: roller_material: {{like: NAME, {name}: NUMBER}}."
-        raise InputError(name, None, f"{what} of roller or guide", remedy)
+        raise InputError(name, None, f"{allowed} of roller or guide", remedy)
     return np.nan_to_num(1e-3 * np.nan_to_num(table.wear_coefficient_factor[0], nan=1.0) * k * per_km)

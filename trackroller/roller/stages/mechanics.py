@@ -49,7 +49,9 @@ def prepare(table: CaseTable, options: Options, across: int = 1, near: Boxes | N
     across, near : factor on the elements across solved patches and boxes to start from, see `models.model_of`
     """
     alpha, r_a, k_x, k_y = contact_geometry(vars(table))
-    unit = r_a if options.normal == "hertz" else np.ones(len(table))  # drawn profiles are in mm
+    unit = np.ones(len(table))  # drawn profiles are in mm
+    if options.normal == "hertz":
+        unit = r_a
     r_a = r_a / unit
     k_x = rounded(k_x * unit)
     k_y = rounded(k_y * unit)
@@ -61,7 +63,9 @@ def prepare(table: CaseTable, options: Options, across: int = 1, near: Boxes | N
         turning = turning_of(curve, guide, np.cos(alpha))
         # a contact beyond the axis of a concave guide cannot turn with it: its shape is NaN, and the row fails
         hertz = replace(hertz, lateral=np.where(np.isnan(turning), np.nan, hertz.lateral))
-    law = law_of(table.friction_law[0] if len(table) else None)
+    law = law_of(None)
+    if len(table):
+        law = law_of(table.friction_law[0])
     model = model_of(table, options, r_a, law, table.velocity * MM_PER_S, across, near)
     loads = eq.RollerLoads(
         rounded(table.radial_force / unit**2),
@@ -83,7 +87,10 @@ def prepare(table: CaseTable, options: Options, across: int = 1, near: Boxes | N
     else:
         twins = np.zeros(len(table), bool)
     turned = np.array([inclined(str(text)) for text in table.guide_profile]).reshape(-1, 2) * [1.0, -1.0]
-    return Scene(table, loads, model, unit, Mirror(twins), bare, len(table), turning, turned if turned.any() else None)
+    inclination = None
+    if turned.any():
+        inclination = turned
+    return Scene(table, loads, model, unit, Mirror(twins), bare, len(table), turning, inclination)
 
 
 def forces(results: StageResults) -> None:
@@ -98,12 +105,14 @@ def forces(results: StageResults) -> None:
     v = results.values
     offset = results.by_contact(results.patch.pressure_centre)
     slides = (results.regime == eq.FULL_SLIP)[:, None]
-    v["normal_force"], v["lateral_force"] = b.normal_force, f.lateral_force
+    v["normal_force"] = b.normal_force
+    v["lateral_force"] = f.lateral_force
     if results.scene.inclined is not None:
         v["lateral_force"] = f.lateral_force - b.normal_force * results.scene.inclined
     v["driving_force"] = f.driving_force
     v["spin_moment"] = np.where(slides, offset * f.driving_force, f.spin_moment)
-    v["rolling_radius_shift"], v["slip"] = b.shift, b.shift / loads.rolling_radius
+    v["rolling_radius_shift"] = b.shift
+    v["slip"] = b.shift / loads.rolling_radius
     height = results.scene.table.axis_distance / results.scene.unit
     h_n, h_t = lever_arms(height, loads.guide_profile_radius, loads.contact_angle)
     m = f.spin_moment
@@ -150,7 +159,8 @@ def _load_error(results: StageResults, of_ratio: np.ndarray) -> np.ndarray:
     """Return the relative errors of F_N that errors (n, 2) of the ratios F_T/F_N cause by eqs (7), (9), (n, 2)."""
     v = results.values
     loads = results.scene.loads
-    normal, (one, two) = v["normal_force"], (v["lateral_force"] / v["normal_force"]).T
+    normal = v["normal_force"]
+    one, two = (v["lateral_force"] / normal).T
     own = np.stack([own_change(loads.sine, loads.cosine, two), own_change(loads.sine, loads.cosine, -one)], axis=1)
     wedge = np.abs(determinant(loads.sine, loads.cosine, one, two))
     return (own * of_ratio + (of_ratio * normal)[:, ::-1] / normal) / wedge[:, None]
@@ -162,13 +172,15 @@ def contact(results: StageResults, options: Options) -> None:
     patch = results.patch
     model = results.scene.model
     wide, long = patch.half_extents
-    v["semi_axis_lateral"], v["semi_axis_rolling"] = results.by_contact(wide), results.by_contact(long)
+    v["semi_axis_lateral"] = results.by_contact(wide)
+    v["semi_axis_rolling"] = results.by_contact(long)
     v["max_pressure"] = results.by_contact(patch.max_pressure)
     v["patch_area"] = results.by_contact(patch.area)
     v["pressure_centre"] = results.by_contact(patch.pressure_centre)
     results.flag("conformal", np.logical_or.reduce(results.by_contact(patch.reaches_edge), axis=1))
     pole_x, pole_y = _spin_pole(results, options)
-    v["spin_pole_lateral"], v["spin_pole_rolling"] = results.by_contact(pole_x), results.by_contact(pole_y)
+    v["spin_pole_lateral"] = results.by_contact(pole_x)
+    v["spin_pole_rolling"] = results.by_contact(pole_y)
     # mu p_max is exact where the whole patch slides under a constant friction law, and a bound elsewhere
     v["max_shear"] = results.by_contact(results.friction * patch.max_pressure)
     if model.full_sliding or results.scene.frictionless:
@@ -266,9 +278,9 @@ def friction_work(results: StageResults, options: Options) -> None:
     lost = 0.0
     if model.elastic:
         lost = np.nan_to_num(np.abs(v["energy_residual"]))[:, None]
-    told = v["force_error_estimate"]
+    error = v["force_error_estimate"]
     with np.errstate(invalid="ignore"):
-        v["friction_energy_error_estimate"] = np.where(told > 0.0, told * factor + lost, told)
+        v["friction_energy_error_estimate"] = np.where(error > 0.0, error * factor + lost, error)
 
 
 def _energy_balance(results: StageResults, local: np.ndarray, pressed: np.ndarray) -> None:
