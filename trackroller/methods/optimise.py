@@ -27,7 +27,8 @@ from trackroller.errors import InputError
 from trackroller.methods.grid import Grid
 from trackroller.methods.method import METHODS, Drawn, Factors, Method, Settings, crossed, in_order
 
-CROSSOVER, MUTATION = 5.0, 10.0  # distribution indices: larger ones keep children nearer to their parents
+CROSSOVER = 5.0  # distribution indices: larger ones keep children nearer to their parents
+MUTATION = 10.0
 CROSSED = 0.9  # share of the children that mix two parents
 ROUNDS = 30  # attempts to find children that are new
 

@@ -298,6 +298,12 @@ class Wearing:
         new = replace(two, depth=depth, closing=closing, error=at.error + error)
         return new, error / allowed, ""
 
+    def _begin(self, state: Groove | None) -> tuple[Groove, StageResults]:
+        """Return the state from which a march begins, with its results; the new groove if none is given."""
+        if state is None:
+            return self.start, self.new
+        return state, self.solve(state)
+
     def march(
         self, state: Groove | None = None, step: float = 0.0, states: int = 1
     ) -> Iterator[tuple[Groove, StageResults, float, str]]:
@@ -315,11 +321,7 @@ class Wearing:
         states : int
             Number of states so far, which counts towards the limit.
         """
-        at = self.start
-        results = self.new
-        if state is not None:
-            at = state
-            results = self.solve(at)
+        at, results = self._begin(state)
         reason = self.end(self.new)
         yield at, results, step, reason
         if reason:
