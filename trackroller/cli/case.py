@@ -328,9 +328,13 @@ def _find_and_tell(
     tell_doubts(case)
     from trackroller.roller.find import find  # heavy: xarray and dask
 
-    found = find(case, name, condition, **{key: value for key, value in options.items() if key != "outputs"})
-    print(json.dumps(found.as_dict(), allow_nan=False) if as_json else found.text)
-    return 0 if found.met else 1
+    settings_of_solve = {key: value for key, value in options.items() if key != "outputs"}
+    range_ = find(case, name, condition, **settings_of_solve)
+    if as_json:
+        print(json.dumps(range_.as_dict(), allow_nan=False))
+    else:
+        print(range_.text)
+    return int(not range_.met)
 
 
 def run_spectrum(file: Path | None, as_json: bool, out: Path | None, report: Path | None, log: Path | None) -> None:

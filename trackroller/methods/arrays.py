@@ -248,8 +248,9 @@ def plackett_burman(count: int) -> np.ndarray:
 def _paley(order: int) -> np.ndarray:
     """Return the Hadamard matrix of Paley's first construction, shape (order, order), first column +1."""
     q = order - 1
-    squares = {i * i % q for i in range(1, q)}
-    legendre = np.array([0.0] + [1.0 if i in squares else -1.0 for i in range(1, q)])
+    legendre = np.full(q, -1.0)
+    legendre[0] = 0.0
+    legendre[np.arange(1, q) ** 2 % q] = 1.0
     matrix = np.ones((order, order))
     matrix[1:, 1:] = -(legendre[(np.arange(q)[:, None] - np.arange(q)) % q] + np.eye(q))
     return matrix

@@ -141,10 +141,13 @@ def _columns(
     bases = [base for base in polynomials if base is not None]
     if len(bases) < count:
         return None
-    degree = [np.arange(base.shape[1]) + 1 if ordered[j] else np.ones(base.shape[1]) for j, base in enumerate(bases)]
+    degree: list[np.ndarray] = [np.ones(base.shape[1]) for base in bases]
+    for place in np.flatnonzero(ordered):
+        degree[place] = np.arange(bases[place].shape[1]) + 1
     parts = [(np.ones((rows, 1)), np.zeros(1)), *zip(bases, degree, strict=True)]
+    highest = [joint if rising else None for rising in ordered]  # a category has no degrees
     for i, j in combinations(range(count), 2):
-        one, other = (slice(joint if ordered[place] else None) for place in (i, j))
+        one, other = slice(highest[i]), slice(highest[j])
         product = (bases[i][:, one, None] * bases[j][:, None, other]).reshape(rows, -1)
         parts.append((product, np.maximum.outer(degree[i][one], degree[j][other]).ravel()))
     term = np.repeat(np.arange(len(parts)) - 1, [len(own) for _, own in parts])

@@ -243,9 +243,12 @@ def _mutated(children: np.ndarray, genes: Sequence[Gene], rng: np.random.Generat
 def _snapped(values: np.ndarray, genes: Sequence[Gene], whole: bool = True) -> np.ndarray:
     """Return genes inside their bounds; lists as whole numbers, rounded down (`whole`) or to the nearest one."""
     out = np.array(values, dtype=float)
+    shift = 0.5
+    if whole:
+        shift = 0.0
     for j, gene in enumerate(genes):
         if gene.levels:
-            out[:, j] = np.clip(np.floor(out[:, j] + (0.0 if whole else 0.5)), 0, gene.levels - 1)
+            out[:, j] = np.clip(np.floor(out[:, j] + shift), 0, gene.levels - 1)
         else:
             out[:, j] = np.clip(out[:, j], 0.0, 1.0)
     return out

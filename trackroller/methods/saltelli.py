@@ -113,7 +113,10 @@ class Saltelli(Method):
         def part(blocks: int) -> Estimates:
             return sobol(lean[:blocks].ravel(), count, False)
 
-        out |= convergence.course(part, at, part(blocks) if second else out, ("S1", "ST")) | given
+        whole = out
+        if second:
+            whole = part(blocks)
+        out |= convergence.course(part, at, whole, ("S1", "ST")) | given
         return Estimated(out, int(out.pop("blocks_used")), int(out.pop("blocks")), at)
 
     def from_replicates(
@@ -218,7 +221,10 @@ def draw(blocks: int, groups: Sequence[int], second_order: bool, seed: int) -> n
     exchanged = max(groups) + 1
     base = qmc.Sobol(d=2 * k, seed=seed).random(blocks)  # `seed`, as SALib has it: `rng` scrambles in another way
     a, b = base[:, :k], base[:, k:]
-    rows = np.repeat(a[:, None], (2 * exchanged if second_order else exchanged) + 2, axis=1)
+    size = exchanged + 2
+    if second_order:
+        size = 2 * exchanged + 2
+    rows = np.repeat(a[:, None], size, axis=1)
     rows[:, 1 + exchanged :] = b[:, None]  # the rows BA_j and B
     for column, group in enumerate(groups):
         rows[:, 1 + group, column] = b[:, column]
@@ -332,9 +338,13 @@ def closed_indices(
     Shape (1 + resamples, sets): the estimates, then the resamples. NaN if there are fewer than 8 clusters or the output
     is constant.
     """
-    clusters, cluster = np.unique(np.arange(len(block)) if cluster is None else cluster, return_inverse=True)
+    if cluster is None:
+        cluster = np.arange(len(block))
+    if weights is not None:
+        resamples = len(weights)
+    clusters, cluster = np.unique(cluster, return_inverse=True)
     if len(clusters) < MIN_BLOCKS or constant(block):
-        return np.full((1 + (resamples if weights is None else len(weights)), len(sets)), np.nan)
+        return np.full((1 + resamples, len(sets)), np.nan)
     pairs = pairs_sharing(count, second_order)
     terms = _pair_terms((block - block.mean()) / block.std(), [[(0, -1)], *(pairs[columns] for columns in sets)])
     beta = _control(*terms)

@@ -152,5 +152,7 @@ def _factor_and_offset(unit: str, target: str, field: str) -> tuple[float, float
 
 def _spelt(unit: str) -> str:
     """Return a unit as pint reads it: 'N/mm2' as 'N/mm^2', 'Nmm' as 'N*mm'."""
-    unit = re.sub(r"(?<=[A-Za-z])(-?\d)", r"^\1", "" if unit in PLAIN else unit.replace("·", "*"))
+    if unit in PLAIN:
+        return ""
+    unit = re.sub(r"(?<=[A-Za-z])(-?\d)", r"^\1", unit.replace("·", "*"))
     return re.sub(r"\b([kM]?)N(mm|cm|m)\b", r"\1N*\2", unit)

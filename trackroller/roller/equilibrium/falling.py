@@ -47,9 +47,13 @@ def first_balance(roller: Roller, whole: Bounds, fine: bool = False) -> tuple[Bo
     way = np.sign(roller.motor_force)  # driving needs a slip < 0
     normal = roller.floored(roller.without_friction())
 
+    steps = 1
+    if fine:
+        steps = 2
+
     def excess(w, pick):
         """Return the torque beyond the required one, > 0 where friction suffices; the normal forces follow."""
-        for _ in range(2 if fine else 1):
+        for _ in range(steps):
             f = roller.contact(roller.shift(w, pick), normal[:, pick], fine, pick)
             normal[:, pick] = roller.floored(roller.normal_forces(f[0] / normal[:, pick], pick), pick)
         return -way[pick] * roller.torque(f, pick)

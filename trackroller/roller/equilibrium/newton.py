@@ -122,7 +122,10 @@ def _following(roller: Roller, w, normal, fine: bool, rows: np.ndarray) -> np.nd
     """Return the contact forces (3, 2, m) of `rows` at slip w; the normal forces follow, in three steps if `fine`."""
     f = np.empty((3, 2, rows.size))
     go = np.arange(rows.size)
-    for _ in range(3 if fine else 1):
+    steps = 1
+    if fine:
+        steps = 3
+    for _ in range(steps):
         k = rows[go]
         f[:, :, go] = roller.contact(roller.shift(w[k], k), normal[:, k], fine, k)
         new = roller.floored(roller.normal_forces(f[0][:, go] / normal[:, k], k), k)
@@ -141,7 +144,10 @@ def _jacobian(roller: Roller, w, normal, pick) -> np.ndarray:
     slips, normals = np.concatenate((w, w, w + step)), np.concatenate((normal, normal * (1 + h), normal), axis=1)
     picks, f = np.concatenate((pick, pick, pick)), np.empty((3, 2, 3 * m))
     # an iterative law starts from the state before; the others take the three states at once
-    for part in np.split(np.arange(3 * m), 1 if roller.goal <= CLOSED else 3):
+    count = 3
+    if roller.goal <= CLOSED:
+        count = 1
+    for part in np.split(np.arange(3 * m), count):
         f[:, :, part] = roller.contact(roller.shift(slips[part], picks[part]), normals[:, part], False, picks[part])
     base, grown, moved = f[:, :, :m], f[:, :, m : 2 * m], f[:, :, 2 * m :]
     r0 = roller.residuals(normal, base, pick)
