@@ -19,8 +19,8 @@ from trackroller.materials.file import find_user_file
 from trackroller.study.cost import duration
 from trackroller.study.file.load import load_study
 from trackroller.study.file.study import Study
+from trackroller.study.store.fingerprint import StudyCases
 from trackroller.study.store.folder import StudyFolder, Tell, check_for_workflow, unheard
-from trackroller.study.store.identity import Cases
 from trackroller.study.store.ledger import Ledger, read_ledger, study_folder, working_ledger
 from trackroller.study.store.put import claim
 
@@ -108,7 +108,7 @@ def workflow_ledger(config: Mapping[str, str], main: bool, tell: Tell = unheard)
     if main:
         check_for_workflow(folder.create().root)
     if study.decides:  # its rule plans each generation
-        return Ledger(Cases(study), folder)
+        return Ledger(StudyCases(study), folder)
     if main:
         return _held.enter_context(working_ledger(study, results, tell=tell))
     ledger = read_ledger(study, folder)

@@ -30,9 +30,9 @@ from trackroller.results.stored_study import solved_results
 from trackroller.study.file.load import parse_study
 from trackroller.study.file.study import Study
 from trackroller.study.run import Runner
+from trackroller.study.store.fingerprint import StudyCases
 from trackroller.study.store.folder import StudyFolder, Tell, unheard
 from trackroller.study.store.gather import gather
-from trackroller.study.store.identity import Cases
 from trackroller.study.store.ledger import Ledger
 from trackroller.study.store.put import put_text
 
@@ -65,7 +65,7 @@ class _Search:
 
     def ledger(self, study: Study) -> Ledger:
         """Return the ledger of a study of designs."""
-        return Ledger(Cases(study), self.folder)
+        return Ledger(StudyCases(study), self.folder)
 
     def judged(self, study: Study, genes: np.ndarray) -> Judged:
         """Solve designs, as far as they are not solved yet, and judge them."""

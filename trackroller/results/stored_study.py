@@ -26,9 +26,9 @@ from trackroller.study.file.load import checked_keys, with_present_keys
 from trackroller.study.file.study import Study
 from trackroller.study.outputs import case_dims
 from trackroller.study.store import chunks
+from trackroller.study.store.fingerprint import StudyCases
 from trackroller.study.store.folder import StudyFolder, check_readable
 from trackroller.study.store.gather import collect
-from trackroller.study.store.identity import Cases
 from trackroller.study.store.inputs import MATERIALS, study_of_folder
 from trackroller.study.store.labels import labelled
 from trackroller.study.store.ledger import Ledger
@@ -143,7 +143,7 @@ def _gathered(path: Path) -> xr.Dataset | None:
 def _read_unfinished(folder: StudyFolder, indices: xr.Dataset | None) -> Results:
     """Return the solved cases of a study that is not gathered yet."""
     study = study_of_folder(folder)
-    ledger = Ledger(Cases(study), folder)
+    ledger = Ledger(StudyCases(study), folder)
     place = ledger.place
     of_row = ledger.cases.rows
     rows = np.setdiff1d(of_row, of_row[place < 0])  # whole rows of the design: a carriage has several cases

@@ -13,8 +13,8 @@ from trackroller.roller.stored_inputs import solve_command
 from trackroller.study.design.build import case_columns
 from trackroller.study.design.growth import as_planned
 from trackroller.study.store import chunks
+from trackroller.study.store.fingerprint import StudyCases
 from trackroller.study.store.folder import StudyFolder
-from trackroller.study.store.identity import Cases
 from trackroller.study.store.ledger import Ledger
 
 if TYPE_CHECKING:
@@ -77,7 +77,7 @@ def repeat_case(study: Study, number: int, folder: StudyFolder) -> Repeat:
     from trackroller.roller.solver import solve  # numba compiles on import; the checks come first
 
     study = as_planned(study, folder.record())
-    ledger = Ledger(Cases(study), folder)
+    ledger = Ledger(StudyCases(study), folder)
     design = ledger.cases.design
     place = ledger.place
     if not 0 <= number < len(place):

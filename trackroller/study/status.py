@@ -18,8 +18,8 @@ from trackroller.study.design.growth import as_planned
 from trackroller.study.design.levels import in_words
 from trackroller.study.file.load import load_study
 from trackroller.study.store.chunks import FAILED, CorruptFile, read
+from trackroller.study.store.fingerprint import StudyCases
 from trackroller.study.store.folder import StudyFolder, check_folder
-from trackroller.study.store.identity import Cases
 from trackroller.study.store.inputs import study_of_folder
 from trackroller.study.store.ledger import Ledger, chunk_size, study_folder, unused_cases
 from trackroller.study.store.manifest import why_altered
@@ -141,7 +141,7 @@ def status_of(study: Study, folder: StudyFolder) -> Status:
     """
     check_folder(folder.root)
     study = as_planned(study, folder.record())
-    ledger = Ledger(Cases(study), folder)
+    ledger = Ledger(StudyCases(study), folder)
     solved = np.flatnonzero(ledger.place >= 0)
     states = ledger.states.isel(case=ledger.place[solved])
     bad = states["regime"].values == FAILED

@@ -34,8 +34,8 @@ from trackroller.study.design.levels import in_words
 from trackroller.study.file.config import check_name
 from trackroller.study.store import chunks
 from trackroller.study.store.crate_entries import CRATE
+from trackroller.study.store.fingerprint import StudyCases, chunk_name, solver_and_materials
 from trackroller.study.store.folder import StudyFolder, Tell, unheard
-from trackroller.study.store.identity import Cases, chunk_name, solver_and_materials
 from trackroller.study.store.inputs import store_inputs
 from trackroller.study.store.manifest import Manifest
 from trackroller.study.store.provenance import now
@@ -59,7 +59,7 @@ class Ledger:
 
     Attributes
     ----------
-    cases : Cases
+    cases : StudyCases
         The cases of the study, which a process builds and identifies once.
     folder : StudyFolder
         Files of the study.
@@ -73,7 +73,7 @@ class Ledger:
         Names of the files that hold the cases which are in no planned chunk.
     """
 
-    cases: Cases
+    cases: StudyCases
     folder: StudyFolder
     chunks: dict[str, int] = field(default_factory=dict)
     size: int = 0
@@ -188,7 +188,9 @@ def read_ledger(study: Study, folder: StudyFolder) -> Ledger | None:
     record = folder.record()
     if record.get("key") != plan_key(study):
         return None
-    return Ledger(Cases(study), folder, record["chunks"], record["size"], record["distinct"], tuple(record["uses"]))
+    return Ledger(
+        StudyCases(study), folder, record["chunks"], record["size"], record["distinct"], tuple(record["uses"])
+    )
 
 
 def sound_ledger(files: Ledger) -> tuple[Ledger | None, list[str]]:
@@ -383,7 +385,7 @@ def _plan(study: Study, folder: StudyFolder, tell: Tell, rerun_failed: bool) -> 
     if folder.of_another_solver:
         tell(f"the solver's code has changed since {folder.root} was planned: all its cases are solved anew")
     _check_same_study(study, folder)
-    files = Ledger(Cases(study), folder)
+    files = Ledger(StudyCases(study), folder)
     _check_files(files)
     sweep(folder.root)
     if rerun_failed:

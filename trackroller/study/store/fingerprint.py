@@ -111,7 +111,7 @@ def solver_and_materials(database: MaterialDatabase) -> str:
 
 
 @dataclass(frozen=True)
-class Cases:
+class StudyCases:
     """The cases of a study, which are built and identified when they are first needed, and only once."""
 
     study: Study
