@@ -30,12 +30,12 @@ from trackroller.study.store.fingerprint import StudyCases
 from trackroller.study.store.folder import StudyFolder, check_readable
 from trackroller.study.store.gather import collect
 from trackroller.study.store.inputs import MATERIALS, study_of_folder
-from trackroller.study.store.labels import labelled
 from trackroller.study.store.ledger import Ledger
 from trackroller.study.store.manifest import digests_of
 from trackroller.study.store.mark import STORE_FORMAT
 from trackroller.study.store.netcdf import read_result
 from trackroller.study.store.provenance import DATE
+from trackroller.study.store.solved_dataset import labelled
 from trackroller.study.store.sources import solver_digest
 from trackroller.yaml_file import parse_mapping
 

@@ -21,8 +21,8 @@ from trackroller.study.store import chunks
 from trackroller.study.store.fingerprint import StudyCases
 from trackroller.study.store.folder import Count, StudyFolder, Tell, unheard
 from trackroller.study.store.gather import gather
-from trackroller.study.store.labels import labelled
 from trackroller.study.store.ledger import Ledger, study_folder, working_ledger
+from trackroller.study.store.solved_dataset import labelled
 
 if TYPE_CHECKING:
     from trackroller.study.file.study import Study

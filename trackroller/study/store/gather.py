@@ -16,11 +16,11 @@ from trackroller.files import reserve
 from trackroller.roller.dataset import file_attributes, united
 from trackroller.study.store import chunks
 from trackroller.study.store.folder import Tell, reporting, unheard
-from trackroller.study.store.labels import labelled
 from trackroller.study.store.ledger import Ledger
 from trackroller.study.store.manifest import digests_of
 from trackroller.study.store.provenance import DATE
 from trackroller.study.store.put import put
+from trackroller.study.store.solved_dataset import labelled
 
 MOST_MEMORY = 10_000_000  # bytes of a result in memory; a larger one lies in a temporary file
 
