@@ -29,7 +29,7 @@ from trackroller.study.store import chunks
 from trackroller.study.store.fingerprint import StudyCases
 from trackroller.study.store.folder import StudyFolder, check_readable
 from trackroller.study.store.gather import collect
-from trackroller.study.store.inputs import MATERIALS, study_of_folder
+from trackroller.study.store.input_files import MATERIALS, study_of_folder
 from trackroller.study.store.ledger import Ledger
 from trackroller.study.store.manifest import digests_of
 from trackroller.study.store.mark import STORE_FORMAT

@@ -20,7 +20,7 @@ from trackroller.study.file.load import load_study
 from trackroller.study.store.chunks import FAILED, CorruptFile, read
 from trackroller.study.store.fingerprint import StudyCases
 from trackroller.study.store.folder import StudyFolder, check_folder
-from trackroller.study.store.inputs import study_of_folder
+from trackroller.study.store.input_files import study_of_folder
 from trackroller.study.store.ledger import Ledger, chunk_size, study_folder, unused_cases
 from trackroller.study.store.manifest import why_altered
 

@@ -36,7 +36,7 @@ from trackroller.study.store import chunks
 from trackroller.study.store.crate_entries import CRATE
 from trackroller.study.store.fingerprint import StudyCases, chunk_name, solver_and_materials
 from trackroller.study.store.folder import StudyFolder, Tell, unheard
-from trackroller.study.store.inputs import store_inputs
+from trackroller.study.store.input_files import store_inputs
 from trackroller.study.store.manifest import Manifest
 from trackroller.study.store.provenance import now
 from trackroller.study.store.put import sweep
