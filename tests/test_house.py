@@ -15,7 +15,7 @@ from pathlib import Path
 
 import pytest
 
-from trackroller.study.store.sources import ROOMS, room_files
+from trackroller.study.store.program_digest import ROOMS, room_files
 
 ROOT = Path(__file__).parents[1]
 PACKAGE = "trackroller"

@@ -34,9 +34,9 @@ from trackroller.study.store.ledger import Ledger
 from trackroller.study.store.manifest import digests_of
 from trackroller.study.store.mark import STORE_FORMAT
 from trackroller.study.store.netcdf import read_result
+from trackroller.study.store.program_digest import solver_digest
 from trackroller.study.store.provenance import DATE
 from trackroller.study.store.solved_dataset import labelled
-from trackroller.study.store.sources import solver_digest
 from trackroller.yaml_file import parse_mapping
 
 _REMEDY = "Run the study again."

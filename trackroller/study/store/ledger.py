@@ -38,9 +38,9 @@ from trackroller.study.store.fingerprint import StudyCases, chunk_name, solver_a
 from trackroller.study.store.folder import StudyFolder, Tell, unheard
 from trackroller.study.store.input_files import store_inputs
 from trackroller.study.store.manifest import Manifest
+from trackroller.study.store.program_digest import solver_digest
 from trackroller.study.store.provenance import now
 from trackroller.study.store.put import sweep
-from trackroller.study.store.sources import solver_digest
 from trackroller.yaml_file import parse_mapping
 
 if TYPE_CHECKING:
