@@ -172,7 +172,12 @@ DECISIONS = {
     "rungs": ("roller/tolerance.py", "~(best[unmet] <= 1.0)", "~(best[unmet] <= 2.0)", ("roller/test_tolerance.py",)),
     "rate-of-models": ("study/cost.py", "len(several) / sum(1.0 / each", "len(several) / sum(each / 1e6", PLANNED),
     "solved-again": ("study/store/ledger.py", "!= chunks.FAILED).values)", "== chunks.FAILED).values)", STORE),
-    "missing-case": ("study/store/gather.py", "(ledger.place < 0).sum()", "(ledger.place < -1).sum()", STORE),
+    "missing-case": (
+        "study/store/gather.py",
+        "(ledger.state_number < 0).sum()",
+        "(ledger.state_number < -1).sum()",
+        STORE,
+    ),
     "not-positive": ("study/outputs.py", "int((values <= 0).sum())", "int((values < -1e300).sum())", ANALYSED),
     "share-of-rolling": ("study/outputs.py", "if i and (regime == i)", "if (regime == i)", ANALYSED),
     "strata": ("methods/lhs.py", ".random(n)", ".random(n + 1)[:n]", SAMPLED),

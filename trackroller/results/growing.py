@@ -46,7 +46,7 @@ class Growing:
         """Look at every solved step; return why the study stops, '' if its step has cases to solve."""
         while True:
             ledger = Ledger(StudyCases(self.study), self.folder)
-            if (ledger.place < 0).any():
+            if (ledger.state_number < 0).any():
                 return ""
             seen = look(solved_results(ledger))
             self.looks.append(seen)

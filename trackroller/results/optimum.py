@@ -71,11 +71,11 @@ class _Search:
         """Solve designs, as far as they are not solved yet, and judge them."""
         one = self.of(study, genes)
         ledger = self.ledger(one)
-        if (ledger.place < 0).any():
+        if (ledger.state_number < 0).any():
             with self.runner.solved(one) as ledger:
                 pass
         else:
-            self.runner.progress(len(ledger.place), 0)
+            self.runner.progress(len(ledger.state_number), 0)
         return judge(solved_results(ledger), genes)
 
 
@@ -141,7 +141,7 @@ def _evolve(search: _Search, study: Study, tell: Tell) -> tuple[Judged, dict[str
     while len(drawn):
         if known is not None and budget.hours is not None:
             ledger = search.ledger(search.of(study, drawn))
-            if ledger.hours >= budget.hours and (ledger.place < 0).any():
+            if ledger.hours >= budget.hours and (ledger.state_number < 0).any():
                 why = f"the {budget.hours:g} hours are spent"
                 break
         new = search.judged(study, drawn)

@@ -144,7 +144,7 @@ def _read_unfinished(folder: StudyFolder, indices: xr.Dataset | None) -> Results
     """Return the solved cases of a study that is not gathered yet."""
     study = study_of_folder(folder)
     ledger = Ledger(StudyCases(study), folder)
-    place = ledger.place
+    place = ledger.state_number
     of_row = ledger.cases.rows
     rows = np.setdiff1d(of_row, of_row[place < 0])  # whole rows of the design: a carriage has several cases
     solved = np.flatnonzero(np.isin(of_row, rows))

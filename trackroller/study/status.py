@@ -142,8 +142,8 @@ def status_of(study: Study, folder: StudyFolder) -> Status:
     check_folder(folder.root)
     study = as_planned(study, folder.record())
     ledger = Ledger(StudyCases(study), folder)
-    solved = np.flatnonzero(ledger.place >= 0)
-    states = ledger.states.isel(case=ledger.place[solved])
+    solved = np.flatnonzero(ledger.state_number >= 0)
+    states = ledger.states.isel(case=ledger.state_number[solved])
     bad = states["regime"].values == FAILED
     failed = solved[bad]
     seconds = ledger.states.attrs["seconds"]
@@ -152,7 +152,7 @@ def status_of(study: Study, folder: StudyFolder) -> Status:
     else:
         speed = study_rate(study)
     status = Status(
-        total=len(ledger.place),
+        total=len(ledger.state_number),
         done=len(solved),
         failed=len(failed),
         regimes={name: int((states["regime"] == code).sum()) for code, name in enumerate(REGIMES)},

@@ -67,8 +67,8 @@ def gather(ledger: Ledger, tell: Tell = unheard, attrs: Mapping[str, str] | None
     ledger = ledger.anew()
     if not digests_of(folder.design):
         write_design(ledger)
-    count = len(ledger.place)
-    missing = int((ledger.place < 0).sum())
+    count = len(ledger.state_number)
+    missing = int((ledger.state_number < 0).sum())
     if missing:
         damaged = "".join(f" Corrupt: {reason}." for reason in ledger.corrupt.values())
         raise WorkError(f"{missing} of {count} cases are not solved.{damaged} Start the run again.")
@@ -94,7 +94,7 @@ def collect(ledger: Ledger, solved: slice | np.ndarray = slice(None)) -> xr.Data
     solved : slice or numpy.ndarray of int, shape (n,)
         The wanted cases of the design, each of which is solved; all by default.
     """
-    place = ledger.place[solved]
+    place = ledger.state_number[solved]
     results: dict[Hashable, xr.Variable] = {}
     coords: dict[Hashable, xr.Variable] = {}
     attrs: dict[str, Any] = {}

@@ -135,11 +135,11 @@ class Ledger:
     def find(self, fingerprints: np.ndarray) -> np.ndarray:
         """Return the index of each wanted case in `states`, shape (n,); -1 marks a case that is not solved."""
         cases = self.states["case"].values
-        place = np.searchsorted(cases, fingerprints)
-        return np.where(np.append(cases, b"")[place] == fingerprints, place, -1)
+        number = np.searchsorted(cases, fingerprints)
+        return np.where(np.append(cases, b"")[number] == fingerprints, number, -1)
 
     @cached_property
-    def place(self) -> np.ndarray:
+    def state_number(self) -> np.ndarray:
         """Return the index of each case of the design in `states`, shape (n,); -1 marks a case that is not solved."""
         return self.find(self.cases.fingerprints)
 
@@ -224,8 +224,8 @@ def planned(files: Ledger) -> Ledger:
     names = cases.fingerprints
     options, group = cases.options
     distinct, first = np.unique(names, return_index=True)
-    place = files.find(distinct)
-    missing = np.sort(first[place < 0])
+    state_number = files.find(distinct)
+    missing = np.sort(first[state_number < 0])
     size = chunk_size(study, len(missing))
     columns = {name: cases.design[name].values for name in case_columns(cases.design)}
     # a value that all cases share is written once
@@ -243,7 +243,7 @@ def planned(files: Ledger) -> Ledger:
         attrs = {"options": json.dumps(options[group[part[0]]]), "identity": identity, "words": words}
         chunks.write(folder.case_list(name), block.assign_attrs(attrs))
         sizes[name] = len(part)
-    uses = sorted(files.paths[i].name for i in np.unique(files.states["file"].values[place[place >= 0]]))
+    uses = sorted(files.paths[i].name for i in np.unique(files.states["file"].values[state_number[state_number >= 0]]))
     return replace(files, chunks=sizes, size=len(names), distinct=len(distinct), uses=tuple(uses))
 
 
@@ -258,10 +258,10 @@ def unused_cases(ledger: Ledger) -> str:
     study = ledger.study
     folder = ledger.folder
     solved = ledger.states.sizes["case"]
-    place = ledger.place
+    state_number = ledger.state_number
     if study.config.method.proposes or study.config.until is not None:  # each step is a design of its own
         return ""
-    unused = solved - len(np.unique(place[place >= 0]))
+    unused = solved - len(np.unique(state_number[state_number >= 0]))
     if not unused or folder.of_another_solver:
         return ""
     before = folder.earlier()
