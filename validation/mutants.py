@@ -89,7 +89,7 @@ FORMULAS = {
     ),
     "spin-arm": ("contact/table/coordinates.py", "g / 4.0) / 3.0", "g / 2.0) / 3.0", TABLE),
     "coupling": ("contact/table/coordinates.py", "0.5 / (1.0 + g)", "0.5 / (1.0 - g)", TABLE),
-    "total-index": ("methods/saltelli.py", '("ST", 1 - rest)', '("ST", rest)', SOBOL),
+    "total-index": ("methods/saltelli.py", '("ST", 1 - of_complement)', '("ST", of_complement)', SOBOL),
     "second-order": ("methods/saltelli.py", "first[:, i] - first[:, j]", "first[:, i] + first[:, j]", SOBOL),
     "dominated": (
         "results/pareto.py",

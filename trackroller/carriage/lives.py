@@ -119,7 +119,9 @@ class Lives:
                 out[f"{body}_life_hours"] = life
             out["pair_life_hours"], first = first_failure(out["roller_life_hours"], out["guide_life_hours"])
             out["first_to_fail"] = first.astype(self.solved["first_to_fail"].dtype)
-        return out | (self._by_limit(out) if "life_hours_by_limit" in self.solved else {})
+        if "life_hours_by_limit" in self.solved:
+            out |= self._by_limit(out)
+        return out
 
     def _by_limit(self, out: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
         """Return the lives by limit and to the first one, and which one it is; fatigue adds up track by track."""

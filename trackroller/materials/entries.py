@@ -207,25 +207,26 @@ class EntryParser:
         """
         if entry.get(POINTS) is not None:
             return self._line_by_points(where, entry, given)
-        own = given.keys() & {*CURVE, *FREE}
-        inherited = base.sn_points if base else ()
-        if not own:
+        of_curve = given.keys() & {*CURVE, *FREE}
+        inherited: Points = ()
+        if base:
+            inherited = base.sn_points
+        if not of_curve:
             return inherited, None
-        if not own <= set(FREE) or not (inherited or own == set(FREE)):
+        is_complete = of_curve == set(FREE)
+        changes_inherited = bool(inherited) and of_curve <= set(FREE)
+        if not is_complete and not changes_inherited:
             return (), None
-        if len(inherited) > 2 and own != set(FREE):
+        if len(inherited) > 2 and not is_complete:
             wrong = f"would change a part of the {POINTS} of the material that it changes"
-            name = min(own)
+            name = min(of_curve)
             allowed = f"{', '.join(FREE)} together"
             raise InputError(f"{where}.{name}", given[name].value, allowed, f"Or give {POINTS}.", wrong)
-        strength = getattr(base, STRENGTH, None)
-        if STRENGTH in given:
-            strength = given[STRENGTH].value
+        values: dict[str, Any] = {name: getattr(base, name, None) for name in (*FREE, STRENGTH)}
+        values |= {name: given[name].value for name in (*FREE, STRENGTH) if name in given}
+        limit, knee, exponent, strength = values.values()
         if strength is None:
             return (), None
-        values: dict[str, Any] = {name: getattr(base, name, None) for name in FREE}
-        values |= {name: given[name].value for name in FREE if name in given}
-        limit, knee, exponent = values.values()
         sources = {}
         for key, name in SOURCE_OF.items():
             if name in given:

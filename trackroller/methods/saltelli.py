@@ -143,12 +143,14 @@ class Saltelli(Method):
         second = bool(design.meta["second_order"])
         exchanged = design.meta["groups"]
         columns = len(exchanged)
+        # a set of columns is a number with a bit for each of them
         sets = [1 << exchanged.index(name) for name in groups]
+        complements = [(1 << columns) - 1 - of_group for of_group in sets]
         block = by_block(y, design)
         block = block[np.isfinite(block).all(axis=1)]
-        whole = (1 << columns) - 1
-        drawn = closed_indices(block, columns, second, [*sets, *(whole ^ one for one in sets)])
-        return with_bounds("group_S1", drawn[:, : len(sets)]) | with_bounds("group_ST", 1 - drawn[:, len(sets) :])
+        closed = closed_indices(block, columns, second, [*sets, *complements])
+        first, of_complement = np.split(closed, 2, axis=1)
+        return with_bounds("group_S1", first) | with_bounds("group_ST", 1 - of_complement)
 
     def level_indices(self, y: np.ndarray, design: Design, place: int, inside: np.ndarray) -> Estimates:
         """Estimate from the blocks whose rows all lie at one level.
@@ -292,22 +294,25 @@ def sobol(y: np.ndarray, count: int, second_order: bool, seed: int = 0, resample
     mixtures belong together; the indices then describe the remaining rows (see `given_data`). The intervals treat
     the blocks as random. The blocks of a Sobol sequence have smaller errors, so the intervals are conservative.
     """
-    step = 2 * count + 2 if second_order else count + 2
+    # a set of factors is a number with a bit for each of them
+    single = [1 << j for j in range(count)]
+    complements = [(1 << count) - 1 - j for j in single]
+    pairs = []
+    step = count + 2
+    if second_order:
+        pairs = [one | other for one, other in combinations(single, 2)]
+        step = 2 * count + 2
     block = y[: y.size // step * step].reshape(-1, step)
     used = block[np.isfinite(block).all(axis=1)]
-    whole = (1 << count) - 1
-    single = [1 << j for j in range(count)]
-    double = []
-    if second_order:
-        double = [one | other for one, other in combinations(single, 2)]
-    drawn = closed_indices(used, count, second_order, [*single, *(whole ^ j for j in single), *double], seed, resamples)
-    first, rest, both = np.split(drawn, [count, 2 * count], axis=1)
+    sets = [*single, *complements, *pairs]
+    closed = closed_indices(used, count, second_order, sets, seed, resamples)
+    first, of_complement, of_pair = np.split(closed, [count, 2 * count], axis=1)
     out: Estimates = {"blocks": np.array(len(block)), "blocks_used": np.array(len(used))}
-    out |= with_bounds("S1", first) | with_bounds("ST", 1 - rest)
+    out |= with_bounds("S1", first) | with_bounds("ST", 1 - of_complement)
     if second_order:
         i, j = np.triu_indices(count, 1)
-        table = np.full((len(drawn), count, count), np.nan)
-        table[:, i, j] = both - first[:, i] - first[:, j]
+        table = np.full((len(closed), count, count), np.nan)
+        table[:, i, j] = of_pair - first[:, i] - first[:, j]
         out |= with_bounds("S2", table)
     return out
 

@@ -239,6 +239,7 @@ def _tree(text: str, field: str) -> ast.expr:
 
 
 def _names(node: ast.AST) -> set[str]:
+    """Return the names below a node; those of functions and constants do not count."""
     if isinstance(node, ast.Name):
         return {node.id} - set(CONSTANTS)
     parts: Iterable[ast.AST] = ast.iter_child_nodes(node)

@@ -245,6 +245,17 @@ def _values(parameter: Parameter, start: float, between: tuple[float, float] | N
     return np.unique(values[parameter.accepts(values)])
 
 
+def _run_around(is_met: np.ndarray, distance: np.ndarray) -> tuple[int, int]:
+    """Return first and last place of the run of places that meet a condition, around the nearest of them."""
+    inside = int(np.flatnonzero(is_met)[np.argmin(distance[is_met])])
+    first, last = inside, inside
+    while first > 0 and is_met[first - 1]:
+        first -= 1
+    while last < len(is_met) - 1 and is_met[last + 1]:
+        last += 1
+    return first, last
+
+
 class _Search:
     """Solve a roller at values of one parameter, and compare its results."""
 
@@ -357,12 +368,7 @@ class _Search:
             why = f"now {nearest}"
             none = math.nan
             return Found(self.name, unit, self.condition, start, none, none, tried, why, "", (*self.notes(), *notes))
-        inside = np.flatnonzero(is_met)[np.argmin(np.abs(values[is_met] - start))]
-        first, last = inside, inside
-        while first > 0 and is_met[first - 1]:
-            first -= 1
-        while last < len(values) - 1 and is_met[last + 1]:
-            last += 1
+        first, last = _run_around(is_met, np.abs(values - start))
         # of each end, the last value that meets the condition and the first one beyond; an open end has no bracket
         brackets: dict[int, tuple[float, float]] = {}
         results: dict[float, str] = {}

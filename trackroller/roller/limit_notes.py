@@ -196,7 +196,8 @@ def _lacks(limit: Limit, solved: SolvedRollers, names: Mapping[str, np.ndarray])
         values.append(("scatter_in_cycles", np.isnan(solved.materials["scatter_in_stress"])))
     for name, here in values:
         unknown = np.isnan(solved.materials[name]) & here
-        for material in dict.fromkeys(m for i, body in enumerate(BODIES) for m in names[body][unknown[:, i]]):
+        materials = np.concatenate([names[body][unknown[:, i]] for i, body in enumerate(BODIES)])
+        for material in dict.fromkeys(materials):
             yield Lack(limit.name, name, material, _remedy_of_value(name, material))
 
 

@@ -229,6 +229,7 @@ class Wearing:
         return gap(*texts, g, r, alpha, radius, float(table.guide_curve_radius[0]), side)
 
     def _patches(self, results: StageResults, table: CaseTable) -> list[WearingPatch]:
+        """Return the patch of each contact with its pressure and its rates of wear; x counts outward in the gap."""
         t = surface_tractions(results)
         out = []
         energy = dissipation(results)[0][0]
