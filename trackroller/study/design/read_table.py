@@ -33,7 +33,7 @@ def table(path: Any, used: Collection[str] = ()) -> dict[str, np.ndarray]:
 
     Returns
     -------
-    Columns: name -> values, shape (n,).
+    Columns: name -> values, shape (n,). Blanks in names of further columns become underscores.
 
     Raises
     ------
@@ -43,13 +43,22 @@ def table(path: Any, used: Collection[str] = ()) -> dict[str, np.ndarray]:
     found = read_cases(Path(path), wrong, used)
     with wrong.part():
         _check_names(found, used, path)
-    columns = {}
+    columns: dict[str, np.ndarray] = {}
     for j, name in enumerate(found.names):
         cells = {number: line[j] for number, line in found.lines.items()}
         numbers = _numbers_of(name, cells)
-        columns[name] = _cells_of(name, cells, path, wrong) if numbers is None else numbers
+        key = _without_blanks(name)
+        if key in columns:
+            error = InputError("table column", name, f"one column for {key}", f"Rename it, for example {key}_2.")
+            raise error.at(path, found.head)
+        columns[key] = _cells_of(name, cells, path, wrong) if numbers is None else numbers
     wrong.check()
     return columns
+
+
+def _without_blanks(name: str) -> str:
+    """Return the name of a column as results have it: xarray marks no coordinate with a blank in its name."""
+    return "_".join(name.split())
 
 
 def genes(path: Any) -> np.ndarray:
