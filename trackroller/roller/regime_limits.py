@@ -85,7 +85,9 @@ def limits(case: Case, contact_model: str = "kalker", database: MaterialDatabase
     115.47
     """
     nominal = replace(case, **{"guide_profile": None, "roller_profile": None, "travel": 0.0})
-    model = contact_model if law_of(case.friction_law).is_constant else "sliding"
+    model = "sliding"
+    if law_of(case.friction_law).is_constant:
+        model = contact_model
     span = 4.0 * (abs(case.radial_force) + abs(case.axial_force))
 
     def holds(cases: list[Case]) -> dict[str, np.ndarray]:

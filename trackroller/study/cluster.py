@@ -57,7 +57,9 @@ def _client(scheduler: str) -> Any:
         ) from None
     if scheduler != "local" and not scheduler.startswith(("tcp://", "tls://")):
         slurm = "Slurm takes a study by the workflow: snakemake -s CLONE/Snakefile --profile CLONE/profiles/slurm."
-        remedy = slurm if scheduler.lower() == "slurm" else "Write --scheduler local to use this machine."
+        remedy = "Write --scheduler local to use this machine."
+        if scheduler.lower() == "slurm":
+            remedy = slurm
         allowed = "local, or the address of a dask scheduler: tcp://host:port"
         raise InputError("--scheduler", scheduler, allowed, remedy)
     dask.config.set({"distributed.scheduler.allowed-failures": 2})
@@ -84,7 +86,9 @@ def _solve(client: Any, cases: xr.Dataset, database: Any) -> Iterator[xr.Dataset
     waiting: dict[str, np.ndarray] = {}
     count = cases.sizes["case"]
     size = max(8, min(2000, math.ceil(BATCH_SECONDS * rate(json.loads(cases.attrs["options"])))))
-    batches = np.array_split(np.arange(count), max(1, math.ceil(count / size))) if count else []
+    batches = []
+    if count:
+        batches = np.array_split(np.arange(count), max(1, math.ceil(count / size)))
     queue = as_completed([submit(index) for index in batches])  # type: ignore[no-untyped-call]
     for future in queue:
         index = waiting.pop(future.key)

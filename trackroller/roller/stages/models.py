@@ -50,7 +50,10 @@ def model_of(
     near : boxes around similar patches of both contacts, from which the normal problem starts
     """
     elastic = Elastic.of_pair(*bodies(table))
-    patches = None if options.normal == "hertz" else _patches(table, options, rolling_radius, across, near)
+    if options.normal == "hertz":
+        patches = None
+    else:
+        patches = _patches(table, options, rolling_radius, across, near)
     name, settings, terms = options.contact_model, options.settings, options.slip_terms
     return contact_model(name, settings, elastic, options.spin_model, law, travel_speed, terms, patches)
 
