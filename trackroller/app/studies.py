@@ -137,7 +137,7 @@ def start(text: str) -> dict[str, Any]:
     name = _study(text).name
     folder = folder_of(name)
     if _works(name, folder):
-        raise WorkError(f"The study '{name}' runs already. Pause it first, or give this study another name.")
+        raise WorkError(f"{_running_sentence(name, folder)}, or give this study another name.")
     folder.create()
     _write_text(name, text, folder)
     states = [claim(folder.root / file) for file in (PROGRESS, PAUSE)]
@@ -178,7 +178,7 @@ def resume(name: str) -> dict[str, Any]:
 def pause(name: str) -> None:
     """Ask a running study to stop; its finished chunks stay."""
     folder = folder_of(name)
-    if not (_starts(name) or is_held(folder.root / LOCK)):
+    if not _runs_from_page(name, folder):
         raise WorkError(f"The study '{name}' does not run from this page, so the page cannot pause it.")
     claim(folder.root / PAUSE).touch()
 
@@ -189,7 +189,7 @@ def delete(name: str, confirm: str = "") -> None:
     if confirm != name:
         raise InputError("confirm", confirm, f"the name of the study, {name}", "Confirm the question of the page.")
     if _works(name, folder):
-        raise WorkError(f"The study '{name}' runs. Pause it first.")
+        raise WorkError(f"{_running_sentence(name, folder)}.")
     if not folder.root.is_dir():
         remedy = "It may be deleted already."
         raise InputError("name", name, "a study of this folder", remedy, "is not there")
@@ -198,7 +198,19 @@ def delete(name: str, confirm: str = "") -> None:
 
 def _works(name: str, folder: StudyFolder) -> bool:
     """Return whether a process works on a study, started here, by an earlier server or on the command line."""
-    return _starts(name) or is_held(folder.root / LOCK) or is_held(folder.lock)
+    return _runs_from_page(name, folder) or is_held(folder.lock)
+
+
+def _runs_from_page(name: str, folder: StudyFolder) -> bool:
+    """Return whether this server or an earlier one started the process of a study, so that the page can pause it."""
+    return _starts(name) or is_held(folder.root / LOCK)
+
+
+def _running_sentence(name: str, folder: StudyFolder) -> str:
+    """Return that a study runs and how to end it, as a sentence without its full stop."""
+    if _runs_from_page(name, folder):
+        return f"The study '{name}' runs already. Pause it first"
+    return f"The study '{name}' runs on the command line. Wait until it ends, or stop it there"
 
 
 def _starts(name: str) -> bool:

@@ -71,7 +71,7 @@ class Runner:
         """Return what solves a list of cases; workers start with the first list."""
         if self.scheduler is None:
             return functools.partial(solve_here, solver=self.solver)
-        return self._until_end.enter_context(workers(self.scheduler))
+        return self._until_end.enter_context(workers(self.scheduler, self.tell))
 
     @contextlib.contextmanager
     def solved(self, study: Study, rerun_failed: bool = False) -> Iterator[Ledger]:

@@ -30,9 +30,14 @@ Executor = Callable[[xr.Dataset, Any], Iterator[xr.Dataset]]  # solves the cases
 def load_cases(folder: StudyFolder, name: str) -> xr.Dataset:
     """Return the cases of a chunk with all fields along `case`; raise `chunks.CorruptFile` if the list is damaged."""
     cases = chunks.read(folder.case_list(name))
-    for field in [field for field, column in cases.data_vars.items() if not column.dims]:
-        cases[field] = cases[field].broadcast_like(cases["case"])
-    return cases
+    number = cases["case"]
+
+    def along_case(column: xr.DataArray) -> xr.DataArray:
+        if column.dims:
+            return column
+        return column.broadcast_like(number)
+
+    return cases.map(along_case)  # a new data set, which dask can send: that of the file holds its handle
 
 
 def solve_cases(cases: xr.Dataset, database: MaterialDatabase | None, solver: Solver | None = None) -> xr.Dataset:

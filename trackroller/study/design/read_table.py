@@ -33,7 +33,7 @@ def table(path: Any, used: Collection[str] = ()) -> dict[str, np.ndarray]:
 
     Returns
     -------
-    Columns: name -> values, shape (n,).
+    Columns: name -> values, shape (n,). Blanks in names of further columns become underscores.
 
     Raises
     ------
@@ -43,16 +43,26 @@ def table(path: Any, used: Collection[str] = ()) -> dict[str, np.ndarray]:
     cases = read_cases(Path(path), wrong, used)
     with wrong.part():
         _check_names(cases, used, path)
-    columns = {}
+    columns: dict[str, np.ndarray] = {}
     for j, name in enumerate(cases.names):
         cells = {number: line[j] for number, line in cases.lines.items()}
+        key = _without_blanks(name)
+        if key in columns:
+            allowed = f"one column for {key}"
+            error = InputError("table column", name, allowed, f"Rename it, for example {key}_2.")
+            raise error.at(path, cases.head)
         numbers = _numbers_of(name, cells)
         if numbers is None:
-            columns[name] = _cells_of(name, cells, path, wrong)
+            columns[key] = _cells_of(name, cells, path, wrong)
         else:
-            columns[name] = numbers
+            columns[key] = numbers
     wrong.check()
     return columns
+
+
+def _without_blanks(name: str) -> str:
+    """Return the name of a column as results have it: xarray marks no coordinate with a blank in its name."""
+    return "_".join(name.split())
 
 
 def genes(path: Any) -> np.ndarray:

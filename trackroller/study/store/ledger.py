@@ -372,12 +372,19 @@ def working_ledger(
         if ledger is None and not rerun_failed:  # another process has planned
             ledger = read_ledger(study, folder)
         if ledger is None:
-            raise WorkError(
-                f"study '{study.name}': another process is solving it, from another version of the study file or "
-                f"of the materials. Wait until that process ends, or stop it; then start again: {folder.root} keeps "
-                "every finished case. To solve both versions at once, give this one another name."
-            )
+            raise _held(study, folder, rerun_failed)
         yield ledger
+
+
+def _held(study: Study, folder: StudyFolder, rerun_failed: bool) -> WorkError:
+    """Return the error for a folder that another process holds, so that this one can neither plan nor join in."""
+    wait = f"Wait until that process ends, or stop it; then start again: {folder.root} keeps every finished case."
+    if rerun_failed:
+        why = "and failed cases are not removed under it"
+        return WorkError(f"study '{study.name}': another process is solving it, {why}. {wait}")
+    why = "from another version of the study file or of the materials"
+    both = "To solve both versions at once, give this one another name."
+    return WorkError(f"study '{study.name}': another process is solving it, {why}. {wait} {both}")
 
 
 def _plan(study: Study, folder: StudyFolder, tell: Tell, rerun_failed: bool) -> Ledger:
