@@ -87,7 +87,7 @@ def answer_of_spectrum(ds: xr.Dataset) -> Answer:
         columns=columns,
         parts=tuple(_parts(ds, lives)),
         not_checked=_not_checked(ds),
-        not_given=_not_given(ds),
+        not_given=not_given_values(ds),
         warnings=tuple(_warnings(ds)),
         facts=facts_of_data(
             ds,
@@ -400,8 +400,8 @@ def _not_checked(ds: xr.Dataset) -> Mapping[str, tuple[str, ...]]:
     return checks_left_out(ds)
 
 
-def _not_given(ds: xr.Dataset) -> dict[str, str]:
-    """Return the values that nobody gave, with their units."""
+def not_given_values(ds: xr.Dataset) -> dict[str, str]:
+    """Return the values that nobody gave, with their units, of a spectrum or a carriage."""
     given = json.loads(ds.attrs.get(NOT_GIVEN, "{}"))
     return {name: level_text(name, value) for name, value in given.items() if value is not None and value == value}
 
@@ -438,7 +438,7 @@ def _warnings(ds: xr.Dataset) -> Iterator[Caution]:
     question = drive_question(given, set(PARAMETERS) - set(given))
     if question:
         yield Caution("not_given", 1, 1, question, "")
-    words = _not_given(ds)
+    words = not_given_values(ds)
     if words:
         told = ", ".join(f"{long_name_of(name)} {value}" for name, value in words.items())
         yield Caution("not_given", 1, 1, told, "")
