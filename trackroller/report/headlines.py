@@ -622,6 +622,11 @@ def wear(answer: Answer) -> Headline:
     most = head["pressure_most"]
     if most > PEAK * max(head["pressure_first"], head["pressure_last"]):
         clauses[0] += f", {grouped(most, 3)} MPa at {grouped(head['travel_most'], 3)} km"
+    fatigue = head["fatigue"]
+    if fatigue:
+        clauses.insert(0, f"fatigue ends the {fatigue['body']} after {grouped(fatigue['travel'], 3)} km")
+    if head["state"]:
+        clauses.append(f"required {_amount(answer.required[0], answer.required[0].least)}: {head['state']}")
     return _joined(_noted(capital(lead), notes), [*clauses, f"the run ends there: {head['end']}"])
 
 

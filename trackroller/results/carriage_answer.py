@@ -334,9 +334,10 @@ def _worst_case(ds: xr.Dataset, roller: str) -> tuple[str, float]:
     """Return the load case with most of the damage of a roller, and this part; or that with its largest force."""
     own = ds.sel(roller=roller)
     if "damage_per_km" in own and float(np.nansum(own["damage_per_km"].values)) > 0:
-        damage = np.nan_to_num(own["damage_per_km"].values)
+        damage = np.nan_to_num(own["damage_per_km"].values, posinf=math.inf)
         place = int(np.argmax(damage))
-        return str(ds["load_case"].values[place]), float(damage[place] / damage.sum())
+        part = float(damage[place] / damage.sum()) if math.isfinite(damage[place]) else math.nan
+        return str(ds["load_case"].values[place]), part
     forces = np.nan_to_num(own["radial_force"].values)
     place = int(np.argmin(forces))
     return (str(ds["load_case"].values[place]) if forces[place] < 0 else ""), math.nan
