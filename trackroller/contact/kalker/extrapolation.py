@@ -90,7 +90,9 @@ def extrapolated(
     share = weight(subgrid.fields_of(ellipse, solution).used, _ratio(ellipse), unlike)
     limit = share[:, None] * change
     if ellipse.is_hertzian and solution.factor.shape[1:] == (1, 1):  # the formula was fitted to constant friction
-        limit[:, 0] += np.sign(value[:, 0]) * _unseen(ellipse, creep, friction, elastic, solution.traction.shape[-1])
+        unseen = _unseen(ellipse, creep, friction, elastic, solution.traction.shape[-1])
+        unseen[elastic.film > 0.0] = 0.0  # and to bodies without a film
+        limit[:, 0] += np.sign(value[:, 0]) * unseen
     return share, limit
 
 
