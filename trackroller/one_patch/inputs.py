@@ -10,6 +10,7 @@ longitudinal_creepage: [0, 0.1 %, 0.2 %]
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -22,7 +23,7 @@ from trackroller.errors import Collector, InputError, check_names, checked_text,
 from trackroller.files import files_beside, read_text
 from trackroller.materials import load_database
 from trackroller.materials.properties import PROPERTIES, check_number
-from trackroller.numerics.numbers import number_or_nan
+from trackroller.numerics.numbers import number_or_nan, written
 from trackroller.numerics.plain import mapping_of, plain
 from trackroller.parameters.accuracy import PRESETS
 from trackroller.parameters.patch_fields import CREEPAGES, PATCH_FIELDS
@@ -247,3 +248,39 @@ def _along_case(columns: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
             allowed = f"one value, or {n} values as {longest} has"
             raise InputError(name, f"{length} values", allowed, "Give lists of one length.")
     return {name: np.array(np.broadcast_to(column, n)) for name, column in columns.items()}
+
+
+MOST_POINTS, USUAL_POINTS = 1000, 41  # of a range of creepages
+_RANGE = re.compile(r"\s*([^:]+):([^:]+?)\s*%\s*(?::\s*(\d{1,6})\s*)?", re.ASCII)
+
+
+def creepage_range(text: str, field: str = "--creepage") -> list[float]:
+    """Return the evenly spaced creepages of a text such as '0:2%', or '0:2%:21' with their number.
+
+    Parameters
+    ----------
+    text : str
+        First and last creepage in per cent, and how many; 41 if not given.
+    field : str
+        Name for messages.
+
+    Raises
+    ------
+    InputError
+        If the text is no such range.
+
+    Examples
+    --------
+    >>> creepage_range("0:2%:3")
+    [0.0, 0.01, 0.02]
+    """
+    allowed = "a range of creepages in per cent, such as 0:2% or 0:2%:21 with the number of points"
+    parts = _RANGE.fullmatch(text)
+    if parts is None:
+        raise InputError(field, text, allowed, f"Write {field} 0:2%.", "is no range in per cent")
+    ends = [number_or_nan(end.strip().removesuffix("%")) for end in parts.groups()[:2]]
+    count = int(parts[3] or USUAL_POINTS)
+    if not (all(abs(end) <= 100.0 for end in ends) and 2 <= count <= MOST_POINTS):
+        limits = f"; both ends between -100 and 100, and 2 to {MOST_POINTS} points"
+        raise InputError(field, text, allowed + limits, f"Write {field} 0:2%.")
+    return written(np.linspace(ends[0] / 100.0, ends[1] / 100.0, count).tolist())

@@ -211,7 +211,7 @@ def _results(inputs: PatchInputs, solution: PatchSolution, contact: Mapping[str,
     dissipated = work + solution.pressure_work
     with np.errstate(divide="ignore", invalid="ignore"):
         used = np.hypot(force.lateral_force, force.driving_force) / bound
-        error = solution.force_error / bound
+        error = np.maximum(solution.force_error / bound, TOLERANCE)
     return {
         "lateral_force": force.lateral_force,
         "driving_force": force.driving_force,
