@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
-from trackroller.contact.friction_laws import FrictionLaw
+from trackroller.contact.friction_laws import FrictionLaw, steepness
 from trackroller.contact.hertz import contact_modulus, shape
 from trackroller.contact.kalker import Creepage, KalkerSettings, discs, solve_patch, to_tractions
 from trackroller.contact.kalker.kalker_model import LEAST_UNDER_LAW
@@ -19,6 +20,7 @@ from trackroller.numerics.variable import Variable
 from trackroller.one_patch.inputs import SEMI_AXES, PatchInputs, checked_patch
 from trackroller.parameters.accuracy import PRESETS
 from trackroller.parameters.patch_fields import PATCH_FIELDS
+from trackroller.parameters.validity import VALIDITY
 from trackroller.roller.dataset import VARIABLES, file_attributes
 
 TOLERANCE = 1e-8  # largest residual of the friction law over mu p_max, as in the balance of a roller
@@ -38,6 +40,10 @@ RESULTS = (
     *("max_pressure", "semi_axis_lateral", "semi_axis_rolling", "stick_area_fraction"),
     *("friction_power", "friction_energy_per_distance", "residual"),
 )
+FLAGS = {
+    "converged": "the residual of the friction law is within its limit",
+    "steep_friction": VALIDITY["steep_friction"].words,
+}
 FIELDS = ("pressure", "shear_lateral", "shear_rolling", "slip_lateral", "slip_rolling")
 
 
@@ -53,6 +59,7 @@ def patch(  # noqa: PLR0913 - one argument for each field
     longitudinal_creepage: Any = 0.0,
     lateral_creepage: Any = 0.0,
     spin: Any = 0.0,
+    layer_flexibility: Any = 0.0,
     friction_law: Mapping[str, Any] | FrictionLaw | None = None,
     velocity: Any = 60.0,
     accuracy: str = "standard",
@@ -83,6 +90,8 @@ def patch(  # noqa: PLR0913 - one argument for each field
         Creepages xi and eta of body 1 against body 2 [1], from -1 to 1.
     spin : float or array_like, shape (n,)
         Spin creepage phi [1/mm]; 0 for discs.
+    layer_flexibility : float or array_like, shape (n,)
+        Thickness over shear modulus of a film between the bodies [mm^3/N]; 0 is no film.
     friction_law : mapping or FrictionLaw, optional
         Friction as a function of the slip speed, as in a case.
     velocity : float or array_like, shape (n,)
@@ -135,7 +144,8 @@ def solved_patch(inputs: PatchInputs) -> xr.Dataset:
         solution, surface, contact = _solve_discs(inputs)
     else:
         solution, surface, contact = _solve_ellipses(inputs)
-    return _labelled(inputs, contact | _results(inputs, solution, contact), surface, solution.converged)
+    flags = {"converged": solution.converged, "steep_friction": _is_steep(inputs, contact, surface)}
+    return _labelled(inputs, contact | _results(inputs, solution), surface, flags)
 
 
 def _elastic(inputs: PatchInputs) -> Elastic:
@@ -143,7 +153,8 @@ def _elastic(inputs: PatchInputs) -> Elastic:
     first, second = inputs.bodies
     one = np.ones(inputs.size)
     bodies = first.youngs_modulus, first.poisson_ratio, second.youngs_modulus, second.poisson_ratio
-    return Elastic.of_pair(*(one * value for value in bodies))
+    elastic = Elastic.of_pair(*(one * value for value in bodies))
+    return replace(elastic, layer_flexibility=inputs.columns["layer_flexibility"])
 
 
 def _modulus(inputs: PatchInputs) -> np.ndarray:
@@ -199,7 +210,16 @@ def _solve_discs(inputs: PatchInputs) -> tuple[PatchSolution, SurfaceTractions, 
     return solution, discs.to_tractions(line, friction, solution), contact
 
 
-def _results(inputs: PatchInputs, solution: PatchSolution, contact: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
+def _is_steep(inputs: PatchInputs, contact: Mapping[str, np.ndarray], surface: SurfaceTractions) -> np.ndarray:
+    """Return where friction falls faster with the slip speed than the surfaces follow, (n,)."""
+    own, elastic = inputs.columns, _elastic(inputs)
+    bound = own["friction_coefficient"] * contact["max_pressure"]
+    element = 2.0 * contact["semi_axis_rolling"] / surface.y.shape[1]
+    travel = own["velocity"] * MM_PER_S
+    return steepness(inputs.law, bound, travel, elastic.shear_modulus, elastic.film, element) > 1.0
+
+
+def _results(inputs: PatchInputs, solution: PatchSolution) -> dict[str, np.ndarray]:
     """Return forces, works and adhesion by their names, each (n,)."""
     own, force = inputs.columns, solution.resultants
     bound = own["friction_coefficient"] * own["normal_force"]
@@ -226,7 +246,7 @@ def _results(inputs: PatchInputs, solution: PatchSolution, contact: Mapping[str,
 
 
 def _labelled(
-    inputs: PatchInputs, values: Mapping[str, np.ndarray], surface: SurfaceTractions, converged: np.ndarray
+    inputs: PatchInputs, values: Mapping[str, np.ndarray], surface: SurfaceTractions, flags: Mapping[str, np.ndarray]
 ) -> xr.Dataset:
     """Return results and inputs as a data set; without the dimension `case` if no value was a list."""
     made: dict[str, Any] = {}
@@ -236,7 +256,8 @@ def _labelled(
         made[name] = ("case", column, attrs | {"comment": declared.meaning})
     for name in RESULTS:
         made[name] = ("case", values[name], _attributes(name))
-    made["converged"] = ("case", converged.astype(np.int8), {"long_name": "the friction law is met", "units": "1"})
+    for name, words in FLAGS.items():
+        made[name] = ("case", flags[name].astype(np.int8), {"long_name": words, "units": "1"})
     made["patch_x"] = (("case", "x"), surface.x, _attributes("patch_x"))
     made["patch_y"] = (("case", "y"), surface.y, _attributes("patch_y"))
     for name in FIELDS:

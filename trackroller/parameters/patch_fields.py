@@ -41,6 +41,7 @@ _ALL = (
     Parameter("lateral_creepage", "eta", "-", 0.0, "creepage across the rolling direction", **_CREEPAGE),
     Parameter("spin", "phi", "1/mm", 0.0, "spin creepage about the contact normal", -_LARGE, _LARGE),
     Parameter("friction_coefficient", "mu", "-", math.nan, "Coulomb coefficient, at rest", 0.0, 2.0),
+    PARAMETERS["layer_flexibility"],
     replace(PARAMETERS["velocity"], meaning="for friction power and friction laws only"),
 )
 PATCH_FIELDS: dict[str, Parameter] = {own.name: own for own in _ALL}

@@ -151,7 +151,8 @@ def _solve_block(ellipse, creep, friction, elastic, travel, settings: KalkerSett
         other, stick_before = _integrals(ellipse, friction, coarse, settings)
         change, report = value - other, coarse.report
         weight, limit[:, :3] = extrapolation.extrapolated(ellipse, creep, friction, elastic, solution, value, change)
-        force_error = extrapolation.force_error(ellipse, friction, stick, change, elements)
+        softness = elastic.film * elastic.shear_modulus / ellipse.semi_axis_rolling
+        force_error = extrapolation.force_error(ellipse, friction, stick, change, elements, softness)
         limit[:, 3] = extrapolation.adhesion(stick, stick_before, weight, elements) - stick
         pressed = pressed + weight * (pressed - report.pressure_work)
         work = work + weight * (work - report.work - report.pressure_work)

@@ -98,6 +98,9 @@ def sentences(ds: xr.Dataset) -> list[str]:
     missed = int((own["converged"] == 0).sum())
     if missed:
         said.append(f"{missed} of {own.sizes['case']} cases have not converged: the friction law is not met there.")
+    steep = int((own["steep_friction"] == 1).sum())
+    if steep:
+        said.append(f"{capital(own['steep_friction'].attrs['long_name'])} in {steep} of {own.sizes['case']} cases.")
     return said
 
 
