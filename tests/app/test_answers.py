@@ -33,7 +33,7 @@ from trackroller.study.file.load import load_study
 from trackroller.study.run import run_study
 from trackroller.study.spectrum.file import Spectrum
 from trackroller.study.spectrum.solve import solve_spectrum
-from trackroller.study.store.manifest import replacing
+from trackroller.study.store.put import replacing
 
 
 def test_every_parameter_stands_on_the_page():

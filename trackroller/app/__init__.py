@@ -80,17 +80,25 @@ def frame(
     from trackroller.roller.case import Case  # the worker of a study starts faster without the solver
     from trackroller.roller.stored_inputs import given_inputs, setting_text
 
-    checked = case if isinstance(case, Case) else Case.from_dict({} if case is None else case)
+    if isinstance(case, Case):
+        checked = case
+    else:
+        checked = Case.from_dict({} if case is None else case)
     words = {name: setting_text(value) for name, value in given_inputs(checked).items()}
     options = [f"--port={port}"] * (port is not None) + [f"--allow-host={host}" for host in allow_hosts]
     command = python("trackroller.cli", "app", str(folder), "--no-browser", *options)
     process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, stdin=subprocess.DEVNULL)
     atexit.register(process.terminate)
-    line = process.stdout.readline() if process.stdout else ""
+    line = ""
+    if process.stdout:
+        line = process.stdout.readline()
     if "http://" not in line:
         raise WorkError("the server of the page does not start; `trackroller app` says why in a terminal")
     address = line[line.index("http://") :].split()[0]
-    hash_ = "" if case is None else f"#{urllib.parse.urlencode(words or {'tab': 'roller'})}"
+    if case is None:
+        hash_ = ""
+    else:
+        hash_ = f"#{urllib.parse.urlencode(words or {'tab': 'roller'})}"
     return Frame(address + hash_, process, height)
 
 

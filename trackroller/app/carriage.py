@@ -29,7 +29,7 @@ from trackroller.report.tables.table import cell
 from trackroller.results.answer import Answer
 from trackroller.results.carriage_answer import answer_of_carriage, worst_place
 from trackroller.roller.aliases import ALIASES
-from trackroller.study.store.manifest import digest_of_text
+from trackroller.study.store.digests import digest_of_text
 from trackroller.yaml_file import change_yaml, errors_by_line, parse_mapping, write_yaml
 
 LONGEST = 200_000  # bytes of a file that the list looks into
@@ -101,7 +101,9 @@ def carriage_loads(text: str, file: str = "", changes: list[Change] | None = Non
     """
     out: dict[str, Any] = {"text": text, "values": None, "errors": [], "places": None, "loads": None}
     try:
-        out["text"] = change_yaml(text, [(one.path, one.value) for one in changes], WHAT) if changes else text
+        out["text"] = text
+        if changes:
+            out["text"] = change_yaml(text, [(one.path, one.value) for one in changes], WHAT)
         out["values"] = parse_mapping(out["text"], WHAT)
         whole = _carriage(out["text"], file)
         out["places"] = _places(whole)
@@ -117,7 +119,10 @@ def _errors(exc: InputError) -> list[dict[str, Any]]:
 
 def _carriage(text: str, file: str) -> Carriage:
     """Return the checked carriage of a text."""
-    path = _place(file, "file") if file else Path("carriage.yaml")
+    if file:
+        path = _place(file, "file")
+    else:
+        path = Path("carriage.yaml")
     values = parse_mapping(text, WHAT)
     with errors_by_line(text, aliases=ALIASES), files_beside(path):
         return carriage_of({"name": path.stem} | values)

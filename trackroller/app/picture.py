@@ -198,8 +198,13 @@ def curve(values: Values, over: str, ends: list[float]) -> dict[str, Any]:
     if len(ends) != 2 or not all(map(math.isfinite, ends)) or ends[0] == ends[1]:
         raise InputError(over, ends, "a first and a last value that differ", "Write two numbers.")
     low, high = ends
-    along = np.geomspace(low, high, POINTS) if low * high > 0 else np.linspace(low, high, POINTS)
-    cases, kept, refused = [], [], ""
+    if low * high > 0:
+        along = np.geomspace(low, high, POINTS)
+    else:
+        along = np.linspace(low, high, POINTS)
+    cases = []
+    kept = []
+    refused = ""
     for i, value in enumerate(along):
         try:
             cases.append(read({**values, over: float(value)})[0])
@@ -209,8 +214,10 @@ def curve(values: Values, over: str, ends: list[float]) -> dict[str, Any]:
     if not cases:
         raise InputError(over, f"{low:g} to {high:g}", "values of which one at least can be solved", refused)
     ds = _solve(cases, (*LIVE[:-1], *_JUDGED, "limits"), "preview", read(values)[1])
-    columns, duty = {}, read(values)[2].get("duty")
-    names, regimes = every_name(ds, (), ("case",)), ("rolling", "full_slip", "lift_off")
+    columns = {}
+    duty = read(values)[2].get("duty")
+    names = every_name(ds, (), ("case",))
+    regimes = ("rolling", "full_slip", "lift_off")
     for one in outputs(ds, (), names, regimes, unlimited=True, scale="natural"):
         column = np.full(POINTS, np.nan)
         column[kept] = one.values

@@ -46,7 +46,9 @@ def spectrum(values: Values, by: str, blocks: list[dict[str, str]]) -> dict[str,
         | {name: typed(block.get(name, "")) for name in LOADS}
         for i, block in enumerate(blocks, 1)
     ]
-    duty = {"duty": beside["duty"]} if "duty" in beside else {}
+    duty = {}
+    if "duty" in beside:
+        duty = {"duty": beside["duty"]}
     file = {"name": "loads-of-the-roller", "base": base, **duty, "blocks": made, **taken}
     return _answer(solve_spectrum(Spectrum.from_dict(file))) | {"text": write_yaml(file)}
 

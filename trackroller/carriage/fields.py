@@ -89,7 +89,10 @@ def _in_cases(whole: Carriage, field: str, place: str, value: float) -> Carriage
     own: dict[str, Any] = {field: math.radians(value) if field in ("gradient", "cant") else value}
 
     def new(case: LoadCase) -> LoadCase:
-        meant = word_of(case.name) == place if place else _states(case, field)
+        if place:
+            meant = word_of(case.name) == place
+        else:
+            meant = _states(case, field)
         return replace(case, **own) if meant else case
 
     return replace(whole, cases=tuple(map(new, whole.cases)))
@@ -112,7 +115,8 @@ def _moved(at: np.ndarray, axis: str, value: float) -> np.ndarray:
 def _stretched(axis: int) -> Callable[[Carriage, float], Carriage]:
     def change(whole: Carriage, value: float) -> Carriage:
         places = np.array([roller.at[axis] for roller in whole.rollers])
-        middle, distance = (places.max() + places.min()) / 2, np.ptp(places)
+        middle = (places.max() + places.min()) / 2
+        distance = np.ptp(places)
         new = middle + (places - middle) * value / distance
         pairs = zip(whole.rollers, new, strict=True)
         return replace(whole, rollers=tuple(replace(r, at=_moved(r.at, AXES[axis], x)) for r, x in pairs))
@@ -130,7 +134,8 @@ def _payload(whole: Carriage, value: float) -> Carriage:
 def _payload_place(axis: int) -> Callable[[Carriage, float], Carriage]:
     def change(whole: Carriage, value: float) -> Carriage:
         weights = np.array([one.value for one in whole.payloads])
-        weights = weights if weights.sum() > 0 else np.ones(len(weights))
+        if not weights.sum() > 0:
+            weights = np.ones(len(weights))
         step = value - float(np.average([one.at[axis] for one in whole.payloads], weights=weights))
         moved = (PointMass(one.value, _moved(one.at, AXES[axis], one.at[axis] + step)) for one in whole.payloads)
         return replace(whole, payloads=tuple(moved))

@@ -268,7 +268,8 @@ def written_out(source: Path | str | Mapping[str, Any], field: str = "carriage")
         with errors_by_line(text, file=str(path), aliases=ALIASES), files_beside(path):
             values = {"name": path.stem} | parse_mapping(text, str(path))
             return written_out(values, field)
-    whole, out = carriage_of(values), dict(values)
+    whole = carriage_of(values)
+    out = dict(values)
     out["rollers"] = {
         roller.name: dict(entry) | ({} if roller.case is None else {"roller": _stated(roller)})
         for roller, entry in zip(whole.rollers, values["rollers"].values(), strict=True)
@@ -339,7 +340,10 @@ def _by_strokes(
         wrong = "is not known of a carriage: it follows from the places of its rollers"
         raise InputError(f"duty.{STROKES[2]}", duty[STROKES[2]], "strokes_per_day and stroke", "Remove it.", wrong)
     for roller in rollers:
-        given = None if roller.case is None else roller.case.guide_overrollings_per_hour
+        if roller.case is None:
+            given = None
+        else:
+            given = roller.case.guide_overrollings_per_hour
         refuse_overrollings(given, f"rollers.{roller.name}.roller.guide_overrollings_per_hour")
     for case in cases:
         if case.speed is None:
@@ -387,7 +391,9 @@ def _number(value: Any, where: str, unit: str, allowed: str, lower: float = -1e1
 
 
 def _vector(value: Any, where: str, unit: str, allowed: str, remedy: str) -> np.ndarray:
-    values = value.tolist() if isinstance(value, np.ndarray) else value
+    values = value
+    if isinstance(value, np.ndarray):
+        values = value.tolist()
     if not isinstance(values, (list, tuple)) or len(values) != 3:
         raise InputError(where, value, allowed, remedy)
     return np.array([_number(one, where, unit, allowed) for one in values])
@@ -425,7 +431,8 @@ def _drive(value: Any) -> np.ndarray:
 def _rollers(value: Any) -> tuple[MountedRoller, ...]:
     if not isinstance(value, Mapping) or not value:
         raise InputError("rollers", value, "rollers by name", f"Write {_EXAMPLES['rollers']}.")
-    wrong, made = Collector(), []
+    wrong = Collector()
+    made = []
     files: dict[object, Any] = {}
     for name, entry in value.items():
         with wrong.part("rollers", str(name)):
@@ -451,18 +458,27 @@ def _roller(name: str, value: Any, files: dict[object, Any]) -> MountedRoller:
             if entry.get(key) is None:
                 raise InputError(f"{where}.{key}", None, _POINT if key == "at" else "a direction [x, y, z]", "Add it.")
             own = f"{where}.{key}"
-            made[key] = _vector(entry[key], own, "mm", _POINT, _AT) if key == "at" else _direction(entry[key], own)
+            if key == "at":
+                made[key] = _vector(entry[key], own, "mm", _POINT, _AT)
+            else:
+                made[key] = _direction(entry[key], own)
     with wrong.part():
         if (kind := entry.get("kind", KINDS[0])) not in KINDS:
             raise unknown_name(f"{where}.kind", str(kind), KINDS)
     with wrong.part():
-        made["roller"] = _case(entry["roller"], f"{where}.roller", files) if entry.get("roller") is not None else {}
+        made["roller"] = {}
+        if entry.get("roller") is not None:
+            made["roller"] = _case(entry["roller"], f"{where}.roller", files)
     with wrong.part():
-        made["stiffness"] = _stiffness(entry["stiffness"], f"{where}.stiffness") if "stiffness" in entry else None
+        made["stiffness"] = None
+        if "stiffness" in entry:
+            made["stiffness"] = _stiffness(entry["stiffness"], f"{where}.stiffness")
         series = [_stiffness(entry[key], f"{where}.{key}") for key in ("bearing", "structure") if key in entry]
         made["compliance"] = tuple(sum(1 / one[i] for one in series) for i in (0, 1))
     with wrong.part():
-        made["catalogue"] = _catalogue(entry["catalogue"], f"{where}.catalogue") if "catalogue" in entry else None
+        made["catalogue"] = None
+        if "catalogue" in entry:
+            made["catalogue"] = _catalogue(entry["catalogue"], f"{where}.catalogue")
     wrong.check()
     _check_directions(where, made["pushes"], made["x_R"])
     own = made["roller"].get("case")
@@ -517,7 +533,10 @@ def _read_roller(value: Any, where: str) -> dict[str, Any]:
 
 def _stiffness(value: Any, where: str) -> tuple[float, float]:
     """Return radial and axial stiffness; a single number is both."""
-    entry = value if isinstance(value, Mapping) else {"radial": value, "axial": value}
+    if isinstance(value, Mapping):
+        entry = value
+    else:
+        entry = {"radial": value, "axial": value}
     check_names(f"{where}: key", entry, ("radial", "axial"))
     radial = entry.get("radial", entry.get("axial"))
     both = (radial, entry.get("axial", radial))
@@ -534,7 +553,8 @@ def _catalogue(value: Any, where: str) -> CatalogueRoller:
 
 def _preloads(value: Any, rollers: Sequence[MountedRoller]) -> tuple[Preload, ...]:
     known = {roller.name: roller for roller in rollers}
-    wrong, made = Collector(), []
+    wrong = Collector()
+    made = []
     seen: set[str] = set()
     for i, entry in enumerate(_list(value, "preload")):
         where = f"preload[{i + 1}]"
@@ -573,7 +593,8 @@ def _preload(value: Any, where: str, known: Mapping[str, MountedRoller]) -> Prel
 
 
 def _cases(value: Any) -> tuple[LoadCase, ...]:
-    wrong, made = Collector(), []
+    wrong = Collector()
+    made = []
     given = _list(value, "cases")
     for i, entry in enumerate(given):
         with wrong.part("cases", str(i)):
@@ -608,7 +629,9 @@ def _with_share(case: LoadCase, share: float) -> LoadCase:
 def _load_case(value: Any, number: int) -> LoadCase:
     entry = _entries(value, f"cases[{number}]", CASE_FIELDS, "{name: run, share: 1, speed: 1 m/s}")
     name = checked_text(str(entry.get("name", f"case {number}")), "name of a load case")
-    where, wrong, made = f"case '{name}'", Collector(), {}
+    where = f"case '{name}'"
+    wrong = Collector()
+    made = {}
     for key, read in _OF_CASE.items():
         with wrong.part():
             if entry.get(key) is not None:
@@ -651,7 +674,10 @@ def _forces(value: Any, where: str) -> tuple[tuple[np.ndarray, np.ndarray], ...]
 def _share_of_payloads(value: Any, where: str) -> float:
     """Return the share of the payloads that is on board; ask back where it may be a mass."""
     parts = split_quantity(value)
-    share = math.nan if parts is not None and parts[1] == "%" else number_or_nan(value)
+    if parts is not None and parts[1] == "%":
+        share = math.nan
+    else:
+        share = number_or_nan(value)
     if share > 1 or (parts is not None and parts[1] in ("kg", "g", "t")):
         allowed = "the share of the payloads that is on board, from 0 to 1"
         remedy = "Write payload: 1 for all of them. A larger payload is a value of its own in payloads."

@@ -78,7 +78,10 @@ class Lives:
 
     def life(self, values: np.ndarray, units: str) -> np.ndarray:
         """Return a life with the damage of all load cases; in hours by their time, otherwise by their travel."""
-        weight, whole = (self.time, self.hours) if units == "h" else (self.share, np.ones(len(self.first)))
+        if units == "h":
+            weight, whole = self.time, self.hours
+        else:
+            weight, whole = self.share, np.ones(len(self.first))
         shape = (-1, *(1,) * (values.ndim - 1))
         damage = self.of(block_damage(weight.reshape(shape), values))
         return np.asarray(whole.reshape(shape) * repetitions_to_failure(damage))
@@ -88,7 +91,10 @@ class Lives:
         regime = self.solved["regime"].values * (self.share > 0)
         name = next(n for n in ("pair_life_to_first_limit_hours", "pair_life_hours") if n in self.solved)
         damage = np.nan_to_num(block_damage(self.time, self.solved[name].values), nan=0.0, posinf=1e300)
-        used = self.solved["max_pressure"].max("contact").values if "max_pressure" in self.solved else self.share
+        if "max_pressure" in self.solved:
+            used = self.solved["max_pressure"].max("contact").values
+        else:
+            used = self.share
         order = np.lexsort((used, damage, regime))  # the case that rules is the last one of its roller
         group = np.empty(len(order), dtype=int)
         group[self.order] = np.repeat(np.arange(len(self.first)), self.counts)

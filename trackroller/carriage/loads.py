@@ -123,7 +123,8 @@ def loads_of(carriage: Carriage, case: LoadCase, swing: float = 0.0) -> Loads:
     InputError
         If a force along the track needs a drive, and the carriage has none.
     """
-    payload, other = np.zeros(6), np.zeros(6)
+    payload = np.zeros(6)
+    other = np.zeros(6)
     for of_payload, force, at in _all_forces(carriage, case):
         wrench = wrench_at(force if swing == 0 else _turned(force, swing), at)
         if of_payload:

@@ -60,7 +60,9 @@ ENDS = {
     "tipping": "to tipping",
 }
 TIPPING = MOTIONS[2:4]  # motions that a user calls tipping
-_RC, _R, _C = ("load_case", "roller"), ("roller",), ("load_case",)
+_RC = ("load_case", "roller")
+_R = ("roller",)
+_C = ("load_case",)
 
 
 def solve_carriage(
@@ -110,7 +112,10 @@ def solve_carriage(
     >>> ds.radial_force.values.round(2)
     array([[-98.07, -98.07, -98.07, -98.07]])
     """
-    whole = source if isinstance(source, Carriage) else load_carriage(source)
+    if isinstance(source, Carriage):
+        whole = source
+    else:
+        whole = load_carriage(source)
     springs = springs_of(whole)
     loads, swings = _loads(whole, springs)
     ds = _solution(whole, springs, loads, swings).assign(_margins(whole, springs, loads, advanced))
@@ -206,7 +211,9 @@ def springs_of(whole: Carriage, unknown: Sequence[float] = ()) -> Springs:
     ways = free_ways(springs)
     if len(ways) == 0:
         return _preloaded(springs, whole)
-    hinge = _hinge(whole, ways[0], length) if len(ways) == 1 else None
+    hinge = None
+    if len(ways) == 1:
+        hinge = _hinge(whole, ways[0], length)
     if hinge is None:
         raise _free(whole, f"leave the carriage free: it {motion_of(ways[-1])} without any resistance")
     return _preloaded(without(springs, ways[0], hinge), whole)
@@ -268,7 +275,9 @@ def _equilibrium(whole: Carriage, springs: Springs, loads: Loads, name: str) -> 
         found = equilibrium(springs, _reduced(loads.all, springs))
     except Moves as error:
         allowed = "loads that rollers which only press can carry"
-        tips = "tips" if error.motion in TIPPING else "does not hold"
+        tips = "does not hold"
+        if error.motion in TIPPING:
+            tips = "tips"
         remedy = (
             "Move the masses between the rollers, put the rollers further apart, or give pairs a preload: a roller "
             "carries axial load only while it presses on its rail."
@@ -378,7 +387,8 @@ def _swings_further(springs: Springs, loads: Loads) -> bool:
     """Return whether another payload swings a carriage on a line of rollers, so that no margin of it is known."""
     if springs.hinge is None:
         return False
-    force, moment = loads.payload[1:3], loads.payload[3]
+    force = loads.payload[1:3]
+    moment = loads.payload[3]
     about = moment - float(springs.hinge[0] * force[1] - springs.hinge[1] * force[0])
     return abs(about) > 1e-9 * springs.length * float(np.linalg.norm(force))
 
@@ -388,7 +398,8 @@ def _of_catalogue(whole: Carriage, variables: Mapping[str, Any]) -> dict[str, An
     if not any(roller.catalogue for roller in whole.rollers):
         return {}
     radial, axial, shares = (variables[name][1] for name in ("radial_force", "axial_force", "share"))
-    factor, life = np.full(radial.shape, np.nan), np.full(radial.shape[1], np.nan)
+    factor = np.full(radial.shape, np.nan)
+    life = np.full(radial.shape[1], np.nan)
     for i, roller in enumerate(whole.rollers):
         if roller.catalogue is not None:
             factor[:, i] = roller.catalogue.load_factor(radial[:, i], axial[:, i])
@@ -404,7 +415,8 @@ def cases_of(whole: Carriage, ds: xr.Dataset) -> dict[tuple[int, int], Case]:
     made = {}
     passes = passes_per_km(whole)
     for i, j in np.argwhere(ds["radial_force"].values < 0).tolist():
-        speed, case = whole.cases[i].speed, whole.rollers[j].case
+        speed = whole.cases[i].speed
+        case = whole.rollers[j].case
         if case is not None:
             loads = {name: float(ds[name][i, j]) for name in ("radial_force", "axial_force")}
             if speed is not None:
@@ -457,7 +469,8 @@ def _unused_loads(roller: MountedRoller) -> Iterator[str]:
 
 def _flags(solved: xr.Dataset) -> np.ndarray:
     """Return the validity flags of rollers, shape (n,): `deep_life` of the body alone that ends the life."""
-    deep, lives = validity_bit("deep_life"), solved["life_to_first_limit_hours"].transpose(..., "body").values
+    deep = validity_bit("deep_life")
+    lives = solved["life_to_first_limit_hours"].transpose(..., "body").values
     own = solved["validity_body"].transpose(..., "body").values
     ends = np.where(lives[..., BODIES.index("guide")] < lives[..., BODIES.index("roller")], own[..., 1], own[..., 0])
     return np.asarray((solved["validity"].values & ~deep) | (ends & deep))
@@ -492,8 +505,11 @@ def with_lives(ds: xr.Dataset, whole: Carriage, solve: Callable[..., xr.Dataset]
         from trackroller.roller.solver import solve as solve_cases  # numba compiles on import
     else:
         solve_cases = solve
-    shape, n = ds["radial_force"].shape, len(whole.rollers)
-    case_hours, regime, damage = np.full(shape, np.inf), np.full(shape, -1, dtype=np.int8), np.zeros(shape)
+    shape = ds["radial_force"].shape
+    n = len(whole.rollers)
+    case_hours = np.full(shape, np.inf)
+    regime = np.full(shape, -1, dtype=np.int8)
+    damage = np.zeros(shape)
     for values in (case_hours, damage):
         values[~ds["converged"].values] = np.nan
     flagged = np.zeros(shape, dtype=np.int64)
@@ -548,5 +564,7 @@ def with_lives(ds: xr.Dataset, whole: Carriage, solve: Callable[..., xr.Dataset]
             _attrs("year", "years of the duty to the first limit"),
         )
     known = np.where(np.isnan(travel), np.inf, travel)
-    worst = ds["roller"].values[int(np.argmin(known))] if np.isfinite(known).any() else ""
+    worst = ""
+    if np.isfinite(known).any():
+        worst = ds["roller"].values[int(np.argmin(known))]
     return ds.assign(variables).assign_attrs(worst_roller=str(worst))

@@ -244,7 +244,9 @@ def equilibrium(
             break
         visited.append(carries)
         radial = np.maximum(found.radial, 1e-6 * size)
-    other = _searched(springs, wrench, size, found.start, visited) if thorough else None
+    other = None
+    if thorough:
+        other = _searched(springs, wrench, size, found.start, visited)
     if other is not None:
         return other
     if moves is not None:
@@ -399,15 +401,21 @@ def _settled(
     stiffness = np.where(carries, springs.axial_stiffness(np.maximum(radial, least)), 0.0)
     if start is None:
         start = _minimum(springs.linear_at(size / radial.size), stiffness, wrench, np.zeros(len(wrench)), size)
-    place, converged = start, not (carries.any() and springs.contact.any())
+    place = start
+    converged = not (carries.any() and springs.contact.any())
     for turn in range(1 if converged else MOST_PASSES):
         place = _minimum(springs, stiffness, wrench, place, size)
-        coupled = None if converged or turn not in NEWTON else _coupled(springs, carries, wrench, place, size)
+        if converged or turn not in NEWTON:
+            coupled = None
+        else:
+            coupled = _coupled(springs, carries, wrench, place, size)
         if coupled is not None:
-            place, converged = coupled, True
+            place = coupled
+            converged = True
             break
         new, _ = springs.force(springs.offset + springs.radial @ place)
-        change, radial = np.abs(new - radial).max(), new if turn < 12 else (new + radial) / 2
+        change = np.abs(new - radial).max()
+        radial = new if turn < 12 else (new + radial) / 2
         stiffness = np.where(carries, springs.axial_stiffness(np.maximum(radial, least)), 0.0)
         converged = converged or bool(change <= 1e-9 * size)
         if converged:
@@ -442,7 +450,8 @@ def _coupled_forces(
 
     def at(place: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         force, radial_stiffness = springs.force(springs.offset + springs.radial @ place)
-        pressed, slide = np.maximum(force, least), springs.axial @ place
+        pressed = np.maximum(force, least)
+        slide = springs.axial @ place
         stiffness = np.where(carries, springs.axial_stiffness(pressed), 0.0)
         slope = np.where(carries & (force > least), springs.axial_slope(pressed) * radial_stiffness, 0.0)
         rest = springs.radial.T @ force + springs.axial.T @ (stiffness * slide) - wrench
@@ -520,8 +529,12 @@ def _balanced(
     rows = np.vstack([springs.radial[loaded], springs.axial[carries]])
     for _ in range(2):
         rest = wrench - springs.radial.T @ radial - springs.axial.T @ axial
-        change = np.linalg.lstsq(rows.T, rest, rcond=1e-12)[0] if rows.size else np.zeros(0)
-        radial, axial = radial.copy(), axial.copy()
+        if rows.size:
+            change = np.linalg.lstsq(rows.T, rest, rcond=1e-12)[0]
+        else:
+            change = np.zeros(0)
+        radial = radial.copy()
+        axial = axial.copy()
         radial[loaded] += change[: loaded.sum()]
         axial[carries] += change[loaded.sum() :]
     return np.maximum(radial, 0.0), axial
@@ -563,7 +576,9 @@ def multipliers(springs: Springs, fixed: np.ndarray, varying: np.ndarray) -> tup
         except Moves:
             return -springs.length
         smallest = float(found.approach[watched].min())
-        return smallest if found.converged else min(smallest, -1e-12 * springs.length)
+        if found.converged:
+            return smallest
+        return min(smallest, -1e-12 * springs.length)
 
     tipping = _tipping(springs, fixed, varying, lambda multiplier: _holds(springs, fixed + multiplier * varying))
     if not watched.any() or not np.any(varying):
@@ -611,11 +626,15 @@ def to_one_contact(
             return -1.0
         own = known & found.loaded
         left = found.radial[own] * tangent[own] - np.abs(found.axial[own])
-        return float(left.min(initial=np.inf)) if own.any() else -1.0
+        if own.any():
+            return float(left.min(initial=np.inf))
+        return -1.0
 
     steps = np.geomspace(1.0, max(min(lift_off, LARGEST_MULTIPLIER), 1.0) * (1 - 1e-9), 25)
     if spare(1.0) <= 0:
-        return float(brentq(spare, 0.0, 1.0, xtol=1e-9)) if spare(0.0) > 0 else 0.0
+        if spare(0.0) > 0:
+            return float(brentq(spare, 0.0, 1.0, xtol=1e-9))
+        return 0.0
     for low, high in itertools.pairwise(steps.tolist()):
         if spare(high) <= 0:
             return float(brentq(spare, low, high, xtol=1e-9))
@@ -644,9 +663,14 @@ def _tipping(springs: Springs, fixed: np.ndarray, varying: np.ndarray, holds: Ca
     )
     bound = float(most.x[-1]) if most.success else 1.0
     if holds(bound * (1 - 1e-7)):
-        return np.inf if bound >= LARGEST_MULTIPLIER * (1 - 1e-9) else bound
+        if bound >= LARGEST_MULTIPLIER * (1 - 1e-9):
+            return np.inf
+        return bound
     low, high = 1.0, max(bound, 1.0)
     while high > low * (1 + 1e-6):
         middle = np.sqrt(low * high)
-        low, high = (middle, high) if holds(middle) else (low, middle)
+        if holds(middle):
+            low, high = middle, high
+        else:
+            low, high = low, middle
     return low

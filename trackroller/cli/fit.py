@@ -115,7 +115,10 @@ def fit_wear(
     from trackroller.fit.depths import fit_wear as fitted
     from trackroller.yaml_file import read_mapping
 
-    values = {} if base is None else read_mapping(base, "case file")
+    if base is None:
+        values = {}
+    else:
+        values = read_mapping(base, "case file")
     _finish(fitted(table, values, body=body, name=name, like=like), file, replace, report)
 
 
@@ -163,11 +166,13 @@ def fit_next(  # noqa: PLR0913 - one argument for each option of the command
     if until is not None:
         check_factor(until)
     made = fitted(table, values, body=body, slope=slope, scatter_in_cycles=scatter)
-    study, own = load_study(candidates), read_mapping(design, "case file")
+    study = load_study(candidates)
+    own = read_mapping(design, "case file")
     found = next_tests(made, study.design(), own, tests, longest=math.inf if longest is None else longest)
     heads, rows = next_rows(found)
     print_table(heads, rows)
     said = next_sentences(found)
-    said += until_sentences(tests_until(made, found, until), until) if until is not None else []
+    if until is not None:
+        said += until_sentences(tests_until(made, found, until), until)
     for text in said:
         print(text)

@@ -303,8 +303,7 @@ def run_app(command: Callable[[], object]) -> int:
         with interrupts_wait_for_files():
             command()
     except SystemExit as exc:
-        code = exc.code if isinstance(exc.code, int) else int(exc.code is not None)
-        return _tell(STOPPED, code) if code == INTERRUPTED else code
+        return _code_of(exc)
     except InputError as exc:
         return max(_tell(text, 2) for text in exc.shown)
     except WorkError as exc:
@@ -319,6 +318,15 @@ def run_app(command: Callable[[], object]) -> int:
     except Exception as exc:
         return _tell(f"internal error, {type(exc).__name__}. Please report it with the log {_log(exc)}", 3)
     return 0
+
+
+def _code_of(exc: SystemExit) -> int:
+    """Return the exit code of a command that ended itself; an interruption is told."""
+    if exc.code == INTERRUPTED:
+        return _tell(STOPPED, INTERRUPTED)
+    if isinstance(exc.code, int):
+        return exc.code
+    return int(exc.code is not None)
 
 
 def _tell_of_file(exc: OSError) -> int:
@@ -337,7 +345,9 @@ def _plain(error: UnicodeError) -> tuple[str, int]:
     if not isinstance(error, UnicodeEncodeError):
         raise error
     run = error.object[error.start : error.end]
-    power = "^" if unicodedata.decomposition(run[0]).startswith("<super>") else ""
+    power = ""
+    if unicodedata.decomposition(run[0]).startswith("<super>"):
+        power = "^"
     return power + "".join(map(_plain_sign, run)), error.end
 
 

@@ -57,7 +57,8 @@ def _points_of(path: Path) -> dict[str, Any]:
     names = ("amplitude", "cycles")
     if set(table.rows[0]) != set(names):
         remedy = "Name the columns so, the amplitude with its unit in brackets, and remove other columns."
-        given, allowed = ", ".join(table.rows[0]), "the columns amplitude [MPa] and cycles"
+        given = ", ".join(table.rows[0])
+        allowed = "the columns amplitude [MPa] and cycles"
         raise InputError("sn_points", given, allowed, remedy).at(path, head)
     points = [[table.number(row, name, LEAST) for name in names] for row in table]
     return {"value": points, "source": f"{path.name}, SHA-256 {table.digest}"}

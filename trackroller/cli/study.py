@@ -31,7 +31,7 @@ from trackroller.study.status import Status, find_folder, find_study, plan_rows,
 from trackroller.study.store.crate import compare_results, damaged_files, read_crate, study_of_crate, write_crate
 from trackroller.study.store.folder import StudyFolder, check_folder
 from trackroller.study.store.ledger import study_folder
-from trackroller.study.store.manifest import is_study
+from trackroller.study.store.mark import is_study
 
 EXPLORER = "explorer.html"
 MOST = 20_000  # --explain examines at most this many cases of a study
@@ -63,7 +63,9 @@ def run_with_progress(
             progress=bar.advanced,
         )
     if solved_before and all(solved_before):
-        unused = f"; --scheduler {scheduler} is not used" if scheduler else ""
+        unused = ""
+        if scheduler:
+            unused = f"; --scheduler {scheduler} is not used"
         print_line(f"nothing is left to solve of '{checked.name}'{unused}")
     if report:
         print(_report(ledger.folder))
@@ -76,7 +78,10 @@ def make_report(study: str, results: Path, out: Path | None) -> None:
     """Make analysis, figures and report of a study that was run, and a copy at `out`; or write its cases to `out`."""
     folder = find_study(study, results)[1]
     table = out is not None and out.suffix.lower() in (".xlsx", ".csv")
-    target = out if out is None else writable(out) if table else writable_page(out)
+    if out is None:
+        target = out
+    else:
+        target = writable(out) if table else writable_page(out)
     if target is not None and table:
         from trackroller.report.workbook import write_results
         from trackroller.results.stored_study import open_study  # heavy: SALib
@@ -105,11 +110,15 @@ def print_explorer(study: str, results: Path, out: Path | None) -> None:
     from trackroller.results.stored_study import open_study
 
     found = find_folder(study, results)
-    path = Path(study) if found is None and Path(study).exists() else results / study if found is None else found.root
+    if found is None and Path(study).exists():
+        path = Path(study)
+    else:
+        path = results / study if found is None else found.root
     target = out if out is None else writable_page(out)
     if target is not None and target.suffix.lower() == ".pdf":
         raise InputError("--out", str(out), "a file whose name ends in .html; the explorer works in a browser")
-    solved, folder = open_study(path), StudyFolder(path if path.is_dir() else path.parent)
+    solved = open_study(path)
+    folder = StudyFolder(path if path.is_dir() else path.parent)
     if out is None and is_study(folder.root):
         folder.create()
     elif out is None:
@@ -127,7 +136,10 @@ def print_best(study: str, results: Path, out: Path | None, as_json: bool = Fals
 
     target = out if out is None else writable_page(out)
     found = find_folder(study, results)
-    folder = Path(study) if found is None and Path(study).is_dir() else find_study(study, results)[1].root
+    if found is None and Path(study).is_dir():
+        folder = Path(study)
+    else:
+        folder = find_study(study, results)[1].root
     solved = open_study(folder)
     answer = shown_answer(solved)
     if as_json:
@@ -224,11 +236,17 @@ def _crate_at(named: Path, results: Path) -> Path:
     if named.is_file():
         packed = named.suffix.lower() in ARCHIVES
         wrong = "is an archive" if packed else "is a file"
-        tool = "unzip" if named.suffix.lower() == ".zip" else "tar xf"
-        remedy = f"Unpack it ({tool} {named.name}), and name the folder." if packed else "Name the folder."
+        tool = "tar xf"
+        if named.suffix.lower() == ".zip":
+            tool = "unzip"
+        remedy = "Name the folder."
+        if packed:
+            remedy = f"Unpack it ({tool} {named.name}), and name the folder."
         raise InputError("folder", str(named), "the folder of a study, such as results/NAME", remedy, wrong)
     inside = results / named
-    return inside if not named.exists() and inside.is_dir() else named
+    if not named.exists() and inside.is_dir():
+        return inside
+    return named
 
 
 def print_verified(folder: Path, results: Path) -> int:
@@ -312,7 +330,8 @@ def _explain(study: Study, no_shortcuts: bool) -> None:
     options, group = options_of_cases(design, {})
     if len(table) > MOST:
         print(f"stages of the first {MOST} of {len(table)} cases")
-        table, group = table.take(np.arange(MOST)), group[:MOST]
+        table = table.take(np.arange(MOST))
+        group = group[:MOST]
     for number in np.unique(group):
         rows = np.flatnonzero(group == number)
         own = dict(options[number])

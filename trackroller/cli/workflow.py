@@ -22,7 +22,7 @@ from trackroller.study.file.study import Study
 from trackroller.study.store.folder import StudyFolder, Tell, check_for_workflow, unheard
 from trackroller.study.store.identity import Cases
 from trackroller.study.store.ledger import Ledger, read_ledger, study_folder, working_ledger
-from trackroller.study.store.manifest import claim
+from trackroller.study.store.put import claim
 
 CONFIG_KEYS = ("study", "results")
 _held = contextlib.ExitStack()  # keeps the lock of the study until this process ends
@@ -53,7 +53,8 @@ def workflow_config(config: Mapping[str, Any], source: Path, *, strict: bool = T
     for key in config if strict else ():
         if key not in CONFIG_KEYS:
             raise unknown_name("--config key", str(key), CONFIG_KEYS)
-    study, results = config.get("study"), config.get("results", "results")
+    study = config.get("study")
+    results = config.get("results", "results")
     advice = "Write it in config/config.yaml or give --config study=config/studies/NAME.yaml."
     if not isinstance(study, str):
         raise InputError("study", study, "the path of a study file", advice)
@@ -101,7 +102,8 @@ def workflow_ledger(config: Mapping[str, str], main: bool, tell: Tell = unheard)
     WorkError
         If the study was edited after the main process had planned it.
     """
-    study, results = load_study(config["study"], planned=not main), config["results"]
+    study = load_study(config["study"], planned=not main)
+    results = config["results"]
     folder = study_folder(study.name, results)
     if main:
         check_for_workflow(folder.create().root)
@@ -120,7 +122,9 @@ def workflow_ledger(config: Mapping[str, str], main: bool, tell: Tell = unheard)
 
 def study_inputs(study: Study) -> list[str]:
     """Return the files a study's cases depend on: study file, table of cases, and the user's materials."""
-    paths = [str(study.path)] if study.path is not None else []
+    paths = []
+    if study.path is not None:
+        paths = [str(study.path)]
     if study.config.table is not None:
         paths.append(str(study.table_path))
     user = find_user_file()
@@ -141,7 +145,9 @@ def captions(study: Study, folder: StudyFolder) -> dict[str, str]:
         The study's folder; without figures only the caption of the report is there.
     """
     index = folder.root / "figures" / "index.json"
-    drawn = json.loads(index.read_text(encoding="utf-8")) if index.is_file() else []
+    drawn = []
+    if index.is_file():
+        drawn = json.loads(index.read_text(encoding="utf-8"))
     texts = {"report": f"Study {study.name}: {study.config.description or 'no description'}"}
     texts |= {item["name"]: f"{item['sentence']} {item['caption']}".strip() for item in drawn}
     return {name: _as_paragraph(text) for name, text in texts.items()}
@@ -187,7 +193,8 @@ def hide_chatter(handlers: Iterable[logging.Handler], report: Callable[[], str])
 
     def wanted(record: logging.LogRecord) -> bool:
         if record.getMessage().startswith("Nothing to be done"):
-            record.msg, record.args = f"Nothing to be done. Report: {report()}", ()
+            record.msg = f"Nothing to be done. Report: {report()}"
+            record.args = ()
             return True
         return record.levelno > logging.INFO
 
@@ -199,7 +206,9 @@ def finished(folder: StudyFolder, seconds: float) -> str:
     """Return the last line of a run: where the report is and how long the run took."""
     report = folder.root / "report.html"
     took = duration(seconds)
-    return f"Report: {report}, made in {took}" if report.is_file() else f"Done in {took}; there is no report yet."
+    if report.is_file():
+        return f"Report: {report}, made in {took}"
+    return f"Done in {took}; there is no report yet."
 
 
 def log_to(path: str, step: str = "") -> None:

@@ -72,7 +72,9 @@ def with_limits(own: Mapping[str, Any], declared: Iterable[Any], kind: str) -> d
 
 def _names(limit: Limit, kind: str) -> set[str]:
     declared = getattr(limit, kind)
-    return {declared} if isinstance(declared, str) else {one.name for one in declared}
+    if isinstance(declared, str):
+        return {declared}
+    return {one.name for one in declared}
 
 
 def asked(outputs: Collection[str], not_checked: Collection[str] = ()) -> tuple[Limit, ...]:
@@ -144,7 +146,9 @@ def fields_of(limit: Limit) -> set[str]:
 
 def others(names: Collection[str]) -> tuple[str, ...]:
     """Return the limits of the verdict that a choice of limits leaves out; `all` leaves none out."""
-    return () if "all" in names else tuple(limit.name for limit in judged() if limit.name not in names)
+    if "all" in names:
+        return ()
+    return tuple(limit.name for limit in judged() if limit.name not in names)
 
 
 def limit_word(name: str) -> str:
@@ -163,4 +167,6 @@ def computed(outputs: Collection[str], not_checked: Collection[str], life_criter
     """Return the limits asked for, after the one whose stress the life needs by its criterion."""
     wanted = asked(outputs, not_checked)
     paths = fatigue.LIMIT in wanted and life_criterion in fatigue.STRESS_OF
-    return (multiaxial.LIMIT, *wanted) if paths and multiaxial.LIMIT not in wanted else wanted
+    if paths and multiaxial.LIMIT not in wanted:
+        return (multiaxial.LIMIT, *wanted)
+    return wanted

@@ -147,7 +147,9 @@ def check(given: dict[str, Any]) -> None:
     """Refuse a number of rows other than 1 or 2, and rows without the value that carries a moment."""
     if given["rows"] not in (1, 2):
         raise InputError("bearing.rows", given["rows"], "1 or 2")
-    carries = "permissible_moment" if given["rows"] == 1 else "row_distance"
+    carries = "row_distance"
+    if given["rows"] == 1:
+        carries = "permissible_moment"
     if carries not in given:
         wrong = f"lacks {carries}, because the roller loads it with moments"
         raise InputError("bearing", given, "", f"Add {carries}, or take another number of rows.", wrong)

@@ -38,8 +38,9 @@ def amplitude(solved: SolvedRollers) -> np.ndarray:
     name = STRESS_OF[criterion]
     if criterion == "dang_van" and not solved.options["credit_pressure"]:
         name = "dang_van_utilisation_without_pressure"
-    limit = 1.0 if criterion in ("von_mises_amplitude", "goodman") else solved.materials["fatigue_limit"][:, None, :]
-    return np.asarray(values[name] * limit)
+    if criterion in ("von_mises_amplitude", "goodman"):  # these are stresses already
+        return np.asarray(values[name])
+    return np.asarray(values[name] * solved.materials["fatigue_limit"][:, None, :])
 
 
 def overloaded(peak_stress: np.ndarray, tensile_strength: np.ndarray) -> np.ndarray:
@@ -89,7 +90,10 @@ def life(solved: SolvedRollers) -> Values:
     """
     stress, curve = amplitude(solved), curve_of(solved)
     published = solved.options["life_criterion"] not in STRESS_OF
-    error = solved.values["error_estimate"] if published else np.full_like(stress, np.nan)
+    if published:
+        error = solved.values["error_estimate"]
+    else:
+        error = np.full_like(stress, np.nan)
     lifeless = _without_life(solved)
     cycles = np.where(lifeless[:, None, :], np.nan, curve.life_cycles(stress))
     with np.errstate(over="ignore"):  # lives longer than the range of numbers are infinite

@@ -112,7 +112,9 @@ class SolvedRollers:
     @property
     def skids(self) -> np.ndarray:
         """Return which rollers skid, see `skidding`, (n, 1); none before the balance is known."""
-        return np.zeros((len(self.rolling_radius), 1), dtype=bool) if self.regime is None else skidding(self.regime)
+        if self.regime is None:
+            return np.zeros((len(self.rolling_radius), 1), dtype=bool)
+        return skidding(self.regime)
 
     @property
     def overrollings_per_hour(self) -> np.ndarray:

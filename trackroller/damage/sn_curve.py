@@ -172,9 +172,15 @@ class SNCurve:
         SNCurve
             Values of the shape that the material has.
         """
-        known = material if isinstance(material, Mapping) else vars(material)
+        if isinstance(material, Mapping):
+            known = material
+        else:
+            known = vars(material)
         strength = known["tensile_strength"]
-        limit = known["fatigue_limit"] if "fatigue_limit" in known else known["fatigue_strength_ratio"] * strength
+        if "fatigue_limit" in known:
+            limit = known["fatigue_limit"]
+        else:
+            limit = known["fatigue_strength_ratio"] * strength
         knees = known["cycles_at_tensile_strength"], known["cycles_at_fatigue_limit"]
         scatter = known.get("scatter_in_cycles"), known.get("scatter_in_stress")
         line = {"segments": segments(known.get("sn_points")), "second_exponent": known.get("second_exponent")}
@@ -291,10 +297,12 @@ class SNCurve:
         sigma = np.asarray(stress, dtype=float)
         with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
             ratio = np.where(sigma >= 0, sigma, np.nan) / limit
-            cycles = knee * ratio**-self._below
+            cycles: np.ndarray = knee * ratio**-self._below
             for start, own, exponent in self._pieces():
                 cycles = np.where(ratio >= start, knee * own * (ratio / start) ** -exponent, cycles)
-        return np.where(ratio < 1, np.inf, cycles) if self.rule == "unlimited" else cycles
+        if self.rule == "unlimited":
+            return np.where(ratio < 1, np.inf, cycles)
+        return cycles
 
     def allowable_stress(self, cycles: ArrayLike) -> np.ndarray:
         """Return the stress amplitude that a number of cycles allows, the inverse of `life_cycles`.
@@ -312,7 +320,10 @@ class SNCurve:
         limit, knee = self.knee
         n = np.asarray(cycles, dtype=float)
         ratio = np.where(n > 0, n, np.nan) / knee
-        factor = np.ones_like(ratio) if self.rule == "unlimited" else ratio ** (-1.0 / self._below)
+        if self.rule == "unlimited":
+            factor = np.ones_like(ratio)
+        else:
+            factor = ratio ** (-1.0 / self._below)
         for start, own, exponent in self._pieces():
             factor = np.where(ratio <= own, start * (ratio / own) ** (-1.0 / exponent), factor)
         return np.where(np.isnan(ratio), np.nan, limit * factor)

@@ -109,7 +109,10 @@ def first_of(
     life, known = np.where(broken, 0.0, life), (counted & ~np.isnan(life)) | broken
     first = np.min(np.where(known, life, np.inf), axis=1)
     rank = np.where(known & (life == first[:, None, :]), np.nan_to_num(used, nan=0.0), -1.0)
-    unknown = concerned & ~known if lacking is None else concerned & ~known & ~lacking
+    if lacking is None:
+        unknown = concerned & ~known
+    else:
+        unknown = concerned & ~known & ~lacking
     some = known.any(axis=1)
     never = np.isinf(first) & unknown.any(axis=1)
     return np.where(never | ~some, np.nan, first), np.where(some, np.argmax(rank, axis=1), -1)
@@ -170,7 +173,9 @@ def verdict(places: Sequence[SolvedRollers], limits: Sequence[Limit], numbers: S
     used, broken = np.full(shape, np.nan), np.zeros(shape[1:], dtype=bool)
     lives = {end: np.full(shape, np.nan) for end in ENDS}
     timed = np.zeros(len(limits), dtype=bool)
-    lacking = np.stack([limit.lacking(places[0]) for limit in limits], axis=1) if limits else broken
+    lacking = broken
+    if limits:
+        lacking = np.stack([limit.lacking(places[0]) for limit in limits], axis=1)
     for i, limit in enumerate(limits):
         assert limit.verdict is not None
         concerned = [body in limit.bodies for body in BODIES]

@@ -296,7 +296,10 @@ def evaluate(solved: SolvedRollers) -> Values:
     """Return depths, volume and life with its range, (n, contact, body), and the run-in distance [km], (n,)."""
     c, v, hourly = solved.cases, solved.values, solved.overrollings_per_hour
     archard = solved.options["wear_law"] == "archard"
-    k = solved.materials["wear_coefficient"] if archard else 1.0 / solved.materials["density"]
+    if archard:
+        k = solved.materials["wear_coefficient"]
+    else:
+        k = 1.0 / solved.materials["density"]
     k = (k * np.nan_to_num(c["wear_coefficient_factor"], nan=1.0)[:, None])[:, None, :]
     depth, volume = k * v["_worn_depth"], k * v["_worn_volume"]
     travel = c["velocity"] * KM_PER_HOUR

@@ -123,7 +123,10 @@ def fit_bench(  # noqa: PLR0913 - one argument for each choice of a fit
     >>> low < fit.material["fatigue_limit"] < high
     True
     """
-    wanted = [part.strip() for part in fit.split(",")] if isinstance(fit, str) else plain(fit, "fit")
+    if isinstance(fit, str):
+        wanted = [part.strip() for part in fit.split(",")]
+    else:
+        wanted = plain(fit, "fit")
     if not isinstance(wanted, list):
         raise InputError("fit", fit, f"a list of {', '.join(FITTED)}")
     check_texts(name=name, like=like)
@@ -198,8 +201,11 @@ def _end(rows: TestTable, row: int) -> End:
     allowed = f"none, or how it ended: {', '.join(MODES)}; then roller or guide, such as 'fatigue roller'"
     if not words or words[0] not in MODES:
         raise rows.error(row, "end", allowed, "Correct the cell.")
-    mode, rest = words[0], words[1:]
-    body = rest.pop(0) if rest and rest[0] in BODIES else ""
+    mode = words[0]
+    rest = words[1:]
+    body = ""
+    if rest and rest[0] in BODIES:
+        body = rest.pop(0)
     if mode in ("fatigue", "wear") and not body:
         raise rows.error(row, "end", allowed, f"Write {mode} roller, or {mode} guide.")
     if mode != "wear":
@@ -243,7 +249,10 @@ def _travel(rows: TestTable, row: int, end: End) -> tuple[float, float]:
 
 def _cases(rows: TestTable, base: Mapping[str, Any] | None) -> tuple[list[Case], dict[str, Any]]:
     """Return the case of each row, and the options that all of them share."""
-    cases, options, wrong, read = [], [], Collector(), {}
+    cases = []
+    options = []
+    wrong = Collector()
+    read = {}
     folder = rows.path or Path("tests.csv")
     for row in rows:
         file = rows.text(row, "base")
@@ -257,7 +266,10 @@ def _cases(rows: TestTable, base: Mapping[str, Any] | None) -> tuple[list[Case],
                     case, one, _ = checked_case({k: v for k, v in values.items() if k not in BESIDE})
                     _check_empty(rows, row, case)
             except InputError as error:
-                place = error.field if error.field in rows.rows[row] else "base" if file else "case"
+                if error.field in rows.rows[row]:
+                    place = error.field
+                else:
+                    place = "base" if file else "case"
                 raise (
                     error.named(f"row {rows.lines[row]}, {place}") if rows.path is None else
                     error.at(rows.path, rows.lines[row])
@@ -288,12 +300,17 @@ def _check_empty(rows: TestTable, row: int, case: Case) -> None:
 def not_given_notes(cases: Sequence[Case]) -> list[str]:
     """Return the sentence on parameters of which neither the tests nor their base give a value."""
     text = not_given_text({name: getattr(case, name) for case in cases for name in case.not_given})
-    return [f"{text[0].upper()}{text[1:]}."] if text else []
+    if text:
+        return [f"{text[0].upper()}{text[1:]}."]
+    return []
 
 
 def _body_of(rows: TestTable, ends: Sequence[End], wanted: Collection[str]) -> str:
     """Return the body that failed in the tests; refuse a table in which both did."""
-    modes = {"wear"} if set(wanted) <= {"wear_coefficient"} else {"fatigue"}
+    if set(wanted) <= {"wear_coefficient"}:
+        modes = {"wear"}
+    else:
+        modes = {"fatigue"}
     failed = {end.body for end in ends if end.mode in modes and end.body}
     if len(failed) > 1:
         row = next(row for row, end in enumerate(ends) if end.mode in modes and end.body == "guide")
@@ -340,7 +357,9 @@ def _solved(rows: TestTable, cases: Sequence[Case], options: Mapping[str, Any], 
             raise rows.error(row, column, allowed, remedy, wrong)
         if solved.flags[row, BODIES.index(body)] & FLAG["static"]:
             stress = float(np.max(solved.stress[row, :, BODIES.index(body)]))
-            column = "radial_force" if "radial_force" in rows.rows[row] else "base"
+            column = "base"
+            if "radial_force" in rows.rows[row]:
+                column = "radial_force"
             wrong = f"gives the {body} a stress of {stress:.4g} MPa, above its tensile strength"
             raise rows.error(row, column, "loads under which the body does not break", "Correct the loads.", wrong)
     return solved
@@ -367,8 +386,12 @@ def _fatigue(
     prior: Mapping[str, Sequence[float]] | None,
 ) -> Group:
     """Return the line of fatigue of a body."""
-    k, b = material.woehler_exponent, BODIES.index(body)
-    stress, low, high, origin = [], [], [], []
+    k = material.woehler_exponent
+    b = BODIES.index(body)
+    stress = []
+    low = []
+    high = []
+    origin = []
     for row in rows:
         ended = ends[row].mode == "fatigue" and ends[row].body == body
         life = solved.stress[row, :, b] ** -k / solved.per_km[row, :, b]  # up to a factor [km]
@@ -379,7 +402,10 @@ def _fatigue(
         stated = rows.number(row, "contact", 1, 2)
         if stated not in (1, 2) and not math.isnan(stated):
             raise rows.error(row, "contact", "1 or 2, the contact that failed", "Correct the cell.")
-        contact = worse if math.isnan(stated) else int(stated) - 1
+        if math.isnan(stated):
+            contact = worse
+        else:
+            contact = int(stated) - 1
         for c in {contact, 1 - contact} if ended and not math.isnan(stated) else {contact}:
             here = ended and c == contact
             start, stop = travels[row]
@@ -401,14 +427,17 @@ def _fatigue_group(
     held: Mapping[str, float | None],
     prior: Mapping[str, Sequence[float]] | None,
 ) -> Group:
-    slope, scatter = held["slope"], held["scatter"]
+    slope = held["slope"]
+    scatter = held["scatter"]
     last = len(rows) - 1
     if not tests.failed.any() and (slope is None or scatter is None):
         remedy = "Hold slope and scatter (--slope 8 --scatter 4) for a one-sided bound, or test until a roller fails."
         raise rows.error(last, "end", "at least one end by fatigue of the body", remedy, "ends no test by fatigue")
     if slope is None and np.ptp(tests.stress[tests.failed]) < 1e-3:
         remedy = "Hold it (--slope 8), leave slope out of the fit, or test another load to failure."
-        column = "radial_force" if "radial_force" in rows.rows[last] else "base"
+        column = "base"
+        if "radial_force" in rows.rows[last]:
+            column = "radial_force"
         raise rows.error(last, column, "failures at two loads or more, from which the slope follows", remedy)
     if slope is None:
         check_falls(rows, tests, "travel_from", origin)
@@ -424,7 +453,8 @@ def _scatter_of(material: Material, held: float | None) -> float:
     """Return the standard deviation of ln N that is held, or that of a material."""
     if held is not None:
         return deviation_of(held)
-    t_n, t_s = material.scatter_in_cycles, material.scatter_in_stress
+    t_n = material.scatter_in_cycles
+    t_s = material.scatter_in_stress
     if t_n is None and t_s is None:
         remedy = "Hold it with --scatter 4 (scatter_in_cycles=4), or fit it as well."
         raise InputError(
@@ -504,7 +534,8 @@ def travels_to_depths(
 
 def worn_alone(case: Case, body: str) -> dict[str, Any]:
     """Return the fields of a case whose body wears with the unit coefficient, and whose other body hardly wears."""
-    values, database = {name: getattr(case, name) for name in FIELDS}, load_database()
+    values = {name: getattr(case, name) for name in FIELDS}
+    database = load_database()
     for own in BODIES:
         field = f"{own}_material"
         wears = {"wear_coefficient": UNIT_WEAR if own == body else 1e-6 * UNIT_WEAR}
@@ -514,7 +545,8 @@ def worn_alone(case: Case, body: str) -> dict[str, Any]:
 
 def _friction(rows: TestTable, cases: Sequence[Case], options: Mapping[str, Any]) -> Group:
     """Return the line of friction: ln of the coefficient by which each roller needs its measured drive force."""
-    found, used = [], []
+    found = []
+    used = []
     for row in rows:
         force = rows.number(row, "drive_force", LEAST)
         if math.isnan(force):
@@ -538,11 +570,15 @@ def _friction_of(rows: TestTable, row: int, case: Case, options: Mapping[str, An
     ds = solve([values | {"friction_coefficient": mu} for mu in FRICTIONS], **{**options, "outputs": ("forces",)})
     needed = np.abs(ds["transmitted_force"].values)
     rolls = np.isfinite(needed) & (ds["regime"].values == REGIMES.index("rolling"))
-    needed, coefficient = needed[rolls], np.array(FRICTIONS)[rolls]
+    needed = needed[rolls]
+    coefficient = np.array(FRICTIONS)[rolls]
     rising = np.concatenate([[True], np.diff(np.maximum.accumulate(needed)) > 0])
-    needed, coefficient = needed[rising], coefficient[rising]
+    needed = needed[rising]
+    coefficient = coefficient[rising]
     if not needed.size or not needed[0] <= force <= needed[-1]:
-        allowed = f"a force from {needed.min():.3g} to {needed.max():.3g} N" if needed.size else "a roller that rolls"
+        allowed = "a roller that rolls"
+        if needed.size:
+            allowed = f"a force from {needed.min():.3g} to {needed.max():.3g} N"
         remedy = f"The model needs it for frictions from {FRICTIONS[0]} to {FRICTIONS[-1]}; check force and loads."
         raise rows.error(row, "drive_force", allowed, remedy)
     return float(np.interp(math.log(force), np.log(needed), np.log(coefficient)))

@@ -111,7 +111,10 @@ def fit_sn(  # noqa: PLR0913 - one argument for each choice of a fit
     tests = read_tests(table, NEEDED, COLUMNS, optional, OF_COUPONS)
     if load_type is not None:
         check_names("load type", [load_type], LOAD_TYPES)
-    ratio = math.nan if stress_ratio is None else finite_number(stress_ratio)
+    if stress_ratio is None:
+        ratio = math.nan
+    else:
+        ratio = finite_number(stress_ratio)
     if stress_ratio is not None and not ratio < 1.0:
         raise InputError("stress ratio", stress_ratio, "a finite number below 1", "Give -1 for full reversal.")
     tests = _of_group(tests, group)
@@ -124,7 +127,10 @@ def fit_sn(  # noqa: PLR0913 - one argument for each choice of a fit
         check_falls(tests, observed, "cycles")
     _check_identified(tests, observed, slope, scatter_in_cycles)
     meet = _limit_shows(observed) if knee is None else knee
-    held = None if scatter_in_cycles is None else deviation_of(scatter_in_cycles)
+    if scatter_in_cycles is None:
+        held = None
+    else:
+        held = deviation_of(scatter_in_cycles)
     line = Line(observed, slope=slope, scatter=held, knee=meet)
     _check_number(tests, line)
     priors = priors_of(prior)
@@ -157,9 +163,9 @@ def _check_number(tests: TestTable, line: Line) -> None:
 def _too_flat(field: str, slope: Any) -> InputError:
     """Return the error about a slope that no S-N line has, but Basquin's b = 1/k."""
     number = number_or_nan(slope)
-    meant = (
-        f"If Basquin's b is meant, the slope is k = 1/b: write {1.0 / abs(number):.3g}." if 0 < abs(number) < 1 else ""
-    )
+    meant = ""
+    if 0 < abs(number) < 1:
+        meant = f"If Basquin's b is meant, the slope is k = 1/b: write {1.0 / abs(number):.3g}."
     return InputError(field, slope, "a number of at least 1", meant)
 
 
@@ -174,7 +180,9 @@ def priors_of(given: Mapping[str, Sequence[float]] | None) -> dict[str, Normal]:
     for name, pair in given.items():
         low, high = PRIORS[name]
         first = "mean" if name == "slope" else "median"
-        second = "standard deviation" if name == "slope" else "standard deviation of ln"
+        second = "standard deviation of ln"
+        if name == "slope":
+            second = "standard deviation"
         allowed = f"[{first} from {low:.4g} to {high:.4g}, {second} from {LEAST_SPREAD:g} to {MOST_SPREAD:g}]"
         remedy = (
             f"For example [{EXAMPLES[name]}], on the command line --prior {name}={EXAMPLES[name].replace(' ', '')}."
@@ -257,13 +265,18 @@ def _read_ends(tests: TestTable) -> list[bool]:
     """Return which specimens failed, by the codes and words of the table."""
     column = _column_of_ends(tests)
     cells = [tests.text(row, column) for row in tests]
-    marks, found = only_marks(cells), []
+    marks = only_marks(cells)
+    found = []
     for row, cell in enumerate(cells):
         failed = has_failed(cell, column, marks)
         if failed is None:
-            yes = "yes for a failure" if column == "failed" else "yes for a run-out"
+            yes = "yes for a run-out"
+            if column == "failed":
+                yes = "yes for a failure"
             allowed = f"yes or no, 1 or 0, true or false, failed or run-out; {yes}"
-            remedy = "Correct the cell." if cell else "Fill the cell, or mark the others with x alone."
+            remedy = "Fill the cell, or mark the others with x alone."
+            if cell:
+                remedy = "Correct the cell."
             raise tests.error(row, column, allowed, remedy)
         found.append(failed)
     return found
@@ -275,7 +288,9 @@ def _read_as(tests: TestTable, failed: Sequence[bool]) -> list[str]:
     heads = {name: head for name, head in tests.heads.items() if name in (*NEEDED, "failed", "censored", "group")}
     if column in ("censored", "status", "note"):
         heads[column] = tests.heads.get(column, column)
-    said = [told_heads(heads, {"amplitude": " [MPa]"})] if heads else []
+    said = []
+    if heads:
+        said = [told_heads(heads, {"amplitude": " [MPa]"})]
     if column != "failed" or only_marks(tests.text(row, column) for row in tests):
         number = len(failed) - sum(failed)
         said.append(f"By the column '{tests.heads.get(column, column)}' {number} of {len(failed)} specimens ran out.")
@@ -284,7 +299,9 @@ def _read_as(tests: TestTable, failed: Sequence[bool]) -> list[str]:
 
 def _observed(tests: TestTable, factor: float, failed: Sequence[bool]) -> Tests:
     """Return amplitude and cycles of each row as logarithms."""
-    stress, low, high = [], [], []
+    stress = []
+    low = []
+    high = []
     for row in tests:
         amplitude = tests.number(row, "amplitude", LEAST_STRESS, MOST_STRESS)
         cycles = tests.number(row, "cycles", LEAST, MOST_CYCLES, STOPPED)
@@ -308,7 +325,11 @@ def _check_duplicates(tests: TestTable, failed: Sequence[bool]) -> None:
     seen: dict[tuple, int] = {}
     for row in tests:
         name = tests.text(row, "test")
-        key = ("test", name) if name else ("", *(tests.number(row, n) for n in ("amplitude", "cycles")))
+        key: tuple[object, ...]
+        if name:
+            key = ("test", name)
+        else:
+            key = ("", *(tests.number(row, n) for n in ("amplitude", "cycles")))
         if (name or failed[row]) and key in seen:
             other = tests.lines[seen[key]]
             remedy = "Remove one of the two; if both were tested, name them in a column `test`."

@@ -87,8 +87,14 @@ def fit_wear(
     group = wear_group(observed, observed, tuple(rows))
     given = {key: str(options.get(key, default)) for key, default in DEFAULTS.items() if key != "life_criterion"}
     notes = [f"The profile of the {body} was followed; the other body kept its profile."]
-    own = case.roller_material if body == "roller" else case.guide_material
-    base_name = own if isinstance(own, str) else getattr(own, "name", "material")
+    if body == "roller":
+        own = case.roller_material
+    else:
+        own = case.guide_material
+    if isinstance(own, str):
+        base_name = own
+    else:
+        base_name = getattr(own, "name", "material")
     given |= {"body": body}
     told = not_given_notes([case])
     return Fit("wear", name or f"{base_name} worn", (group,), rows, like or base_name, given, notes, told)
@@ -116,10 +122,12 @@ def followed(values: Mapping[str, Any], options: Mapping[str, Any], body: str, d
     own = {name: value for name, value in options.items() if name not in ("normal", "outputs", "life_criterion")}
     case = {**values, "permissible_wear_depth": 1.001 * float(depths.max())}
     ds = wear(case, f"{FARTHEST:g}km", outputs=("forces",), **own)
-    deep, travel = ds["groove_depth"].sel(body=body).max("contact").values, ds["travel"].values
+    deep = ds["groove_depth"].sel(body=body).max("contact").values
+    travel = ds["travel"].values
     grown = deep > 0
     # the depth grows as a power of the travel, so that logarithms are interpolated; the first part is a straight line
-    known_depth, known_travel = np.log(deep[grown]), np.log(travel[grown])
+    known_depth = np.log(deep[grown])
+    known_travel = np.log(travel[grown])
     before = np.minimum(np.log(depths) - known_depth[0], 0.0)
     found = np.exp(np.interp(np.log(depths), known_depth, known_travel) + before)
     return np.where(depths > (1.0 + REACHED) * deep.max(), np.nan, found)

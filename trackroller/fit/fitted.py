@@ -100,7 +100,9 @@ class Group:
 
     def estimate(self, name: str) -> float:
         """Return the value of the largest likelihood, NaN where the tests do not identify it."""
-        return math.nan if name in self.unidentified else float(self._of(name, self.line.best))
+        if name in self.unidentified:
+            return math.nan
+        return float(self._of(name, self.line.best))
 
     def values_of(self, name: str) -> np.ndarray:
         """Return a value by its name at the points of the posterior, in its unit."""
@@ -116,7 +118,10 @@ class Group:
             return self.scale * np.exp(-values.level)
         if name == "friction_coefficient":
             return np.exp(values.level)
-        deviation = values.log_limit_scatter if name == "scatter_in_stress" else values.log_scatter
+        if name == "scatter_in_stress":
+            deviation = values.log_limit_scatter
+        else:
+            deviation = values.log_scatter
         return np.exp(math.log(ln_range(1.0)) * np.exp(deviation))
 
     def interval(self, name: str, confidence: float = CONFIDENCE) -> Interval:
@@ -330,13 +335,15 @@ class Fit:
         failure_probability = share("failure_probability", failure_probability)
         confidence = share("confidence", confidence)
         quantity = str(quantity)
-        if quantity in ("cycles", "amplitude"):
+        purpose = f"the interval of {quantity}"
+        if quantity == "cycles":
+            stress = math.log(_positive("amplitude", amplitude, purpose))
             line = self.group("fatigue").line
-            given, name = (amplitude, "amplitude") if quantity == "cycles" else (cycles, "cycles")
-            number = _positive(name, given, f"the interval of {quantity}")
-            call = line.interval_of_life if quantity == "cycles" else line.interval_of_strength
-            found = call(math.log(number), failure_probability, confidence)
-            return Interval(*(float(np.exp(end)) for end in found))
+            return _unlogged(line.interval_of_life(stress, failure_probability, confidence))
+        if quantity == "amplitude":
+            life = math.log(_positive("cycles", cycles, purpose))
+            line = self.group("fatigue").line
+            return _unlogged(line.interval_of_strength(life, failure_probability, confidence))
         name = SPOKEN.get(quantity, quantity)
         known = {n: own for own in self.groups for n in own.names}
         check_names("quantity", [name], (*known, "cycles", "amplitude"))
@@ -413,7 +420,9 @@ class Fit:
             raise InputError("like", None, "a material whose E, Poisson's ratio and R_m the new one takes", remedy)
         place = posterior_path(file, self.name)
         self._check_file(place)
-        digest = f", sha256 {self.tests.digest[:16]}" if self.tests.digest else ""
+        digest = ""
+        if self.tests.digest:
+            digest = f", sha256 {self.tests.digest[:16]}"
         under = "; ".join(f"{key} {value}" for key, value in self.given.items())
         source = f"fit of {len(self.tests)} tests, {self.tests.name}{digest}"
         with all_or_none(place, own_file(file)):
@@ -452,10 +461,21 @@ def share(field: str, value: Any) -> float:
     return number
 
 
+def _unlogged(interval: Interval) -> Interval:
+    """Return the interval of a value from that of its logarithm."""
+    return Interval(*(float(np.exp(end)) for end in interval))
+
+
 def _positive(name: str, value: Any, purpose: str) -> float:
     """Return an amplitude [MPa] or a number of cycles; refuse other values."""
-    unit, low, high = ("MPa", LEAST_STRESS, MOST_STRESS) if name == "amplitude" else ("-", 1.0, MOST_CYCLES)
-    number = math.nan if value is None else finite_number(value, unit, name)
+    if name == "amplitude":
+        unit, low, high = "MPa", LEAST_STRESS, MOST_STRESS
+    else:
+        unit, low, high = "-", 1.0, MOST_CYCLES
+    if value is None:
+        number = math.nan
+    else:
+        number = finite_number(value, unit, name)
     if not low <= number <= high:
         shown = " MPa" if name == "amplitude" else ""
         raise InputError(name, value, f"a finite number from {low:g} to {high:g}{shown}, for {purpose}")

@@ -123,7 +123,8 @@ def has_failed(text: str, column: str, marks: bool) -> bool | None:
     marks : bool
         Whether the column only marks cells, so that an empty one says no.
     """
-    word, code = _joined(text), text.strip().lower()
+    word = _joined(text)
+    code = text.strip().lower()
     if word in FAILED or word in WHOLE:
         return word in FAILED
     if code in YES or code in NO or (not code and marks):
@@ -145,4 +146,6 @@ def told_heads(heads: Mapping[str, str], units: Mapping[str, str]) -> str:
     """Return a sentence on heads, by column, that were read as another name of it; '' without such a head."""
     meaning = {"censored": "the opposite of failed"}
     parts = [f"'{head}' as {meaning.get(column, column)}{units.get(column, '')}" for column, head in heads.items()]
-    return f"Columns were read by other names: {listing(parts)}." if parts else ""
+    if parts:
+        return f"Columns were read by other names: {listing(parts)}."
+    return ""

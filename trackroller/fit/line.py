@@ -136,9 +136,18 @@ class Line:
     @cached_property
     def free(self) -> tuple[str, ...]:
         """Return the names of the values that are fitted."""
-        held = {"slope"} if self.slope is not None or not self.sloped else set()
-        held |= {"log_scatter"} if self.scatter is not None else set()
-        held |= set() if self.knee else {"log_limit", "log_limit_scatter"}
+        if self.slope is not None or not self.sloped:
+            held = {"slope"}
+        else:
+            held = set()
+        if self.scatter is not None:
+            held |= {"log_scatter"}
+        else:
+            held |= set()
+        if self.knee:
+            held |= set()
+        else:
+            held |= {"log_limit", "log_limit_scatter"}
         return tuple(name for name in NAMES if name not in held)
 
     @cached_property
@@ -150,18 +159,26 @@ class Line:
     @property
     def size(self) -> int:
         """Return the number of specimens."""
-        return len(self.tests.stress) if self.specimens is None else self.specimens
+        if self.specimens is None:
+            return len(self.tests.stress)
+        return self.specimens
 
     @cached_property
     def reference(self) -> float:
         """Return ln S_0: the mean of ln S over the failures, over all tests if none failed."""
-        own = self.tests.stress[self.tests.failed] if self.tests.failed.any() else self.tests.stress
+        if self.tests.failed.any():
+            own = self.tests.stress[self.tests.failed]
+        else:
+            own = self.tests.stress
         return float(own.mean())
 
     @cached_property
     def _held(self) -> np.ndarray:
         """Return the values that are held, NaN for free ones, as `Values` orders them."""
-        slope = 0.0 if not self.sloped else math.nan if self.slope is None else self.slope
+        if not self.sloped:
+            slope = 0.0
+        else:
+            slope = math.nan if self.slope is None else self.slope
         return np.array([math.nan, slope, math.nan if self.scatter is None else math.log(self.scatter), 0.0, 0.0])
 
     @cached_property
@@ -201,18 +218,23 @@ class Line:
     def _of_points(self, points: np.ndarray) -> np.ndarray:
         """Return ln L at a list of points, (m,)."""
         v = Values(*(np.asarray(value)[:, None] for value in self.values(points)))
-        total, scatter = np.zeros(len(points)), np.exp(v.log_scatter)
+        total = np.zeros(len(points))
+        scatter = np.exp(v.log_scatter)
         for kind, (x, low, high, times) in self._distinct.items():
             mean = v.level - v.slope * (x - self.reference)
             above = (low - mean) / scatter
             if kind == "observed":
                 part = -0.5 * above**2 - v.log_scatter
             else:
-                part = log_ndtr(-above) if kind == "suspended" else _between(above, (high - mean) / scatter)
+                if kind == "suspended":
+                    part = log_ndtr(-above)
+                else:
+                    part = _between(above, (high - mean) / scatter)
             if self.knee:
                 excess = (x - v.log_limit) / np.exp(v.log_limit_scatter)
                 part = part + log_ndtr(excess)
-                part = np.logaddexp(log_ndtr(-excess), part) if kind == "suspended" else part
+                if kind == "suspended":
+                    part = np.logaddexp(log_ndtr(-excess), part)
             total += part @ times
         return total
 
@@ -281,21 +303,34 @@ class Line:
 
     def _starts(self) -> list[np.ndarray]:
         """Return places to start from: the regression of the failures, with steeper slopes beside it."""
-        lowest, failed = self.tests.stress.min(), self.tests.failed
-        limit = lowest - 0.05 if failed.all() else float(np.median(self.tests.stress[~failed]))
+        lowest = self.tests.stress.min()
+        failed = self.tests.failed
+        if failed.all():
+            limit = lowest - 0.05
+        else:
+            limit = float(np.median(self.tests.stress[~failed]))
         return [self._point(own._replace(log_limit=limit)) for own in self._lines_of_failures((5.0, 12.0))]
 
     def _lines_of_failures(self, slopes: Sequence[float]) -> list[Values]:
         """Return lines through the middle of the failures: that of the regression, and those of given slopes."""
-        x, y, failed = self.tests.stress - self.reference, self.tests.middle, self.tests.failed
+        x = self.tests.stress - self.reference
+        y = self.tests.middle
+        failed = self.tests.failed
         own = failed if failed.any() else np.ones_like(failed)
         x, y = x[own], y[own]
         spread = float(((x - x.mean()) ** 2).sum())
-        fitted = -float((x * (y - y.mean())).sum()) / spread if spread > 1e-12 else 8.0
-        tried = [fitted, *slopes] if self.slope is None else [self.slope]
+        fitted = 8.0
+        if spread > 1e-12:
+            fitted = -float((x * (y - y.mean())).sum()) / spread
+        if self.slope is None:
+            tried = [fitted, *slopes]
+        else:
+            tried = [self.slope]
         found = []
         for slope in tried if self.sloped else [0.0]:
-            held = float(np.clip(slope, *BOUNDS["slope"])) if self.sloped else 0.0
+            held = 0.0
+            if self.sloped:
+                held = float(np.clip(slope, *BOUNDS["slope"]))
             along = y + held * x
             scatter = max(float(np.std(along)), 0.1)
             found.append(Values(float(along.mean()), held, math.log(scatter), 0.0, math.log(0.05)))
@@ -418,7 +453,9 @@ class Line:
         goal = self._goal(confidence)
         profile = self._profile(0, level, goal)
         likely, step = max((profile(straight + step, start[1:])[0], step) for step in STEPS)
-        return [(straight + step, start)] if likely >= goal else []
+        if likely >= goal:
+            return [(straight + step, start)]
+        return []
 
     def _endless(self, log_stress: float, probability: float) -> float:
         """Return the largest ln L of lines whose fatigue limit at a failure probability is a stress."""
@@ -472,7 +509,8 @@ class Line:
         low, high = self.bounds[name]
         begins = [(float(point[place]), point) for point in self._likely(confidence)]
         found = self._ends(begins, place, _itself, confidence)
-        open_low, open_high = found.low <= low, found.high >= high
+        open_low = found.low <= low
+        open_high = found.high >= high
         return Interval(low if open_low else found.low, high if open_high else found.high)
 
     def _ends(
@@ -487,7 +525,10 @@ class Line:
         if not self.tests.failed.any():
             return self._without_failures(place, solved, confidence)
         goal = self._goal(confidence)
-        bounds = self.limits[place] if place else (-math.inf, math.inf)
+        if place:
+            bounds = self.limits[place]
+        else:
+            bounds = -math.inf, math.inf
         profile = self._profile(place, solved, goal)
         low, high = math.inf, -math.inf
         for value, point in begins:
@@ -529,7 +570,8 @@ class Line:
         """Return the one-sided bound of a level that no failure has bounded from above."""
         if len(self.free) > 1 or place:
             return Interval(-math.inf, math.inf)
-        goal, none = math.log(0.5 - 0.5 * confidence), np.empty(0)
+        goal = math.log(0.5 - 0.5 * confidence)
+        none = np.empty(0)
 
         def excess(value: float) -> float:
             return float(self.log_likelihood(np.atleast_1d(solved(value, none)))) - goal
@@ -568,13 +610,17 @@ def least(loss: Callable[[np.ndarray], np.ndarray], start: np.ndarray, limits: n
 
 def expanded(loss: Callable[[np.ndarray], np.ndarray], point: np.ndarray) -> tuple[float, np.ndarray, np.ndarray]:
     """Return value, gradient and second derivatives of a function at a point, by central differences."""
-    n, unit = len(point), STEP * np.eye(len(point))
+    n = len(point)
+    unit = STEP * np.eye(len(point))
     first, second = np.triu_indices(n, 1)
-    both, apart = unit[first] + unit[second], unit[first] - unit[second]
+    both = unit[first] + unit[second]
+    apart = unit[first] - unit[second]
     places = np.concatenate([np.zeros((1, n)), unit, -unit, both, -both, apart, -apart])
     values = np.nan_to_num(loss(point + places), nan=LARGE, posinf=LARGE)
     m = len(first)
-    up, down, crossed = values[1 : n + 1], values[n + 1 : 2 * n + 1], values[2 * n + 1 :]
+    up = values[1 : n + 1]
+    down = values[n + 1 : 2 * n + 1]
+    crossed = values[2 * n + 1 :]
     curvature = np.diag((up + down - 2.0 * values[0]) / STEP**2)
     mixed = (crossed[:m] + crossed[m : 2 * m] - crossed[2 * m : 3 * m] - crossed[3 * m :]) / (4.0 * STEP**2)
     curvature[first, second] = curvature[second, first] = mixed
@@ -608,7 +654,9 @@ def _end(
     bounds: tuple[float, float] | np.ndarray,
 ) -> float:
     """Return one end of an interval: step outward until the profile lies below its goal, then close in."""
-    step, inner, start = 0.1, best, others
+    step = 0.1
+    inner = best
+    start = others
     while True:
         outer = inner + side * step
         if not bounds[0] < outer < bounds[1]:
@@ -618,7 +666,9 @@ def _end(
         value, found = profile(outer, start)
         if value < goal:
             break
-        inner, start, step = outer, found, 2.0 * step
+        inner = outer
+        start = found
+        step = 2.0 * step
         if abs(inner - best) > FARTHEST:
             return side * math.inf
     for _ in range(40):
@@ -626,5 +676,8 @@ def _end(
         if abs(outer - inner) < 1e-4 * max(1.0, abs(inner - best)):
             break
         value, found = profile(middle, start)
-        inner, outer, start = (middle, outer, found) if value >= goal else (inner, middle, start)
+        if value >= goal:
+            inner, outer, start = middle, outer, found
+        else:
+            inner, outer, start = inner, middle, start
     return 0.5 * (inner + outer)

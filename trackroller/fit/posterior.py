@@ -102,9 +102,15 @@ def log_prior(line: Line, points: np.ndarray, priors: Mapping[str, Normal], at: 
     limit, or of the strength at the cycles `at` of a line without one.
     """
     values = line.values(points)
-    density = -np.log(values.slope) if line.sloped and "slope" in line.free else np.zeros(np.shape(values.level))
+    if line.sloped and "slope" in line.free:
+        density = -np.log(values.slope)
+    else:
+        density = np.zeros(np.shape(values.level))
     for name, prior in priors.items():
-        value = log_strength(line, values, at) if name == "log_strength" else getattr(values, name)
+        if name == "log_strength":
+            value = log_strength(line, values, at)
+        else:
+            value = getattr(values, name)
         density = density + prior.log_density(np.asarray(value))
     return np.asarray(density)
 
@@ -137,14 +143,16 @@ def posterior(line: Line, priors: Mapping[str, Normal] | None = None, at: float 
     -----
     ASSUME: the values lie within the bounds of `trackroller.fit.line.BOUNDS`.
     """
-    priors, p = dict(priors or {}), len(line.free)
+    priors = dict(priors or {})
+    p = len(line.free)
 
     def density(points: np.ndarray) -> np.ndarray:
         inside = ((points >= line.limits[:, 0]) & (points <= line.limits[:, 1])).all(axis=-1)
         clipped = np.clip(points, *line.limits.T)
         return np.where(inside, line.log_likelihood(clipped) + log_prior(line, clipped, priors, at), -np.inf)
 
-    middle, factor = line.estimate, _factor(line)
+    middle = line.estimate
+    factor = _factor(line)
     for count in (COARSE,) * ROUNDS + (FINE,):
         standard, log_proposal = _standard_points(p, count)
         points = middle + WIDER * standard @ factor.T

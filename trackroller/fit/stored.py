@@ -82,7 +82,10 @@ def stored_fit(name: str, values: Mapping[str, Any], file: Path | None = None) -
         If the file of the fit cannot be read.
     """
     file = find_user_file() if file is None else file
-    path = None if file is None else posterior_path(file, name)
+    if file is None:
+        path = None
+    else:
+        path = posterior_path(file, name)
     if path is None or not path.is_file():
         return None
     try:
@@ -113,7 +116,8 @@ def fits_of_case(ds: xr.Dataset) -> tuple[dict[str, StoredFit], dict[str, str]]:
     tuple of dict
         Fits by body; and for a material whose fit had other options, these options in words.
     """
-    found, others = {}, {}
+    found = {}
+    others = {}
     for body in BODIES:
         values = materials_of(ds)[f"{body}_material"]
         fit = stored_fit(str(values.get("name", "")), values)

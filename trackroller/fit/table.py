@@ -50,7 +50,9 @@ class TestTable:
     @property
     def name(self) -> str:
         """Return the name of the file, or what stands for it."""
-        return "a data frame" if self.path is None else self.path.name
+        if self.path is None:
+            return "a data frame"
+        return self.path.name
 
     def error(self, row: int, column: str, allowed: str, remedy: str = "", wrong: str = "") -> InputError:
         """Return an error that names row and column.
@@ -66,12 +68,17 @@ class TestTable:
         """
         value = self.rows[row].get(column, "")
         head = self.heads.get(column, column)
-        place = head if self.path is not None else f"row {self.lines[row]}, {head}"
+        if self.path is not None:
+            place = head
+        else:
+            place = f"row {self.lines[row]}, {head}"
         return self.placed(InputError(place, value, allowed, remedy, wrong), self.lines[row])
 
     def placed(self, error: InputError, line: int = 0) -> InputError:
         """Return an error with the file of the table and a line of it, 0 for the table as a whole."""
-        return error if self.path is None else error.at(self.path, line)
+        if self.path is None:
+            return error
+        return error.at(self.path, line)
 
     def number(
         self,
@@ -120,7 +127,9 @@ class TestTable:
 
 LEAST = 1e-300  # smallest number above 0
 # more or less is a mistake: 30,000 years at 1 kHz, and stresses below any load cell and above any strength [MPa]
-MOST_CYCLES, LEAST_STRESS, MOST_STRESS = 1e15, 1e-3, 1e5
+MOST_CYCLES = 1e15
+LEAST_STRESS = 1e-3
+MOST_STRESS = 1e5
 MISSING = ("NAType", "NaTType")  # types of the values of pandas that say that a cell is empty
 
 
@@ -128,12 +137,16 @@ def _allowed_number(unit: str, lower: float, upper: float) -> str:
     """Return which numbers are allowed in words; the unit has a blank before it, or is ''."""
     if LEAST < lower and upper < math.inf:
         return f"a finite number from {lower:g} to {upper:g}{unit}"
-    words = f"a finite number in{unit}" if unit else "a finite number"
+    words = "a finite number"
+    if unit:
+        words = f"a finite number in{unit}"
     if lower == LEAST:
         words += " above 0"
     elif lower > -math.inf:
         words += f" of at least {lower:g}{unit}"
-    return f"{words} and of at most {upper:g}{unit}" if upper < math.inf else words
+    if upper < math.inf:
+        return f"{words} and of at most {upper:g}{unit}"
+    return words
 
 
 def _is_empty(cell: Any) -> bool:
@@ -178,7 +191,8 @@ def read_tests(
     if isinstance(table, (str, Path)):
         found, place = _tests_of_file(Path(table), known, optional, others)
     else:
-        found, place = _from_rows(table, known, others), 0
+        found = _from_rows(table, known, others)
+        place = 0
     names = list(dict.fromkeys(name for row in found.rows for name in row))
     wrong = Collector()
     for name in names:

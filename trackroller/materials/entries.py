@@ -59,7 +59,9 @@ class EntryParser:
     def source(self, text: str) -> str:
         """Return the full reference of a source, or of several separated by ', '; otherwise the text itself."""
         parts = text.split(", ")
-        return "; ".join(self.sources[p] for p in parts) if all(p in self.sources for p in parts) else text
+        if all(p in self.sources for p in parts):
+            return "; ".join(self.sources[p] for p in parts)
+        return text
 
     def value(self, prop: Parameter, entry: Any, where: str) -> Value:
         """Return a checked value with its unit and source.
@@ -100,7 +102,9 @@ class EntryParser:
         if not isinstance(placeholder, bool):
             raise InputError(f"{field}.placeholder", placeholder, "true or false")
         number = check_number(prop, entry["value"], where, unit)
-        source = self.source(str(entry["source"])) if entry.get("source") else "not given"
+        source = "not given"
+        if entry.get("source"):
+            source = self.source(str(entry["source"]))
         note = str(entry.get("note") or "")
         span = self.range(prop, entry.get("range"), where, number, unit)
         return Value(number, prop.unit, source, placeholder, note, self.origin, span)
@@ -209,16 +213,20 @@ class EntryParser:
         """
         if entry.get(POINTS) is not None:
             return self._line_by_points(where, entry, given)
-        own, inherited = given.keys() & {*CURVE, *FREE}, base.sn_points if base else ()
+        own = given.keys() & {*CURVE, *FREE}
+        inherited = base.sn_points if base else ()
         if not own:
             return inherited, None
         if not own <= set(FREE) or not (inherited or own == set(FREE)):
             return (), None
         if len(inherited) > 2 and own != set(FREE):
             wrong = f"would change a part of the {POINTS} of the material that it changes"
-            name, allowed = min(own), f"{', '.join(FREE)} together"
+            name = min(own)
+            allowed = f"{', '.join(FREE)} together"
             raise InputError(f"{where}.{name}", given[name].value, allowed, f"Or give {POINTS}.", wrong)
-        strength = given[STRENGTH].value if STRENGTH in given else getattr(base, STRENGTH, None)
+        strength = getattr(base, STRENGTH, None)
+        if STRENGTH in given:
+            strength = given[STRENGTH].value
         if strength is None:
             return (), None
         limit, knee, exponent = (given[name].value if name in given else getattr(base, name) for name in FREE)
@@ -230,7 +238,10 @@ class EntryParser:
         self, where: str, entry: Mapping[Any, Any], given: Mapping[str, Value]
     ) -> tuple[Points, dict[str, Value]]:
         """Return the points that an entry gives, and a value that holds their source and mark by names of `CURVE`."""
-        record = entry[POINTS] if isinstance(entry[POINTS], Mapping) else {"value": entry[POINTS]}
+        if isinstance(entry[POINTS], Mapping):
+            record = entry[POINTS]
+        else:
+            record = {"value": entry[POINTS]}
         check_names(f"{where}.{POINTS}: key", record, ("value", "unit", "source", "placeholder", "note"))
         points = read_points(record.get("value"), where, str(record.get("unit", "MPa")))
         mark = {key: record[key] for key in ("source", "placeholder", "note") if key in record}
@@ -245,7 +256,8 @@ class EntryParser:
 
     def _given(self, where: str, entry: Mapping[Any, Any], known: Mapping[str, Material]) -> dict[str, Value]:
         """Return the numbers that an entry gives; raise the errors of all its fields together."""
-        wrong, given = Collector(), {}
+        wrong = Collector()
+        given = {}
         with wrong.part():
             check_fields(f"{where}: field", entry, (*NUMBERS, *TEXTS, POINTS, FIELD))
         for key in TEXTS:
@@ -290,7 +302,8 @@ class EntryParser:
             raise InputError(f"{where}.pair", pair, allowed, "Write pair: [metal, PA6].")
         where = f"{where}.{'-'.join(pair)}"
         given = {key: value for key, value in entry.items() if key != "pair"}
-        levels, wrong = {}, Collector()
+        levels = {}
+        wrong = Collector()
         with wrong.part():
             check_names(f"{where}: {kind}", given, keys)
         for key in filter(given.__contains__, keys):

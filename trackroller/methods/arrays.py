@@ -46,13 +46,16 @@ class Coded(Method):
         "interaction": Index("two-factor interaction effect", sized=True, signed=True),
         "r_squared": Index("share of variance fitted"),
     }
-    headline, judged = "effect", ()
+    headline = "effect"
+    judged = ()
     needs = "enough rows for the fitted polynomial"
     rows: Callable[[int], np.ndarray]
 
     def values(self, factor: Factor, places: np.ndarray) -> np.ndarray:
         """Return the values at codes from -1 to 1, or listed values by index."""
-        return factor.take(places) if factor.discrete else factor.from_unit((places + 1) / 2, self.tail)
+        if factor.discrete:
+            return factor.take(places)
+        return factor.from_unit((places + 1) / 2, self.tail)
 
     def draw(self, free: Factors, n: int, seed: int, settings: Settings) -> Drawn:
         """Return codes of the continuous factors, crossed with indices of the others."""
@@ -237,7 +240,10 @@ def plackett_burman(count: int) -> np.ndarray:
     from scipy.linalg import hadamard  # heavy, as above
 
     order = next(m for m in (2, 4, 8, 12, 16, 20, 24, 32, 44, 48) if m > count)
-    matrix = hadamard(order, float) if order & (order - 1) == 0 else _paley(order)
+    if order & (order - 1) == 0:
+        matrix = hadamard(order, float)
+    else:
+        matrix = _paley(order)
     half = matrix[:, 1 : count + 1]
     return np.concatenate([half, -half])
 
@@ -292,7 +298,8 @@ def effects(y: np.ndarray, coded: np.ndarray, listed: np.ndarray, quadratic: boo
     out["r_squared"] = np.array(1 - (residual @ residual) / ((y - y.mean()) ** 2).sum())
     for i in range(count):
         contrast = _contrast(i, bool(listed[i]), terms, beta)
-        size, half = contrast @ beta, wide * np.sqrt(contrast @ covariance @ contrast)
+        size = contrast @ beta
+        half = wide * np.sqrt(contrast @ covariance @ contrast)
         out["effect"][i], out["effect_low"][i], out["effect_high"][i] = size, size - half, size + half
     for p, term in enumerate(terms):
         if term[0] == "square":

@@ -66,7 +66,8 @@ def delta(y: np.ndarray, x: np.ndarray, ordered: bool = True, seed: int = 0) -> 
     own rows times sqrt(1 - overfit). The interval reaches at least up to the noise. It covers the true delta of
     normal pairs in 90 to 100 % of samples.
     """
-    x_cells, y_cells = _cells(x, CELLS_X, ordered), _cells(y, CELLS_Y, True)
+    x_cells = _cells(x, CELLS_X, ordered)
+    y_cells = _cells(y, CELLS_Y, True)
     pairs = _kernels(x_cells, y_cells)
     held, own = _separation(x_cells, y_cells, pairs, seed)
     rows = len(y)
@@ -106,7 +107,9 @@ def _kernels(x: _Cells, y: _Cells) -> list[tuple[np.ndarray, np.ndarray]]:
     """Return the smoothing matrices along x and y for each width; the unit matrix along a list."""
 
     def along(cells: _Cells, width: float) -> np.ndarray:
-        return _kernel(cells.number, width) if cells.smooth else np.eye(cells.number)
+        if cells.smooth:
+            return _kernel(cells.number, width)
+        return np.eye(cells.number)
 
     return [(along(x, width), along(y, width)) for width in (WIDTHS if x.smooth or y.smooth else WIDTHS[:1])]
 
@@ -116,16 +119,21 @@ def _separation(x: _Cells, y: _Cells, kernels: list[tuple[np.ndarray, np.ndarray
 
     The first number is the score on held-out rows, the second that on the rule's own rows.
     """
-    rows, size = len(x.place), x.number * y.number
+    rows = len(x.place)
+    size = x.number * y.number
     rng = np.random.default_rng(seed)
-    held, own = np.zeros(len(kernels)), np.zeros(len(kernels))
+    held = np.zeros(len(kernels))
+    own = np.zeros(len(kernels))
     for _ in range(ROUNDS):
         part = rng.permutation(rows) % FOLDS
         cell = (part * x.number + x.place) * y.number + y.place
         new = np.bincount(cell, minlength=FOLDS * size).reshape(FOLDS, x.number, y.number).astype(float)
-        whole, number = new.sum(axis=0), new.sum(axis=(1, 2))[:, None, None]
+        whole = new.sum(axis=0)
+        number = new.sum(axis=(1, 2))[:, None, None]
         unlinked = whole.sum(axis=1)[:, None] * whole.sum(axis=0) / rows**2
-        made, tried, all_rows = (whole - new) / (rows - number) - unlinked, new - number * unlinked, whole / rows
+        made = (whole - new) / (rows - number) - unlinked
+        tried = new - number * unlinked
+        all_rows = whole / rows
         for i, (along_x, along_y) in enumerate(kernels):
             rule = np.sign(along_x @ made @ along_y)
             held[i] += (rule * tried).sum() / (2 * rows * ROUNDS)

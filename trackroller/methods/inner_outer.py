@@ -52,5 +52,6 @@ class InnerOuter(Method):
         sides = np.repeat(index, sizes, axis=0), np.concatenate([sample[:size] for size in sizes])
         unit = in_order(np.concatenate(sides, axis=1), [*outer, *inner], free)
         meta |= more | {"outer": list(outer), "inner": list(inner), "inner_samples": n, "design_points": len(index)}
-        meta |= {"point_samples": sizes} if min(sizes) < n else {}
+        if min(sizes) < n:
+            meta |= {"point_samples": sizes}
         return unit, meta

@@ -57,7 +57,8 @@ def pairs(y: np.ndarray, unit: np.ndarray, ordered: np.ndarray, seed: int = 0) -
     good = np.flatnonzero(np.isfinite(y))
     if len(good) > MAX_ROWS:
         good = good[np.linspace(0, len(good) - 1, MAX_ROWS).astype(int)]
-    y, unit = y[good], unit[good]
+    y = y[good]
+    unit = unit[good]
     if count < 2 or len(y) < 30 or constant(y):
         return out
     y = (y - y.mean()) / y.std()
@@ -211,17 +212,22 @@ def _jackknife(y: np.ndarray, table: np.ndarray, term: np.ndarray, seed: int) ->
     The normal equations of all rows less those of a group are the normal equations without the group.
     """
     part = np.random.default_rng(seed).permutation(len(y)) % GROUPS
-    gram, moment = np.zeros((GROUPS, *[table.shape[1]] * 2)), np.zeros((GROUPS, table.shape[1]))
+    gram = np.zeros((GROUPS, *[table.shape[1]] * 2))
+    moment = np.zeros((GROUPS, table.shape[1]))
     for g in range(GROUPS):
         group = table[part == g]
         gram[g], moment[g] = group.T @ group, group.T @ y[part == g]
-    square, rows = np.bincount(part, y**2, GROUPS), np.bincount(part, minlength=GROUPS)
+    square = np.bincount(part, y**2, GROUPS)
+    rows = np.bincount(part, minlength=GROUPS)
     whole = gram.sum(axis=0), moment.sum(axis=0), square.sum(), rows.sum()
     share = _shares(*whole, term=term)
     sums = (gram, moment, square, rows)
     left = np.array([_shares(*(a - b[g] for a, b in zip(whole, sums, strict=True)), term=term) for g in range(GROUPS)])
     left = left[np.isfinite(left).all(axis=1)]
-    spread = ((left - left.mean(axis=0)) ** 2).sum(axis=0) if len(left) > 1 else np.full_like(share, np.nan)
+    if len(left) > 1:
+        spread = ((left - left.mean(axis=0)) ** 2).sum(axis=0)
+    else:
+        spread = np.full_like(share, np.nan)
     return share, Z * np.sqrt((len(left) - 1) / max(1, len(left)) * spread)
 
 

@@ -42,6 +42,9 @@ def narrowed(
         for number, values in enumerate(inner):
             held = [bool(next(answers)) for _ in values]
             line = [ends[number][0], *values, ends[number][1]]
-            last = held.index(False) if False in held else len(held)
+            if False in held:
+                last = held.index(False)
+            else:
+                last = len(held)
             ends[number] = line[last], line[last + 1]
     return ends

@@ -82,7 +82,9 @@ class Parameter:
             parts.append(f"not 0 (at least {SMALLEST:g}{unit} in size)")
         parts.append("finite or inf" if self.allow_infinite else "finite")
         number = f"a number for the {self.long_name} [{self.unit}], " + ", ".join(parts)
-        return f"{number}; or {', '.join(self.words[:-1])} or {self.words[-1]}" if self.words else number
+        if self.words:
+            return f"{number}; or {', '.join(self.words[:-1])} or {self.words[-1]}"
+        return number
 
     def remedy(self, value: float, written: object = None) -> str:
         """Return what to write instead of a value that is not allowed.
@@ -105,8 +107,13 @@ class Parameter:
             plain = plain_quantity(written)
             if plain:
                 return f"Write {plain}."
-        example = "" if math.isnan(self.default) else f", such as {self.default:g}"
-        left_out = "" if not self.allow_missing else ", or leave it out"
+        if math.isnan(self.default):
+            example = ""
+        else:
+            example = f", such as {self.default:g}"
+        left_out = ", or leave it out"
+        if not self.allow_missing:
+            left_out = ""
         return f"Write a number that is allowed{example}{left_out}."
 
     def accepts(self, value: np.ndarray | float) -> Any:
@@ -118,7 +125,10 @@ class Parameter:
 
     def _allows(self, v: Any, missing: Any, bounded: Any) -> Any:
         """Return whether a number, or which of an array of numbers, is allowed; see `accepts`."""
-        good = (v > self.lower) if self.open_lower else (v >= self.lower)
+        if self.open_lower:
+            good = v > self.lower
+        else:
+            good = v >= self.lower
         good = good & ((v < self.upper) if self.open_upper else (v <= self.upper))
         if self.nonzero:
             good = good & (abs(v) >= SMALLEST)

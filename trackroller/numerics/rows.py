@@ -27,7 +27,9 @@ def _names(kind: type) -> tuple[str, ...]:
 def _part(value: Any, index: Any) -> Any:
     if value is None:
         return None
-    return value.take(index) if isinstance(value, Rows) else value[index]
+    if isinstance(value, Rows):
+        return value.take(index)
+    return value[index]
 
 
 def distinct(objects: Iterable[Any]) -> tuple[list[Any], np.ndarray]:

@@ -68,7 +68,9 @@ def without_units(text: str, unit_of: Callable[[str], str | None], field: str) -
         check_hours(f"{number} {unit}", unit, wanted, field)
         return f"{name}{sign}{in_unit(float(number), unit, wanted, field):.15g}{end}"
 
-    return _COMPARED.sub(plain, text) if isinstance(text, str) else text
+    if isinstance(text, str):
+        return _COMPARED.sub(plain, text)
+    return text
 
 
 def check_hours(given: Any, unit: str, wanted: str, field: str) -> None:
@@ -122,7 +124,9 @@ def _registry() -> Any:
 @functools.lru_cache(maxsize=256)
 def _factor_and_offset(unit: str, wanted: str, field: str) -> tuple[float, float]:
     own = "" if wanted in PLAIN else wanted
-    remedy = f"Write a number in {own}, or with a unit such as '5 {own}'." if own else "Write a number without unit."
+    remedy = "Write a number without unit."
+    if own:
+        remedy = f"Write a number in {own}, or with a unit such as '5 {own}'."
     try:
         if not re.fullmatch(_UNIT, unit.strip(), re.ASCII):
             raise ValueError(unit)
@@ -135,7 +139,9 @@ def _factor_and_offset(unit: str, wanted: str, field: str) -> tuple[float, float
     target = _registry().Unit(_spelt(own))
     # radians are no dimension to pint, but an angle is no friction coefficient and 600 rpm are not 600/min
     if one.to_base_units().units != _registry().Quantity(1.0, target).to_base_units().units:
-        kind = f"a unit that can be converted to {own}" if own else "no unit, because the value is a plain number"
+        kind = "no unit, because the value is a plain number"
+        if own:
+            kind = f"a unit that can be converted to {own}"
         raise InputError(field, unit, kind, remedy)
     offset = zero.to(target).magnitude
     return one.to(target).magnitude - offset, offset

@@ -78,7 +78,9 @@ def settings_of(rung: str, rough_peaks: bool) -> Accuracy:
     """
     own = PRESETS[rung]
     coarser = PRESETS[RUNGS[max(RUNGS.index(rung) - 1, 0)]]
-    return replace(own, peak=coarser.peak, peak_elements=coarser.elements) if rough_peaks else own
+    if rough_peaks:
+        return replace(own, peak=coarser.peak, peak_elements=coarser.elements)
+    return own
 
 
 # Smallest tolerance of each quantity: most designs keep these, and no rung keeps much smaller ones.
@@ -114,7 +116,10 @@ class Tolerance:
             If a tolerance is smaller than `SMALLEST`, or belongs to a quantity that is not computed.
         """
         peaks = bool(PEAK_OUTPUTS & set(outputs))
-        asked = dict(value) if isinstance(value, Mapping) else dict.fromkeys(("forces", *("peak",) * peaks), value)
+        if isinstance(value, Mapping):
+            asked = dict(value)
+        else:
+            asked = dict.fromkeys(("forces", *("peak",) * peaks), value)
         for name, own in asked.items():
             if own < SMALLEST[name]:
                 best = ", ".join(f"{key}: {max(SMALLEST[key], number):g}" for key, number in asked.items())
@@ -135,4 +140,6 @@ class Tolerance:
 
 def tolerance_of(accuracy: Any, outputs: Iterable[str]) -> Tolerance | None:
     """Return the tolerances that a checked accuracy asks for, None for a rung and for settings."""
-    return None if isinstance(accuracy, (str, Accuracy)) else Tolerance.read(accuracy, outputs)
+    if isinstance(accuracy, (str, Accuracy)):
+        return None
+    return Tolerance.read(accuracy, outputs)

@@ -94,7 +94,9 @@ def split_field(name: str) -> tuple[str, str] | None:
 def field_of(name: str) -> Parameter | None:
     """Return the declaration of a field of a carriage, None for any other name."""
     found = split_field(name)
-    return None if found is None else (OF_WHOLE | OF_LOAD_CASE | OF_ROLLER)[found[0]]
+    if found is None:
+        return None
+    return (OF_WHOLE | OF_LOAD_CASE | OF_ROLLER)[found[0]]
 
 
 def parameter_of(name: str) -> Parameter | None:
@@ -104,7 +106,10 @@ def parameter_of(name: str) -> Parameter | None:
 
 def long_name_of(name: str) -> str:
     """Return the name of a factor for figures and reports, in which a load case or roller is named."""
-    known, place = parameter_of(name), (split_field(name) or ("", ""))[1]
+    known = parameter_of(name)
+    place = (split_field(name) or ("", ""))[1]
     if known is None:
         return name.replace("_", " ")
-    return f"{known.long_name}, {place}" if place else known.long_name
+    if place:
+        return f"{known.long_name}, {place}"
+    return known.long_name

@@ -39,7 +39,10 @@ def not_given(named: Iterable[str]) -> dict[str, Any]:
         Parameters that the file names; `material_pair` stands for both materials.
     """
     named = set(named)
-    both = set(_PAIR) if "material_pair" in named else set()
+    if "material_pair" in named:
+        both = set(_PAIR)
+    else:
+        both = set()
     return {
         name: str(value) if isinstance(value, str) else float(value)
         for name, value in EXAMPLE.items()
@@ -58,15 +61,26 @@ def used_of(values: Mapping[str, Any], names: Iterable[str]) -> dict[str, Any]:
         Parameters that were not given.
     """
     profile = values.get("roller_profile")
-    levels = profile.get("values", [profile]) if isinstance(profile, Mapping) else getattr(profile, "levels", [profile])
-    drawn = {"roller_profile_radius"} if all(levels) else set()
+    if isinstance(profile, Mapping):
+        levels = profile.get("values", [profile])
+    else:
+        levels = getattr(profile, "levels", [profile])
+    if all(levels):
+        drawn = {"roller_profile_radius"}
+    else:
+        drawn = set()
     return {name: values[name] for name in names if name not in drawn}
 
 
 def with_unit(name: str, value: Any) -> str:
     """Return a parameter with its value and unit, such as 'motor_force -30 N'."""
-    unit = PARAMETERS[name].unit if name in PARAMETERS else "-"
-    shown = f"{value:g}" if isinstance(value, (int, float)) else str(value)
+    unit = "-"
+    if name in PARAMETERS:
+        unit = PARAMETERS[name].unit
+    if isinstance(value, (int, float)):
+        shown = f"{value:g}"
+    else:
+        shown = str(value)
     return f"{name} {shown}" + ("" if unit == "-" else f" {unit}")
 
 

@@ -16,7 +16,7 @@ import ast
 import math
 import re
 import warnings
-from collections.abc import Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from functools import lru_cache, reduce
 from typing import Any
@@ -199,7 +199,10 @@ def comparisons(text: str, field: str) -> tuple[Comparison, ...]:
         If the text is not such a condition.
     """
     tree = _parse(text, field)
-    parts = tree.values if isinstance(tree, ast.BoolOp) and isinstance(tree.op, ast.Or) else [tree]
+    if isinstance(tree, ast.BoolOp) and isinstance(tree.op, ast.Or):
+        parts = tree.values
+    else:
+        parts = [tree]
     compared = []
     for part in parts:
         if not isinstance(part, ast.Compare) or len(part.ops) != 1 or type(part.ops[0]) not in _COMPARE:
@@ -238,8 +241,10 @@ def _tree(text: str, field: str) -> ast.expr:
 def _names(node: ast.AST) -> set[str]:
     if isinstance(node, ast.Name):
         return {node.id} - set(CONSTANTS)
-    children = node.args if isinstance(node, ast.Call) else ast.iter_child_nodes(node)
-    return set().union(*map(_names, children))
+    parts: Iterable[ast.AST] = ast.iter_child_nodes(node)
+    if isinstance(node, ast.Call):
+        parts = node.args
+    return set().union(*map(_names, parts))
 
 
 def _number(value: Any) -> np.ndarray | None:
@@ -267,7 +272,9 @@ def _truth(value: Any) -> _Truth | None:
     if isinstance(value, _Truth):
         return value
     array = np.asarray(value)
-    return _Truth(array, np.ones(array.shape, dtype=bool)) if array.dtype == bool else None
+    if array.dtype == bool:
+        return _Truth(array, np.ones(array.shape, dtype=bool))
+    return None
 
 
 @dataclass(frozen=True)
@@ -295,11 +302,17 @@ class _Evaluation:
             case ast.UnaryOp(op=ast.UAdd(), operand=operand):
                 return self.applied(np.positive, [operand], node)
             case ast.Call(func=ast.Name(id=name), args=args, keywords=[]) if name in FUNCTIONS:
-                function, arity = FUNCTIONS[name]
-                if len(args) != arity or any(isinstance(arg, ast.Starred) for arg in args):
-                    raise self.refused(node, f"{name} with {len(args)} arguments (it takes {arity})")
-                return self.applied(function, args, node) if function else self.chosen(args, node)
+                return self.called(name, args, node)
         return self.logic(node)
+
+    def called(self, name: str, args: list[ast.expr], node: ast.AST) -> Any:
+        """Return the value of a function of `FUNCTIONS`."""
+        function, arity = FUNCTIONS[name]
+        if len(args) != arity or any(isinstance(arg, ast.Starred) for arg in args):
+            raise self.refused(node, f"{name} with {len(args)} arguments (it takes {arity})")
+        if function:
+            return self.applied(function, args, node)
+        return self.chosen(args, node)
 
     def constant(self, node: ast.Constant) -> float:
         """Return a number of the text as a float: powers of whole numbers could fill the memory."""
@@ -320,7 +333,9 @@ class _Evaluation:
                 truth = self.truth(operand)
                 return _Truth(~truth.holds, truth.known)
             case ast.BoolOp(op=op, values=parts):
-                join = np.logical_and if isinstance(op, ast.And) else np.logical_or
+                join: Callable[..., Any] = np.logical_or
+                if isinstance(op, ast.And):
+                    join = np.logical_and
                 return self.joined(join, [self.truth(part) for part in parts])
             case ast.Compare(left=left, ops=ops, comparators=rest) if all(type(op) in _COMPARE for op in ops):
                 sides = [self.value(part) for part in (left, *rest)]
@@ -366,7 +381,10 @@ class _Evaluation:
             raise self.refused(node, "where with a text beside a number")
         one, other = numbers or [np.asarray(text, dtype=object) for text in texts]
         chosen = np.where(truth.holds, one, other)
-        chosen[~np.broadcast_to(truth.known, chosen.shape)] = np.nan if numbers else None
+        if numbers:
+            chosen[~np.broadcast_to(truth.known, chosen.shape)] = np.nan
+        else:
+            chosen[~np.broadcast_to(truth.known, chosen.shape)] = None
         return chosen
 
     def compared(self, op: ast.cmpop, one: Any, other: Any, node: ast.AST) -> _Truth:

@@ -477,9 +477,7 @@ def roller(answer: Answer) -> Headline:
     if answer.kind in STOPS:
         return STOPS[answer.kind](answer)
     unsure = f"if the model holds ({listing(head['not_judged'])}: not judged), " if head["not_judged"] else ""
-    clauses = [*_open_limits(head), *_unknown_hours(head), *_required(answer)]
-    if head["state"]:
-        clauses[-1] += f": {head['state']}"
+    clauses = [*_open_limits(head), *_unknown_hours(answer), *_required_states(answer)]
     if answer.kind == "no_life":
         lasts = "no limit with hours is known"
     else:
@@ -531,9 +529,25 @@ def _open_limits(head: Mapping[str, Any]) -> list[str]:
     return [f"open by placeholders: {named}{more}"]
 
 
-def _unknown_hours(head: Mapping[str, Any]) -> list[str]:
+def _unknown_hours(answer: Answer) -> list[str]:
     """Say whose hours are not known; they count for nothing then."""
-    return [f"the hours of the {head['unknown']} are not known"] if head["unknown"] else []
+    head = answer.headline
+    clauses = [f"the hours of the {head['unknown']} are not known"] if head["unknown"] else []
+    if head["unrated"]:
+        whose = "" if len(head["unrated"]) > 1 else f" of the {head['unrated'][0]}"
+        clauses.append(f"fatigue{whose} at {percent(answer.facts['probability'])} failed is not known")
+    return clauses
+
+
+def _required_states(answer: Answer) -> list[str]:
+    """Return what is required of one roller, parted by whether it is met."""
+    clauses = []
+    for state in ("missed", "open", "met"):
+        states = zip(answer.required, answer.headline["states"], strict=True)
+        bounds = [_bound(one, answer.output[0]) for one, own in states if own == state]
+        if bounds:
+            clauses.append(f"required {listing(bounds)}: {state}")
+    return clauses
 
 
 def _failed(answer: Answer) -> Headline:

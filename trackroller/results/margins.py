@@ -363,7 +363,8 @@ def _of_loads(ranges: Limits, inputs: Mapping[str, Any]) -> list[Margin]:
         used = now / bound if bound else math.inf
         words = PARAMETERS["friction_coefficient"].long_name
         margin = Margin(name, word, title, "pair", now, bound, "1", words)
-        out.append(_with_use(margin, used) if math.isfinite(bound) else replace(margin, bound=f"{words}: none up to 2"))
+        none = replace(margin, state="kept", bound=f"{words}: none up to 2")
+        out.append(_with_use(margin, used) if math.isfinite(bound) else none)
     return out
 
 

@@ -34,7 +34,7 @@ from trackroller.study.store.folder import StudyFolder, Tell, unheard
 from trackroller.study.store.gather import gather
 from trackroller.study.store.identity import Cases
 from trackroller.study.store.ledger import Ledger
-from trackroller.study.store.manifest import put_text
+from trackroller.study.store.put import put_text
 
 TABLE, ELEMENTS = "kalker_table", "kalker"
 REPORTED = 10  # optima that are solved again at reference, spread along the front

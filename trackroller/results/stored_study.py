@@ -32,7 +32,8 @@ from trackroller.study.store.identity import Cases
 from trackroller.study.store.inputs import MATERIALS, study_of_folder
 from trackroller.study.store.labels import labelled
 from trackroller.study.store.ledger import Ledger
-from trackroller.study.store.manifest import STORE_FORMAT, digests_of
+from trackroller.study.store.manifest import digests_of
+from trackroller.study.store.mark import STORE_FORMAT
 from trackroller.study.store.netcdf import read_result
 from trackroller.study.store.provenance import DATE
 from trackroller.study.store.sources import solver_digest

@@ -53,7 +53,10 @@ def overridden(values: Mapping[str, Any], given: Mapping[str, Any]) -> dict[str,
         if name in values:
             radius(name, values[name])
     instead = {*given, *(RADII if "axis_distance" in given else ())}
-    instead |= {"axis_distance"} if set(RADII) & set(given) else set()
+    if set(RADII) & set(given):
+        instead |= {"axis_distance"}
+    else:
+        instead |= set()
     return renamed({name: value for name, value in values.items() if ALIASES.get(name, name) not in instead}) | given
 
 
@@ -98,7 +101,10 @@ def with_axis_distance(values: Mapping[str, Any], number: Any) -> dict[str, Any]
     known, wrong = {}, Collector()
     for name in (*RADII, "guide_profile_radius", "roller_profile_radius", "contact_angle"):
         with wrong.part():
-            known[name] = radius(name, values[name]) if name in RADII else number(name, values.get(name, EXAMPLE[name]))
+            if name in RADII:
+                known[name] = radius(name, values[name])
+            else:
+                known[name] = number(name, values.get(name, EXAMPLE[name]))
     wrong.check()
     axis = float(expressions.evaluate(AXIS_DISTANCE, known))
     if not math.isfinite(axis):

@@ -200,7 +200,9 @@ Write a number that is allowed, such as 30.
         values = mapping_of(values)
         if not isinstance(values, Mapping):
             several = isinstance(values, (list, tuple)) or hasattr(values, "columns")
-            remedy = "Give each of them alone; tr.solve takes several cases." if several else ""
+            remedy = ""
+            if several:
+                remedy = "Give each of them alone; tr.solve takes several cases."
             raise InputError("case", type(values).__name__, "one case: parameter names and their values", remedy)
         return cls(**{str(name): value for name, value in values.items()})
 
@@ -235,7 +237,9 @@ def _checked_word(name: str, value: Any) -> Any:
     if not isinstance(value, (str, Mapping, Material)) or value == "":
         allowed = "a name of the database or a mapping with its values"
         raise InputError(name, value, allowed, "`trackroller materials list` shows the names.")
-    return str(value) if isinstance(value, DefaultName) else value
+    if isinstance(value, DefaultName):
+        return str(value)
+    return value
 
 
 def is_single(cases: Any) -> bool:
@@ -387,7 +391,9 @@ def _checked_numbers(columns: Mapping[str, np.ndarray], n: int) -> dict[str, np.
             except OverflowError:  # an integer with hundreds of digits
                 numbers[name] = np.array([number(name, v) for v in raw], dtype=float)
         else:
-            words = FRICTION_LEVELS if name == "friction_coefficient" else ()
+            words: tuple[str, ...] = ()
+            if name == "friction_coefficient":
+                words = FRICTION_LEVELS
             numbers[name] = np.array(
                 [math.nan if isinstance(v, str) and v in words else number(name, v) for v in raw], dtype=float
             ).reshape(n)
@@ -421,7 +427,8 @@ def to_table(cases: Any, database: MaterialDatabase | None = None) -> CaseTable:
     InputError
         For the first bad value, unknown name or contradicting geometry.
     """
-    database = load_database() if database is None else database
+    if database is None:
+        database = load_database()
     if not isinstance(database, MaterialDatabase):
         raise InputError("database", database, "a MaterialDatabase", "`tr.load_database(path)` reads one.")
     columns, numbers = (_of_dataset if hasattr(cases, "data_vars") else _of_cases)(cases)

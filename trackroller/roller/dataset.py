@@ -205,7 +205,9 @@ FLAGS: dict[str, tuple[str, Sequence[str]]] = {
 
 def _attributes(name: str) -> dict[str, Any]:
     """Return the attributes of a result variable or a flag."""
-    comment = {"comment": COMMENTS[name]} if name in COMMENTS else {}
+    comment = {}
+    if name in COMMENTS:
+        comment = {"comment": COMMENTS[name]}
     if name in VARIABLES:
         v = VARIABLES[name]
         return {"units": v.units, "long_name": v.long_name} | ({"symbol": v.symbol} if v.symbol else {}) | comment
@@ -288,7 +290,10 @@ def _labelled(data: Mapping[str, np.ndarray], attrs: Mapping[str, Any]) -> xr.Da
 
     made = {}
     for name, array in data.items():
-        dims = VARIABLES[name].dims if name in VARIABLES else ("limit", "body")[3 - array.ndim :]
+        if name in VARIABLES:
+            dims = VARIABLES[name].dims
+        else:
+            dims = ("limit", "body")[3 - array.ndim :]
         made[name] = xr.Variable(("case", *dims), array, _attributes(name))
     ds = xr.Dataset(made, coords=_sides().copy(), attrs=dict(attrs))
     further: dict[str, Any] = {}

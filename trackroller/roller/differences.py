@@ -128,7 +128,9 @@ def _inside(ds: xr.Dataset, name: str, dims: tuple[str, ...]) -> xr.DataArray:
 
 
 def _dims(name: str) -> tuple[str, ...]:
-    return VARIABLES[name].dims if name in VARIABLES else ()
+    if name in VARIABLES:
+        return VARIABLES[name].dims
+    return ()
 
 
 def _own(ds: xr.Dataset, name: str) -> xr.DataArray:
@@ -149,7 +151,9 @@ def _load(ds: xr.Dataset, name: str) -> xr.DataArray:
 
 def _axis(ds: xr.Dataset) -> xr.DataArray | float:
     """Return the distance of the roller's axis [mm], NaN if the data set does not hold the parameters."""
-    return abs(ds["axis_distance"]) if "axis_distance" in ds.variables else np.nan
+    if "axis_distance" in ds.variables:
+        return abs(ds["axis_distance"])
+    return np.nan
 
 
 def _moment(ds: xr.Dataset, name: str) -> xr.DataArray:
@@ -238,5 +242,7 @@ def _kind(name: str) -> Kind:
         return _BY_NAME.get(name, _OWN)
     if VARIABLES[name].estimate:
         return _ESTIMATED
-    by_group = _OWN if VARIABLES[name].group in SOLVED else _OF_SEARCH
+    by_group = _OF_SEARCH
+    if VARIABLES[name].group in SOLVED:
+        by_group = _OWN
     return _BY_UNIT.get(VARIABLES[name].units, by_group)

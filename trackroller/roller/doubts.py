@@ -87,14 +87,18 @@ def doubts(values: Mapping[str, Any], materials: Iterable[Material] = ()) -> lis
     for name, usual in USUAL.items():
         given = np.ravel(values.get(name, math.nan)).tolist()  # a friction coefficient may be a word
         numbers = [float(v) for v in given if isinstance(v, (int, float)) and math.isfinite(v) and v != 0.0]
-        places = (max, *(() if name in FROM_ZERO else (min,)))
-        ends = {place(numbers, key=abs) for place in places} if numbers else ()
+        ends = set()
+        if numbers:
+            ends.add(max(numbers, key=abs))
+        if numbers and name not in FROM_ZERO:
+            ends.add(min(numbers, key=abs))
         sentences += [text for number in ends if (text := _unusual(name, number, PARAMETERS[name].unit, usual, ""))]
     for material in {m.name: m for m in materials}.values():
         for name, usual in OF_FAMILY.get(material.family, {}).items():
             number = getattr(material, name)
             kind = f" for the family {material.family} (material '{material.name}')"
-            sentences += [_unusual(name, number, PROPERTIES[name].unit, usual, kind)] if number is not None else []
+            if number is not None:
+                sentences += [_unusual(name, number, PROPERTIES[name].unit, usual, kind)]
         sentences += [_exponent(material, name) for name in ("woehler_exponent", "second_exponent")]
     sentences += ratings(values)
     guide_radii = _numbers(values.get("guide_profile_radius", EXAMPLE["guide_profile_radius"]))
@@ -118,10 +122,15 @@ def _unusual(name: str, number: float, unit: str, usual: tuple[float, float], ki
     size, shown = abs(number), "" if unit == "-" else f" {unit}"
     if low <= size <= high:
         return ""
-    off = f"{low / size:.3g} times below" if size < low else f"{size / high:.3g} times above"
+    if size < low:
+        off = f"{low / size:.3g} times below"
+    else:
+        off = f"{size / high:.3g} times above"
     meant = [(in_unit(number, other, unit, name), other) for other in OTHER_UNITS.get(unit, ())]
     likely = [f"write '{number:g} {other}' or {value:g}" for value, other in meant if low <= abs(value) <= high]
-    ask = f"; if {likely[0].split(chr(39))[1]} is meant, {likely[0]}" if likely else ""
+    ask = ""
+    if likely:
+        ask = f"; if {likely[0].split(chr(39))[1]} is meant, {likely[0]}"
     return f"{name} = {number:g}{shown} is {off} the usual {low:g} to {high:g}{shown}{kind}{ask}."
 
 
@@ -130,8 +139,13 @@ def _exponent(material: Material, name: str) -> str:
     k = getattr(material, name)
     if not isinstance(k, (int, float)) or EXPONENT[0] <= k <= EXPONENT[1] or math.isinf(k):
         return ""
-    off = f"below the usual {EXPONENT[0]:g}" if k < EXPONENT[0] else f"above the usual {EXPONENT[1]:g}"
-    ask = f"; if b is meant, k = 1/b: write {1.0 / k:.3g}" if k < EXPONENT[0] else ""
+    if k < EXPONENT[0]:
+        off = f"below the usual {EXPONENT[0]:g}"
+    else:
+        off = f"above the usual {EXPONENT[1]:g}"
+    ask = ""
+    if k < EXPONENT[0]:
+        ask = f"; if b is meant, k = 1/b: write {1.0 / k:.3g}"
     return f"{name} = {k:.4g} of the material '{material.name}' is {off}{ask}."
 
 
@@ -179,9 +193,10 @@ def _of_points(name: str, profile: Mapping[str, Any], guide_radius: float) -> li
         sentences.append(
             f"{name}: {len(points) - len(order)} of its {len(points)} points stand twice; each counts once."
         )
-    if np.any(steps < 0):
-        way = "run from large to small x" if np.all(steps <= 0) else "do not run in one direction"
-        sentences.append(f"{name}: its points {way}; they were sorted by x.")
+    if np.all(steps <= 0) and np.any(steps < 0):
+        sentences.append(f"{name}: its points run from large to small x; they were sorted by x.")
+    elif np.any(steps < 0):
+        sentences.append(f"{name}: its points do not run in one direction; they were sorted by x.")
     sentences += [f"{name}: {text}" for text in _gaps_and_waves(points[order], found)]
     for run in found.at_ends:
         ends = " to ".join(f"({px:.4g}, {pz:.4g})" for px, pz in points[order][[run.first, run.last]])
@@ -190,22 +205,36 @@ def _of_points(name: str, profile: Mapping[str, Any], guide_radius: float) -> li
             "if they are a speck, leave them out."
         )
     if profile.get("smooth"):
-        if found.error_if_smoothed >= UNSURE:
-            sentences.append(
-                f"{name}: its points scatter by {1e3 * found.scatter:.2g} µm at distances of {found.spacing:.2g} mm; "
-                f"after smoothing, the pressure is wrong by about {100 * found.error_if_smoothed:.0f} %. Measure with "
-                "less noise, or describe the shape by its radii (arc, arcs)."
-            )
-        return sentences
+        return sentences + _error_of_smoothing(name, found)
+    return sentences + _scatter_as_shape(name, found, "smooth" in profile)
+
+
+def _error_of_smoothing(name: str, found: Findings) -> list[str]:
+    """Return a sentence about points that scatter too much to be smoothed."""
+    if found.error_if_smoothed < UNSURE:
+        return []
+    return [
+        f"{name}: its points scatter by {1e3 * found.scatter:.2g} µm at distances of {found.spacing:.2g} mm; "
+        f"after smoothing, the pressure is wrong by about {100 * found.error_if_smoothed:.0f} %. Measure with "
+        "less noise, or describe the shape by its radii (arc, arcs)."
+    ]
+
+
+def _scatter_as_shape(name: str, found: Findings, meant: bool) -> list[str]:
+    """Return sentences about scatter that counts as shape; `meant` says that the profile has `smooth: 0`."""
+    sentences = []
     if found.runs or found.jumps:
         sentences.append(f"{name}: points lie off their neighbours, and smooth: 0 takes them as shape.")
-    meant = "smooth" in profile  # kept only where it matters
-    if found.roughness >= (MISLEADING if meant else TOLD):
+    least = TOLD
+    remedy = "add smooth: auto, or smooth: 0 if it is meant"
+    if meant:
+        least = MISLEADING
+        remedy = "add smooth: auto"
+    if found.roughness >= least:
         noise = f"{1e3 * found.scatter:.2g}"
         sentences.append(
             f"{name}: its points scatter by {noise} µm (noise or rounding) and are not smoothed, so that the scatter "
-            f"counts as shape and can raise the pressure by {found.pressure_rise}; add smooth: "
-            f"auto{'' if meant else ', or smooth: 0 if it is meant'}."
+            f"counts as shape and can raise the pressure by {found.pressure_rise}; {remedy}."
         )
     return sentences
 
@@ -234,7 +263,10 @@ def _axles_in_the_rail(values: Mapping[str, Any]) -> list[str]:
     axes = _numbers(values.get("axis_distance", EXAMPLE["axis_distance"]))
     radii = _numbers(values.get("guide_profile_radius", EXAMPLE["guide_profile_radius"]))
     same = len(axes) == len(radii)  # a study has a row for each case
-    pairs = zip(axes, radii, strict=True) if same else ((axis, radius) for axis in axes for radius in radii)
+    if same:
+        pairs = list(zip(axes, radii, strict=True))
+    else:
+        pairs = [(axis, radius) for axis in axes for radius in radii]
     inside = [(axis, radius) for axis, radius in pairs if axis <= radius]
     return [
         f"axis_distance = {axis:.4g} mm does not exceed guide_profile_radius = {radius:.4g} mm: the axle lies inside "
@@ -259,7 +291,10 @@ def _touching_elsewhere(values: Mapping[str, Any]) -> list[str]:
         if found is None or abs(found[1] - angles[0]) <= TURNED:
             continue
         place, angle = found
-        where = "in the middle" if place == 0.0 else f"{place:.3g} mm from the middle, at {angle:.3g} deg"
+        if place == 0.0:
+            where = "in the middle"
+        else:
+            where = f"{place:.3g} mm from the middle, at {angle:.3g} deg"
         sentences.append(
             f"roller_profile: as drawn, groove and guide touch {where}, and not at the contact_angle of "
             f"{angles[0]:g} deg, where they are solved. A groove with two contacts has two arcs: draw it so, correct "
@@ -275,7 +310,9 @@ def _convex_rollers(values: Mapping[str, Any]) -> list[str]:
     if not guides:
         return []
     same = len(guides) == len(rollers)  # a study has a row for each case
-    pairs = zip(guides, rollers, strict=True) if same else ((one, other) for one in guides[:1] for other in rollers)
+    pairs = [(guides[0], roller) for roller in rollers]
+    if same:
+        pairs = list(zip(guides, rollers, strict=True))
     like = {other: other / one for one, other in pairs if one < other <= LIKE_A_GROOVE * one}
     found = [("roller_profile_radius", radius, ratio, f"write -{radius:g}") for radius, ratio in like.items()]
     for profile in _mappings(values.get("roller_profile")):

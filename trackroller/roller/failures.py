@@ -54,7 +54,9 @@ def with_reasons(
         if lost and i in lost:
             reasons[i] = lost[i]
             continue
-        words = "no convergence" if failed[i] else "it rolls, but its solution misses the tolerance"
+        words = "it rolls, but its solution misses the tolerance"
+        if failed[i]:
+            words = "no convergence"
         if np.isfinite(residual[i]):  # one digit, so that cases of one kind are counted together
             words += f", residual {residual[i]:.0e}"
         case = table.take(np.array([i]))

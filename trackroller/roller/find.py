@@ -160,7 +160,10 @@ def find(
     >>> round(found.high, 2)  # F_rad tan(alpha)
     115.47
     """
-    given = case if isinstance(case, Case) else Case(**case)
+    if isinstance(case, Case):
+        given = case
+    else:
+        given = Case(**case)
     name = ALIASES.get(name, name)
     if name in RADII:
         remedy = "Find axis_distance: with the groove it gives the outer radius."
@@ -190,7 +193,10 @@ def _cut(parameter: Parameter, start: float, between: Any) -> tuple[tuple[float,
     low, high = max(min(finite), parameter.lower), min(max(finite), parameter.upper)
     if low >= high:
         raise InputError("between", given, allowed, remedy, "lies outside the bounds")
-    unit = "" if parameter.unit == "-" else f" {parameter.unit}"
+    if parameter.unit == "-":
+        unit = ""
+    else:
+        unit = f" {parameter.unit}"
     notes = []
     if (low, high) != (min(finite), max(finite)):
         notes.append(f"The search was cut to {low:g} to {high:g}{unit}, the bounds of {parameter.long_name}.")
@@ -220,7 +226,10 @@ def _values(parameter: Parameter, start: float, between: tuple[float, float] | N
     if between is not None:
         values = np.concatenate([_toward(start, between[0])[::-1], [start], _toward(start, between[1])])
     elif signed or start == 0.0:
-        example = 0.0 if math.isnan(parameter.default) else abs(parameter.default)
+        if math.isnan(parameter.default):
+            example = 0.0
+        else:
+            example = abs(parameter.default)
         width = 4.0 * max(abs(start), example if math.isfinite(example) else 0.0, 1e-6)
         values = start + width * np.linspace(-1.0, 1.0, 2 * STEPS + 1)
     else:
@@ -279,7 +288,10 @@ class _Search:
         for one in self.results:
             low = PARTS.get(f"{one}_low")
             if low is not None and low.variable.name in ds:
-                self.ranged |= {one} if (low.values(ds).values < columns[one] * (1.0 - ROUNDING)).any() else set()
+                if (low.values(ds).values < columns[one] * (1.0 - ROUNDING)).any():
+                    self.ranged |= {one}
+                else:
+                    self.ranged |= set()
         regime = ds["regime"].values
         columns["regime"] = np.array(REGIMES, dtype=object)[regime]
         columns |= {one: np.array([getattr(case, one) for case in cases], dtype=object) for one in self.parameters}
@@ -315,7 +327,10 @@ class _Search:
 
     def odd_at(self, value: float) -> list[str]:
         """Return the doubts about the case with another value that the case itself does not have."""
-        database = load_database() if self.database is None else self.database
+        if self.database is None:
+            database = load_database()
+        else:
+            database = self.database
         try:
             there = replace(self.case, **{self.name: value})
         except InputError:  # the search tells that it is refused

@@ -60,7 +60,9 @@ class Lack:
     @property
     def words(self) -> str:
         """Return what is missing."""
-        return f"material '{self.material}' has no {self.name}" if self.material else f"the case gives no {self.name}"
+        if self.material:
+            return f"material '{self.material}' has no {self.name}"
+        return f"the case gives no {self.name}"
 
     @property
     def line(self) -> str:
@@ -101,7 +103,9 @@ class Placeholder:
     def on(self) -> str:
         """Return the material that it runs on if the value is that of a pair, otherwise an empty text."""
         first = self.note.partition(", ")[0]
-        return first.removeprefix("on ") if first.startswith("on ") else ""
+        if first.startswith("on "):
+            return first.removeprefix("on ")
+        return ""
 
     @property
     def words(self) -> str:
@@ -154,7 +158,9 @@ def notes_on_limits(table: CaseTable, options: Options) -> list[str]:
     out, served = [], to_compute(solved, options)
     for limit in asked(options.outputs, options.not_checked):
         out += [lack.line for lack in _lacks(limit, solved, names)]
-        required = dict(limit.required_of(solved)) if limit in served else {}
+        required = {}
+        if limit in served:
+            required = dict(limit.required_of(solved))
         for material, guessed in guesses:
             of = np.stack([own.name == material for own in bodies.values()], axis=1)
             used = [(name, guess) for name, guess in guessed if name in required and np.any(required[name] & of)]

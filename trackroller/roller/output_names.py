@@ -54,12 +54,17 @@ class Part:
         words = self.variable.label or self.variable.long_name
         body, contact, limit = (self.at.get(dim, "") for dim in PLACES)
         if body:
-            words = words.replace("the body", f"the {body}") if "the body" in words else f"{words} of the {body}"
+            if "the body" in words:
+                words = words.replace("the body", f"the {body}")
+            else:
+                words = f"{words} of the {body}"
         if contact:
             words += f" in contact {contact}"
         elif self.variable.joined == "sum":
             words += " of both contacts"
-        return f"{words}: {LIMITS[limit].title}" if limit in LIMITS else words
+        if limit in LIMITS:
+            return f"{words}: {LIMITS[limit].title}"
+        return words
 
     @property
     def of(self) -> str:
@@ -96,7 +101,9 @@ def parts_of(variable: Variable, limits: Iterable[Limit] = tuple(LIMITS.values()
         return
     contacts: tuple[str, ...] = ("",)
     if "contact" in variable.dims:
-        contacts = ("", *CONTACTS) if variable.joined else CONTACTS
+        contacts = CONTACTS
+        if variable.joined:
+            contacts = ("", *CONTACTS)
     bodies = BODIES if "body" in variable.dims else ("",)
     places = itertools.product(bodies, contacts)
     for body, contact in sorted(places, key=lambda place: bool(place[1])):
@@ -130,7 +137,10 @@ def is_life(name: str) -> bool:
 
 def body_of(name: str) -> str:
     """Return `roller` or `guide`, whose value a result is; an empty text for any other result."""
-    of = PARTS[name].of if name in PARTS else declared(name).of
+    if name in PARTS:
+        of = PARTS[name].of
+    else:
+        of = declared(name).of
     return of if of in BODIES else ""
 
 
@@ -147,4 +157,6 @@ def unit_of(name: str) -> str | None:
         return PARTS[name].variable.units
     if name in VARIABLES:
         return VARIABLES[name].units
-    return PARAMETERS[name].unit if name in PARAMETERS else None
+    if name in PARAMETERS:
+        return PARAMETERS[name].unit
+    return None

@@ -149,7 +149,9 @@ def _width(cells: list[str], name: str) -> float:
         with contextlib.suppress(InputError):  # of a unit; its line is told with the points
             numbers.append(_length(cell, name))
     finite = [number for number in numbers if math.isfinite(number)]
-    return max(finite) - min(finite) if finite else math.inf
+    if finite:
+        return max(finite) - min(finite)
+    return math.inf
 
 
 def _length(cell: str, name: str) -> float:

@@ -86,7 +86,9 @@ def limits(case: Case, contact_model: str = "kalker", database: MaterialDatabase
     """
     bare = {"guide_profile": None, "roller_profile": None, "travel": 0.0, "layer_flexibility": 0.0}
     nominal = replace(case, **bare)
-    model = contact_model if law_of(case.friction_law).is_constant else "sliding"
+    model = "sliding"
+    if law_of(case.friction_law).is_constant:
+        model = contact_model
     span = 4.0 * (abs(case.radial_force) + abs(case.axial_force))
 
     def holds(cases: list[Case]) -> dict[str, np.ndarray]:

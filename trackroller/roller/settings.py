@@ -110,7 +110,10 @@ def _by_strokes(values: Mapping[str, Any]) -> dict[str, Any]:
     if not is_of_strokes(duty):
         return {}
     case = Case.from_dict({key: value for key, value in values.items() if key in (*FIELDS, *ALIASES, *RADII)})
-    velocity = None if "velocity" in case.not_given else case.velocity
+    if "velocity" in case.not_given:
+        velocity = None
+    else:
+        velocity = case.velocity
     in_time, given = of_roller(duty, velocity, case.guide_overrollings_per_hour)
     return {"duty": in_time, **given}
 

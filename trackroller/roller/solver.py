@@ -157,7 +157,8 @@ def solve(
     if hasattr(cases, "data_vars"):
         return _solve_design(cases, given, database)
     single = is_single(cases)
-    database = load_database() if database is None else database
+    if database is None:
+        database = load_database()
     table = to_table(cases, database)
     ds = with_coordinates(_solve_table(table, Options(**given), single), table)
     if not single:
@@ -221,7 +222,10 @@ def _cut(table: CaseTable, size: int) -> Iterator[CaseTable]:
 
 def _solve_window(table: CaseTable, options: Options) -> Block:
     """Solve each distinct mechanics once; then compute power, life and warnings of every case."""
-    one_handed, mirrored = handed(table) if options.shortcuts else (table, np.zeros(len(table), bool))
+    if options.shortcuts:
+        one_handed, mirrored = handed(table)
+    else:
+        one_handed, mirrored = table, np.zeros(len(table), bool)
 
     def solve_all(cases: CaseTable) -> Block:
         return join([meet(few, options, _solve_block) for few in _cut(cases, BLOCK)])

@@ -55,7 +55,8 @@ def with_inputs(ds: xr.Dataset, case: Case, database: MaterialDatabase) -> xr.Da
         ds.attrs[FRICTION] = json.dumps([record])
     ds.attrs |= {CASE: json.dumps(values), MATERIALS: json.dumps(material_values(case, database))}
     ds.attrs |= {NOT_GIVEN: json.dumps(case.not_given), DOUBTS: json.dumps(doubts_of_case(case, database))}
-    ds.attrs |= {RADII: json.dumps(case.radii)} if case.radii else {}
+    if case.radii:
+        ds.attrs |= {RADII: json.dumps(case.radii)}
     return ds
 
 
@@ -128,7 +129,9 @@ def _plain(value: Any) -> Any:
         return value.as_dict()
     if isinstance(value, float) and not math.isfinite(value):
         return str(value)
-    return float(value) if isinstance(value, (int, float)) and not isinstance(value, bool) else value
+    if isinstance(value, (int, float)) and not isinstance(value, bool):
+        return float(value)
+    return value
 
 
 def inputs_of(ds: xr.Dataset) -> dict[str, Any]:
@@ -218,7 +221,9 @@ def setting_text(value: Any) -> str | None:
         return json.dumps(value)
     if value is None or value == "" or (isinstance(value, float) and math.isnan(value)):
         return None
-    return repr(value) if isinstance(value, float) else str(value)
+    if isinstance(value, float):
+        return repr(value)
+    return str(value)
 
 
 def solve_command(settings: Mapping[str, Any], words: tuple[str, ...] = ("solve",)) -> str:

@@ -53,7 +53,10 @@ def meet(table: CaseTable, options: Options, solve: Callable[[CaseTable, Options
     left = np.arange(len(table))
     for rung in RUNGS:
         own = options.changed(accuracy=rung)
-        rows = left if rung == RUNGS[-1] else left[_may_keep(table.take(left), own, tolerance)]
+        if rung == RUNGS[-1]:
+            rows = left
+        else:
+            rows = left[_may_keep(table.take(left), own, tolerance)]
         if not rows.size and (blocks or rung != RUNGS[-1]):
             continue
         block = solve(table.take(rows), own)
@@ -85,7 +88,9 @@ def _over(table: CaseTable, block: Block, options: Options, tolerance: Tolerance
     def largest(*names: str) -> Any:
         """Return the largest of results, (n,); a result that a regime leaves undefined does not count."""
         told = [np.nan_to_num(block.values[name]).reshape(len(table), -1) for name in names if name in block.values]
-        return np.max(np.concatenate(told, axis=1), axis=1) if told else np.zeros(len(table))
+        if told:
+            return np.max(np.concatenate(told, axis=1), axis=1)
+        return np.zeros(len(table))
 
     peaks = largest("error_estimate") / _peak_tolerance(table, options, tolerance)
     over = np.fmax(largest(*FORCE_ERRORS) / tolerance.forces, peaks)

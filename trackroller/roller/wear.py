@@ -126,15 +126,17 @@ def wear(
     >>> float(ds.travel[-1]), ds.attrs["end"]
     (10.0, 'travel')
     """
-    known = load_database() if database is None else database
-    case = case if isinstance(case, Case) else Case.from_dict(case)
+    if database is None:
+        database = load_database()
+    if not isinstance(case, Case):
+        case = Case.from_dict(case)
     allowed = "a travel > 0 km and at most 1e9 km, such as 500km"
     to = number_in(to, "to", allowed, np.nextafter(0.0, 1.0), FARTHEST, unit="km")
     check_names("option", options, OPTIONS)
     given = Options(**{"normal": "halfspace", "outputs": OUTPUTS if outputs is None else outputs} | options)
     if PATCH not in given.outputs:
         given = given.changed(outputs=(*given.outputs, PATCH))
-    record = _Record(case, given, known, tell, to)
+    record = _Record(case, given, database, tell, to)
     return record.run(resume)
 
 
@@ -149,7 +151,10 @@ class _Record:
 
     def run(self, resume: xr.Dataset | None) -> xr.Dataset:
         """Return the results up to the end."""
-        state, step = (None, 0.0) if resume is None else self._taken_up(resume)
+        if resume is None:
+            state, step = None, 0.0
+        else:
+            state, step = self._taken_up(resume)
         before: Groove | None = None
         for at, results, onward, reason in self.wearing.march(state, step, len(self.rows) or 1):
             if reason and (before is None or at.travel == before.travel):
@@ -157,7 +162,10 @@ class _Record:
                     self._add(at, at, results, np.nan)
                 return self._joined(reason)
             turned = self.wearing.turned(at, results)
-            goal = None if before is None else self._goal(before, turned)
+            if before is None:
+                goal = None
+            else:
+                goal = self._goal(before, turned)
             if goal:
                 end, place = goal
                 self._add(place, place, self.wearing.solve(place), np.nan)
@@ -172,7 +180,10 @@ class _Record:
     def _goal(self, one: Groove, two: Groove) -> tuple[str, Groove] | None:
         """Return the first goal between two states, and the state there."""
         permissible = float(self.table.permissible_wear_depth[0])
-        deep = travel_to_depth(one, two, permissible) if permissible > 0.0 else np.inf
+        if permissible > 0.0:
+            deep = travel_to_depth(one, two, permissible)
+        else:
+            deep = np.inf
         travel = min(deep, self.to)
         if travel > two.travel:
             return None
@@ -197,7 +208,9 @@ class _Record:
 
     def _seen(self, array: np.ndarray, dims: tuple[str, ...]) -> np.ndarray:
         """Return an array with contacts 1 and 2 swapped if the mirror image of the roller was solved, and back."""
-        return array[::-1] if self.mirrored[0] and dims[:1] == ("contact",) else array
+        if self.mirrored[0] and dims[:1] == ("contact",):
+            return array[::-1]
+        return array
 
     def _values(self, state: Groove, turned: Groove, onward: float) -> dict[str, Any]:
         w = self.wearing

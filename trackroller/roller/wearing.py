@@ -125,9 +125,14 @@ class Wearing:
         hourly = np.array([roller_overrollings(table.velocity, self.radius)[0], table.guide_overrollings_per_hour[0]])
         self.per_km = hourly / (KM_PER_HOUR * table.velocity[0])  # overrollings of a place of roller and guide
         self.rates = _rates(table, options, self.per_km)
-        self._law = str(table.wear_table[0]) if options.wear_law == "energy" else ""
+        self._law = ""
+        if options.wear_law == "energy":
+            self._law = str(table.wear_table[0])
         self._texts = str(table.guide_profile[0]), str(table.roller_profile[0])
-        self.contacts = 1 if table.axial_force[0] == 0.0 and all(map(treats_sides_alike, self._texts)) else 2
+        if table.axial_force[0] == 0.0 and all(map(treats_sides_alike, self._texts)):
+            self.contacts = 1
+        else:
+            self.contacts = 2
         self._across = int(finer_across(table, options)[0])
         none = np.zeros(self.contacts)
         self.start = Groove(0.0, np.zeros((self.contacts, 2, 2)), none, none)
@@ -193,7 +198,9 @@ class Wearing:
         name = REGIMES[int(results.regime[0])]
         if name == "rolling":
             # a balance that misses its tolerance by little is told in its row, and the groove goes on
-            return "" if results.converged[0] or results.values["residual"][0] <= BALANCED else "failed"
+            if results.converged[0] or results.values["residual"][0] <= BALANCED:
+                return ""
+            return "failed"
         return name
 
     def turned(self, state: Groove, results: StageResults) -> Groove:
@@ -224,7 +231,9 @@ class Wearing:
             )
             cell = (t.x[k, 1] - t.x[k, 0]) * (t.y[k, 1] - t.y[k, 0])
             # constant friction: |tau| = mu p wherever surfaces slide, to more digits than an iteration has
-            bound = self.table.friction_coefficient[0] * t.pressure[k] if self.table.friction_law[0] == "" else shear
+            bound = shear
+            if self.table.friction_law[0] == "":
+                bound = self.table.friction_coefficient[0] * t.pressure[k]
             ratio = energy_ratio(energy[k], cell * np.sum(bound * slip))
             rates = ratio * self.rates[:, None, None] * local_rates(t.pressure[k], shear, slip, self._law)
             outward = slice(None, None, 1 - 2 * k)  # x counts outward in a gap
@@ -319,7 +328,10 @@ class Wearing:
                     reason = self.end(after)
                     if not reason:
                         break
-                step *= SHRINK if reason else max(SHRINK, 0.9 / np.sqrt(ratio))
+                if reason:
+                    step *= SHRINK
+                else:
+                    step *= max(SHRINK, 0.9 / np.sqrt(ratio))
                 tries = tries + 1 if reason else 0
                 if step < least or tries == TRIES:
                     yield at, results, step, reason or "steps"

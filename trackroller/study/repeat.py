@@ -44,7 +44,10 @@ class Repeat:
 
     def command(self) -> str:
         """Return a command that solves the case without the study."""
-        return solve_command(self.case | self.options | ({"duty": self.duty} if self.duty else {}))
+        settings = self.case | self.options
+        if self.duty:
+            settings["duty"] = self.duty
+        return solve_command(settings)
 
 
 def repeat_case(study: Study, number: int, folder: StudyFolder) -> Repeat:
@@ -75,7 +78,8 @@ def repeat_case(study: Study, number: int, folder: StudyFolder) -> Repeat:
 
     study = as_planned(study, folder.record())
     ledger = Ledger(Cases(study), folder)
-    design, place = ledger.cases.design, ledger.place
+    design = ledger.cases.design
+    place = ledger.place
     if not 0 <= number < len(place):
         raise InputError("case", number, f"a case number from 0 to {len(place) - 1}")
     if place[number] < 0:
@@ -89,6 +93,11 @@ def repeat_case(study: Study, number: int, folder: StudyFolder) -> Repeat:
     again = chunks.join([before.isel(case=[]), again])  # a failed case lacks results of others
     loads = {name: ("case", row[name].values) for name in row.data_vars if name not in before.variables}
     differences = compare(before.assign_coords(loads), again.assign_coords(loads))
-    case = {name: row[name].values[0] for name in case_columns(row)}
-    case = {name: float(value) if name in PARAMETERS else str(value) for name, value in case.items()}
+    case: dict[str, Any] = {}
+    for name in case_columns(row):
+        value = row[name].values[0]
+        if name in PARAMETERS:
+            case[name] = float(value)
+        else:
+            case[name] = str(value)
     return Repeat(case, dict(options[group[number]]), differences, study.config.duty and dict(study.config.duty))

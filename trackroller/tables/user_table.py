@@ -393,7 +393,9 @@ def _read_numbers(table: UserTable, numbers: list[int], small: bool) -> None:
 
 def _with_one_sign(column: list[str], cells: list[str], signs: frozenset[str]) -> list[str]:
     """Return a column in which numbers with another decimal sign than the first of all cells are `Refused`."""
-    certain = [cell for cell in cells if decimal_signs([cell])] if len(signs) > 1 else []
+    certain = []
+    if len(signs) > 1:
+        certain = [cell for cell in cells if decimal_signs([cell])]
     if not certain:
         return column
     own = decimal_signs(certain[:1])

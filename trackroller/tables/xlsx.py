@@ -119,7 +119,10 @@ def _chosen(sheets: list[Any], path: Path, field: str, what: str) -> Any:
     if len(named) == 1:
         title = f"sheet {named[0].title!r} of {path}"
         raise InputError(field, title, "a visible sheet; this one is hidden", _SHOW)
-    meant = shown if len(shown) == 1 else [sheet for sheet in shown if _holds(sheet)]
+    if len(shown) == 1:
+        meant = shown
+    else:
+        meant = [sheet for sheet in shown if _holds(sheet)]
     if len(meant) != 1:
         titles = ", ".join(sheet.title for sheet in meant or sheets)
         allowed = "a workbook with one visible sheet that holds cells"
@@ -188,7 +191,9 @@ def _few(noun: str, names: Sequence[object]) -> str:
         return f"{noun} {names[0]}"
     first = f"{noun}s {', '.join(map(str, names[:MOST_NAMED]))}"
     more = len(names) - MOST_NAMED
-    return f"{first} and {more} more" if more > 0 else first
+    if more > 0:
+        return f"{first} and {more} more"
+    return first
 
 
 def _filled_up(rows: Iterator[list[str]]) -> Lines:
@@ -290,7 +295,9 @@ def _formatted(value: float, code: str) -> str:
     unit = words.strip(" -+()") or _NO_LETTERS.sub("", digits)
     if not unit:
         return number
-    return f"{number} {unit}" if _BEGINS_WITH_DIGITS.match(section) else f"{unit} {number}"
+    if _BEGINS_WITH_DIGITS.match(section):
+        return f"{number} {unit}"
+    return f"{unit} {number}"
 
 
 def _section(value: float, code: str) -> str:

@@ -22,8 +22,9 @@ from trackroller.study.store.crate import damaged_files, read_crate, write_crate
 from trackroller.study.store.folder import StudyFolder
 from trackroller.study.store.identity import Cases, chunk_name
 from trackroller.study.store.ledger import Ledger
-from trackroller.study.store.manifest import put_text, replacing, why_altered
+from trackroller.study.store.manifest import why_altered
 from trackroller.study.store.netcdf import read_result
+from trackroller.study.store.put import put_text, replacing
 
 MATERIALS = "materials:\n  own steel: {like: 42CrMo4, tensile_strength: {value: 1500, unit: MPa, source: sheet}}\n"
 TABLE = "axial_force,friction_coefficient\n" + "".join(f"{20 + i},0.1\n" for i in range(12))

@@ -138,13 +138,18 @@ class EllipseStresses(PatchStresses):
         results, settings, elements = self.results, self.options.settings.peak, self.options.settings.elements
         own, peak = results.scene.model.peak_error, Peak.empty(len(patches))
         # adhesion and the spin pole make several summits of nearly the same height
-        seeds = QUICK_SEEDS if own else max(settings.seeds, SEEDS)
+        if own:
+            seeds = QUICK_SEEDS
+        else:
+            seeds = max(settings.seeds, SEEDS)
         settings = replace(settings, seeds=seeds, finalists=max(settings.finalists, FINALISTS))
         for piece in _pieces(flat.size):
             fields, coarse = (mirrored(part, second[piece]) for part in self.fields(flat[piece]))
             # doubtful peaks of the exact theory are searched again; a third climb finds no higher peaks of the others
             few = elements <= REFINED_AT and coarse is not None
-            effort = replace(settings, finalists=FINALISTS) if few else settings
+            effort = settings
+            if few:
+                effort = replace(settings, finalists=FINALISTS)
             peak.put(piece, find_peaks(patches[piece], ratios[piece], effort, fields, coarse, bool(own)))
         # a model with an error of its own gains nothing from elements where the search alone is rough
         doubt = (CHANGE_WEIGHT * peak.change if own else peak.error).max(axis=1)
@@ -211,7 +216,10 @@ class EllipseStresses(PatchStresses):
         """Return the traction over its bound on the grid on which the peak was found, (2, ny, nx)."""
         results, number = self.results, np.array([flat])
         refined = results.refined[results.scene.mirror.source(number)][0]
-        fields, *_ = self._shares(number, results.scene.model.finer_shares) if refined else self.fields(number)
+        if refined:
+            fields, *_ = self._shares(number, results.scene.model.finer_shares)
+        else:
+            fields, *_ = self.fields(number)
         return NO_FIELD if fields is None else fields[0]
 
     def at(self, flat: int, points: np.ndarray, body: int, sign: float) -> np.ndarray:

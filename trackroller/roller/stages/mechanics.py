@@ -76,7 +76,10 @@ def prepare(table: CaseTable, options: Options, across: int = 1, near: Boxes | N
         at_high_speed=law.at_high_speed,
     )
     bare = options.shortcuts and bool(is_frictionless(table).all())
-    twins = is_mirror_symmetric(table) if options.shortcuts else np.zeros(len(table), bool)
+    if options.shortcuts:
+        twins = is_mirror_symmetric(table)
+    else:
+        twins = np.zeros(len(table), bool)
     turned = np.array([inclined(str(text)) for text in table.guide_profile]).reshape(-1, 2) * [1.0, -1.0]
     return Scene(table, loads, model, unit, Mirror(twins), bare, len(table), turning, turned if turned.any() else None)
 
@@ -247,7 +250,9 @@ def friction_work(results: StageResults, options: Options) -> None:
     forces = v["driving_force"].T.reshape(-1), v["spin_moment"].T.reshape(-1)
     factor = results.by_contact(error_of_work(results.patch, results.slip, results.friction, *forces))
     # elements lose energy where nearly all sticks; in full sliding the difference is the model's
-    lost = np.nan_to_num(np.abs(v["energy_residual"]))[:, None] if model.elastic else 0.0
+    lost = 0.0
+    if model.elastic:
+        lost = np.nan_to_num(np.abs(v["energy_residual"]))[:, None]
     told = v["force_error_estimate"]
     with np.errstate(invalid="ignore"):
         v["friction_energy_error_estimate"] = np.where(told > 0.0, told * factor + lost, told)
@@ -280,9 +285,10 @@ def settle(results: StageResults) -> None:
     """Take the mark of convergence from rolling rows with a force, a pressure or a peak that is no finite number."""
     v, rolls = results.values, results.regime == eq.ROLLING
     for name in FINITE & v.keys():
-        given = np.isfinite(v[name]).all(axis=tuple(range(1, v[name].ndim)))
-        unsearched = results.stopped if name == "peak_stress" else False
-        results.converged = results.converged & (given | ~rolls | unsearched)
+        settled = ~rolls | np.isfinite(v[name]).all(axis=tuple(range(1, v[name].ndim)))
+        if name == "peak_stress":
+            settled = settled | results.stopped
+        results.converged = results.converged & settled
 
 
 def tractions(results: StageResults, options: Options) -> None:

@@ -52,7 +52,10 @@ def model_of(
     film : flexibility of a film between the bodies, (n,) [mm^3/N]; None is no film
     """
     elastic = replace(Elastic.of_pair(*bodies(table)), layer_flexibility=film)
-    patches = None if options.normal == "hertz" else _patches(table, options, rolling_radius, across, near)
+    if options.normal == "hertz":
+        patches = None
+    else:
+        patches = _patches(table, options, rolling_radius, across, near)
     name, settings, terms = options.contact_model, options.settings, options.slip_terms
     return contact_model(name, settings, elastic, options.spin_model, law, travel_speed, terms, patches)
 

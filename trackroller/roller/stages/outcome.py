@@ -72,7 +72,9 @@ def _ends(table: CaseTable) -> dict[str, np.ndarray]:
     given, out = ~np.isnan(table.placeholder_position), {}
     bodies = [distinct(own.ends) for own in (table.roller, table.guide)]
     for name in sorted({name for materials, _ in bodies for ends in materials for name in ends}):
-        held = given | ~np.isnan(table.wear_coefficient_factor) if name == "wear_coefficient" else given
+        held = given
+        if name == "wear_coefficient":
+            held = given | ~np.isnan(table.wear_coefficient_factor)
         columns = [np.array([ends.get(name, (1.0, 1.0)) for ends in materials])[place] for materials, place in bodies]
         out[name] = np.where(held[:, None, None], 1.0, np.stack(columns, axis=1))
     return {name: shares for name, shares in out.items() if np.any(shares != 1.0)}

@@ -51,7 +51,9 @@ class Scene:
 
     def kinematics(self, slip: Slip, rows: np.ndarray) -> Slip:
         """Return the slip with the turning of the rollers `rows`, if the turning counts."""
-        return slip if self.turning is None else replace(slip, turning=self.turning[rows])
+        if self.turning is None:
+            return slip
+        return replace(slip, turning=self.turning[rows])
 
     def contacts(self, balance: eq.Equilibrium) -> tuple[Patch, Slip]:
         """Return the ellipses and the slip of both contacts in an equilibrium, arrays (2 n,)."""
@@ -146,7 +148,9 @@ class StageResults:
     def in_mm(self, name: str) -> np.ndarray:
         """Return the result `name` in N and mm, (n, ...)."""
         values, power = self.values[name], POWER.get(name, 0)
-        return values * self.scene.unit.reshape(-1, *(1,) * (values.ndim - 1)) ** power if power else values
+        if power:
+            return values * self.scene.unit.reshape(-1, *(1,) * (values.ndim - 1)) ** power
+        return values
 
     def full(self, flat_good: np.ndarray) -> np.ndarray:
         """Return values of the existing patches for all patches, NaN for the others, shape (n, 2, ...)."""

@@ -29,7 +29,10 @@ def stop(results: StageResults, options: Options) -> None:
         if name == PEAK:  # the last ones, because its bound takes longest
             value = peak_bound(results, options)
         else:
-            value = results.regime.astype(float) if name == "regime" else results.in_mm(name)
+            if name == "regime":
+                value = results.regime.astype(float)
+            else:
+                value = results.in_mm(name)
         results.stopped |= holds(comparison, value, results.scene.table)
 
 
@@ -93,7 +96,9 @@ def _sections(
     across = patch.centre[flat] + np.linspace(-SECTION_SIDES * a, SECTION_SIDES * a, m)
     along = np.linspace(-SECTION_SIDES * b, SECTION_SIDES * b, m)
     depth = np.linspace(0.0, 1.0, (m + 1) // 2) ** 1.5 * SECTION_DEPTH * min(a, b)
-    sign = -1.0 if body == 1 and options.stress_bodies == "both" else 1.0
+    sign = 1.0
+    if body == 1 and options.stress_bodies == "both":
+        sign = -1.0
     planes = {"xz": (across, np.full(m, v["peak_y"][place])), "yz": (np.full(m, v["peak_x"][place]), along)}
     for plane, (xs, ys) in planes.items():
         points = [np.tile(xs, depth.size), np.tile(ys, depth.size), np.repeat(depth, m)]
