@@ -78,8 +78,9 @@ VALIDITY: dict[str, ValidityFlag] = {
     ),
     "steep_friction": ValidityFlag(
         "friction falls faster with the slip speed than the surfaces follow",
-        "mu p_max v max(-df/dv)/G above 1 (kalker): friction falls faster with the slip speed "
-        "than elastic surfaces follow; a patch has several states or none, and the roller may not roll steadily",
+        "mu p_max v max(-df/dv) (1/G + h/(G_3 l)) above 1 (kalker), with a film h/G_3 and the length l of an element: "
+        "friction falls faster with the slip speed than the surfaces follow; a patch has several states or none, and "
+        "the roller may not roll steadily",
         "The roller may not roll steadily: use a friction law that falls less steeply.",
     ),
     "overheated": ValidityFlag(

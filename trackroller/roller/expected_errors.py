@@ -61,12 +61,13 @@ def _measured() -> Any:
     return json.loads(text)["models"]
 
 
-def expected_errors(options: Options, contact_model: str, constant_friction: bool) -> dict[str, Levels]:
+def expected_errors(options: Options, contact_model: str, plain: bool) -> dict[str, Levels]:
     """Return the measured errors of discretisation by quantity; nothing where this combination was not measured.
 
-    The measurements hold for the rungs, ellipses, constant friction and the rigid slip that each model has by itself.
+    The measurements hold for the rungs, ellipses, `plain` surfaces, which have constant friction and no film, and the
+    rigid slip that each model has by itself.
     """
-    if options.normal != "hertz" or options.slip_terms or not constant_friction or options.tolerance is not None:
+    if options.normal != "hertz" or options.slip_terms or not plain or options.tolerance is not None:
         return {}
     errors = CLASSES[contact_model].errors()
     settings = options.settings
@@ -82,7 +83,8 @@ def least_errors(table: CaseTable, options: Options) -> tuple[np.ndarray, np.nda
 
     They are the constant parts of the estimated errors, which contact models from a table have.
     """
-    models = [CLASSES[model_in_use(options, text)] for text in table.friction_law.tolist()]
+    given = zip(table.friction_law.tolist(), table.layer_flexibility.tolist(), strict=True)
+    models = [CLASSES[model_in_use(options, text, film)] for text, film in given]
     forces = np.zeros(len(models))
     peaks = np.zeros(len(models))
     for i, model in enumerate(models):
@@ -110,10 +112,11 @@ def tell_errors(ds: xr.Dataset, table: CaseTable, options: Options) -> None:
     """Add as attributes the limit of the residual, and the errors of discretisation if they were measured."""
     ds.variables["residual"].attrs["converged_up_to"] = converged_up_to(options.contact_model, options.normal)
     constant = all(law_of(text).is_constant for text in set(table.friction_law.tolist()))
+    plain = constant and not np.any(table.layer_flexibility)
     cheaper = DECLARED[options.contact_model].cheaper
     model = options.contact_model
     if cheaper and np.any(solved_by(ds) == cheaper):
         model = cheaper
-    for name, errors in error_attributes(expected_errors(options, model, constant)).items():
+    for name, errors in error_attributes(expected_errors(options, model, plain)).items():
         if name in ds.variables:
             ds.variables[name].attrs.update(errors)
