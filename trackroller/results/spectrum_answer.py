@@ -22,7 +22,7 @@ from trackroller.damage import LIMITS
 from trackroller.damage.verdict import STATES
 from trackroller.parameters import BODIES, PARAMETERS, REGIME_LABELS, REGIMES
 from trackroller.parameters.carriage_fields import long_name_of
-from trackroller.parameters.example import drive_question
+from trackroller.parameters.example import ABSENT, drive_question
 from trackroller.results.answer import Answer, Caution, Column, Part
 from trackroller.results.flags import flags_of, not_judged
 from trackroller.results.lives import FIRST_LIMIT, past_data
@@ -369,7 +369,8 @@ def _parts(ds: xr.Dataset, lives: pd.DataFrame) -> Iterable[Part]:
 
 def _blocks(ds: xr.Dataset) -> Part:
     """Return the blocks with their loads, the regime, and stress and damage of both bodies, and their sum."""
-    loads = [name for name in LOAD_FIELDS if np.isfinite(ds[name].values).any()]
+    known = [name for name in LOAD_FIELDS if np.isfinite(ds[name].values).any()]
+    loads = [name for name in known if name not in ABSENT or ds[name].values.any()]
     columns = [
         Column("block", "Block", "", "name of the block", "text", role="name"),
         Column("distance", "Distance", "m", "travel of the block", "whole"),
