@@ -44,7 +44,7 @@ def not_given(named: Iterable[str]) -> dict[str, Any]:
         named |= set(_PAIR)
     values: dict[str, Any] = {}
     for name, value in EXAMPLE.items():
-        if name in named or name in ABSENT:
+        if name in named:
             continue
         if isinstance(value, str):
             values[name] = str(value)

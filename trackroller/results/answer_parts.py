@@ -11,6 +11,7 @@ import pandas as pd
 from trackroller.damage import LIMITS, limit_word
 from trackroller.parameters import BODIES
 from trackroller.parameters.carriage_fields import long_name_of
+from trackroller.parameters.example import ABSENT
 from trackroller.results.answer import Caution
 from trackroller.results.candidates import slip_margin
 from trackroller.results.case_ranges import CaseRanges
@@ -131,7 +132,7 @@ def not_given_words(results: SolvedCases) -> dict[str, str]:
     """Return the values that nobody gave, with their units."""
     found = {}
     for name in names_not_given(results.data.attrs):
-        if name in results.factors or name in results.derived:
+        if name in results.factors or name in results.derived or name in ABSENT:
             continue
         value = results.base.get(name)
         if value is not None and not (isinstance(value, float) and np.isnan(value)):
