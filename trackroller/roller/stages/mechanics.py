@@ -9,6 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from trackroller.contact import close_fit
 from trackroller.contact.drawn_profiles import inclined
 from trackroller.contact.friction_laws import law_of, steepness
 from trackroller.contact.hertz import contact_modulus, shape
@@ -156,6 +157,7 @@ def contact(results: StageResults, options: Options) -> None:
     v["patch_area"] = results.by_contact(patch.area)
     v["pressure_centre"] = results.by_contact(patch.pressure_centre)
     results.flag("conformal", np.logical_or.reduce(results.by_contact(patch.reaches_edge), axis=1))
+    _close_fit(results, options)
     pole_x, pole_y = _spin_pole(results, options)
     v["spin_pole_lateral"], v["spin_pole_rolling"] = results.by_contact(pole_x), results.by_contact(pole_y)
     # mu p_max is exact where the whole patch slides under a constant friction law, and a bound elsewhere
@@ -166,6 +168,17 @@ def contact(results: StageResults, options: Options) -> None:
         if model.knows_tractions:
             v["max_shear"] = results.full(_largest_shear(results))
         v["stick_area_fraction"] = _stick_share(results)
+
+
+def _close_fit(results: StageResults, options: Options) -> None:
+    """Add a/R and the errors of Hertz's theory that follow from it; NaN for patches that are no ellipses."""
+    v, scene = results.values, results.scene
+    radii = scene.table.guide_profile_radius / scene.unit, scene.table.roller_profile_radius / scene.unit
+    ratio = close_fit.conformity(v["semi_axis_lateral"], *radii)
+    v["conformity"] = ratio
+    hertz = ratio if options.normal == "hertz" else np.full_like(ratio, np.nan)
+    for name, law in close_fit.LAWS.items():
+        v[name] = close_fit.model_error(hertz, law)
 
 
 def _spin_pole(results: StageResults, options: Options) -> tuple[np.ndarray, np.ndarray]:
