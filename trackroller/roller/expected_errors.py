@@ -85,9 +85,14 @@ def least_errors(table: CaseTable, options: Options) -> tuple[np.ndarray, np.nda
     """
     given = zip(table.friction_law.tolist(), table.layer_flexibility.tolist(), strict=True)
     models = [CLASSES[model_in_use(options, text, film)] for text, film in given]
-    forces = [model.errors()["friction_force"][2] if model.errors() else 0.0 for model in models]
-    peaks = np.array([model.peak_error for model in models], float) * table.friction_coefficient
-    return np.array(forces, float), peaks * bool(PEAK_OUTPUTS & set(options.outputs))
+    forces = np.zeros(len(models))
+    peaks = np.zeros(len(models))
+    for i, model in enumerate(models):
+        if model.errors():
+            forces[i] = model.errors()["friction_force"][2]
+        if PEAK_OUTPUTS & set(options.outputs):
+            peaks[i] = model.peak_error * table.friction_coefficient[i]
+    return forces, peaks
 
 
 def error_attributes(levels: Mapping[str, Levels]) -> dict[str, dict[str, Any]]:
@@ -108,7 +113,8 @@ def tell_errors(ds: xr.Dataset, table: CaseTable, options: Options) -> None:
     ds.variables["residual"].attrs["converged_up_to"] = converged_up_to(options.contact_model, options.normal)
     constant = all(law_of(text).is_constant for text in set(table.friction_law.tolist()))
     plain = constant and not np.any(table.layer_flexibility)
-    cheaper, model = DECLARED[options.contact_model].cheaper, options.contact_model
+    cheaper = DECLARED[options.contact_model].cheaper
+    model = options.contact_model
     if cheaper and np.any(solved_by(ds) == cheaper):
         model = cheaper
     for name, errors in error_attributes(expected_errors(options, model, plain)).items():
