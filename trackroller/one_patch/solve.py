@@ -132,7 +132,7 @@ def patch(  # noqa: PLR0913 - one argument for each field
     >>> ds = tr.patch(1000, semi_axes=(0.6, 0.4), materials=steel, friction_coefficient=0.3,
     ...               longitudinal_creepage=[0, "0.1 %", "5 %"], accuracy="preview")
     >>> ds["friction_force_share"].round(2).values.tolist()
-    [0.0, 0.37, 1.0]
+    [0.0, 0.23, 1.0]
     """
     given = dict(locals())
     return solved_patch(checked_patch(given))
