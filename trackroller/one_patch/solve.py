@@ -132,7 +132,7 @@ def patch(  # noqa: PLR0913 - one argument for each field
     >>> ds = tr.patch(1000, semi_axes=(0.6, 0.4), materials=steel, friction_coefficient=0.3,
     ...               longitudinal_creepage=[0, "0.1 %", "5 %"], accuracy="preview")
     >>> ds["friction_force_share"].round(2).values.tolist()
-    [0.0, 0.37, 1.0]
+    [0.0, 0.23, 1.0]
     """
     given = dict(locals())
     return solved_patch(checked_patch(given))
@@ -180,11 +180,14 @@ def _ellipses(inputs: PatchInputs) -> Ellipse:
 
 def _solve_ellipses(inputs: PatchInputs) -> tuple[PatchSolution, SurfaceTractions, dict[str, np.ndarray]]:
     """Return solution, fields, and sizes and pressures by their names."""
-    own, ellipse = inputs.columns, _ellipses(inputs)
-    least = 0 if inputs.law.is_constant else LEAST_UNDER_LAW
-    elements = max(PRESETS[inputs.accuracy].elements, least)
+    own = inputs.columns
+    ellipse = _ellipses(inputs)
+    elements = PRESETS[inputs.accuracy].elements
+    if not inputs.law.is_constant:
+        elements = max(elements, LEAST_UNDER_LAW)
     settings = KalkerSettings(elements, tolerance=TOLERANCE, law=inputs.law)
-    friction, travel = own["friction_coefficient"], own["velocity"] * MM_PER_S
+    friction = own["friction_coefficient"]
+    travel = own["velocity"] * MM_PER_S
     solution = solve_patch(ellipse, _creepage(inputs), friction, _elastic(inputs), settings, travel_speed=travel)
     contact = {
         "semi_axis_lateral": ellipse.semi_axis_lateral,
@@ -198,7 +201,8 @@ def _solve_discs(inputs: PatchInputs) -> tuple[PatchSolution, SurfaceTractions, 
     """Return solution, fields, and sizes and pressures by their names, of two discs."""
     own = inputs.columns
     line = discs.LineContact.of_load(own["normal_force"], own["width"], own["curvature_rolling"], _modulus(inputs))
-    friction, travel = own["friction_coefficient"], own["velocity"] * MM_PER_S
+    friction = own["friction_coefficient"]
+    travel = own["velocity"] * MM_PER_S
     settings = KalkerSettings(tolerance=TOLERANCE, law=inputs.law)
     elements = discs.ELEMENTS[inputs.accuracy]
     solution = discs.solve_discs(line, _creepage(inputs), friction, _elastic(inputs), elements, settings, travel)
@@ -212,7 +216,8 @@ def _solve_discs(inputs: PatchInputs) -> tuple[PatchSolution, SurfaceTractions, 
 
 def _is_steep(inputs: PatchInputs, contact: Mapping[str, np.ndarray], surface: SurfaceTractions) -> np.ndarray:
     """Return where friction falls faster with the slip speed than the surfaces follow, (n,)."""
-    own, elastic = inputs.columns, _elastic(inputs)
+    own = inputs.columns
+    elastic = _elastic(inputs)
     bound = own["friction_coefficient"] * contact["max_pressure"]
     element = 2.0 * contact["semi_axis_rolling"] / surface.y.shape[1]
     travel = own["velocity"] * MM_PER_S
@@ -221,7 +226,8 @@ def _is_steep(inputs: PatchInputs, contact: Mapping[str, np.ndarray], surface: S
 
 def _results(inputs: PatchInputs, solution: PatchSolution) -> dict[str, np.ndarray]:
     """Return forces, works and adhesion by their names, each (n,)."""
-    own, force = inputs.columns, solution.resultants
+    own = inputs.columns
+    force = solution.resultants
     bound = own["friction_coefficient"] * own["normal_force"]
     work = -(
         own["longitudinal_creepage"] * force.driving_force

@@ -9,6 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from trackroller.contact import close_fit
 from trackroller.contact.drawn_profiles import inclined
 from trackroller.contact.friction_laws import law_of, steepness
 from trackroller.contact.hertz import contact_modulus, shape
@@ -180,6 +181,7 @@ def contact(results: StageResults, options: Options) -> None:
     v["patch_area"] = results.by_contact(patch.area)
     v["pressure_centre"] = results.by_contact(patch.pressure_centre)
     results.flag("conformal", np.logical_or.reduce(results.by_contact(patch.reaches_edge), axis=1))
+    _close_fit(results, options)
     pole_x, pole_y = _spin_pole(results, options)
     v["spin_pole_lateral"] = results.by_contact(pole_x)
     v["spin_pole_rolling"] = results.by_contact(pole_y)
@@ -191,6 +193,19 @@ def contact(results: StageResults, options: Options) -> None:
         if model.knows_tractions:
             v["max_shear"] = results.full(_largest_shear(results))
         v["stick_area_fraction"] = _stick_share(results)
+
+
+def _close_fit(results: StageResults, options: Options) -> None:
+    """Add a/R and the errors of Hertz's theory that follow from it; NaN for patches that are no ellipses."""
+    v = results.values
+    scene = results.scene
+    radii = scene.table.guide_profile_radius / scene.unit, scene.table.roller_profile_radius / scene.unit
+    ratio = close_fit.conformity(v["semi_axis_lateral"], *radii)
+    v["conformity"] = ratio
+    if options.normal != "hertz":
+        ratio = np.full_like(ratio, np.nan)
+    for name, law in close_fit.LAWS.items():
+        v[name] = close_fit.model_error(ratio, law)
 
 
 def _spin_pole(results: StageResults, options: Options) -> tuple[np.ndarray, np.ndarray]:
@@ -216,7 +231,8 @@ def steep_friction(results: StageResults, options: Options) -> None:
     if not loads.falling or not scene.model.elastic:
         return
     plain = 0.5 * (np.abs(loads.radial_force) / loads.cosine + np.abs(loads.axial_force) / loads.sine)
-    failed, root = results.regime == eq.FAILED, np.cbrt(plain)
+    failed = results.regime == eq.FAILED
+    root = np.cbrt(plain)
     pressure = np.where(failed, loads.shape.pressure * root, np.max(results.values["max_pressure"], axis=1))
     half = np.where(failed, loads.shape.rolling * root, np.min(results.values["semi_axis_rolling"], axis=1))
     steep = steepness(
