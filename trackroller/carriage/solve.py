@@ -39,6 +39,7 @@ from trackroller.roller.dataset import file_attributes, validity_bit
 from trackroller.roller.doubts import doubts, ratings
 from trackroller.roller.duty import OVERROLLINGS, overrollings_per_hour, with_duty, years
 from trackroller.roller.geometry import contact_geometry
+from trackroller.roller.run_in import groups_for_run_in
 from trackroller.roller.settings import LOADS
 from trackroller.roller.stored_inputs import DOUBTS
 
@@ -456,11 +457,16 @@ def _unused_loads(roller: MountedRoller) -> Iterator[str]:
 
 
 def _flags(solved: xr.Dataset) -> np.ndarray:
-    """Return the validity flags of rollers, shape (n,): `deep_life` of the body alone that ends the life."""
+    """Return the validity flags of rollers, shape (n,).
+
+    `deep_life` is that of the body alone that ends the life, and `worn` that of the roller alone.
+    """
+    worn = validity_bit("worn")
     deep, lives = validity_bit("deep_life"), solved["life_to_first_limit_hours"].transpose(..., "body").values
     own = solved["validity_body"].transpose(..., "body").values
     ends = np.where(lives[..., BODIES.index("guide")] < lives[..., BODIES.index("roller")], own[..., 1], own[..., 0])
-    return np.asarray((solved["validity"].values & ~deep) | (ends & deep))
+    of_roller = own[..., BODIES.index("roller")]
+    return np.asarray((solved["validity"].values & ~deep & ~worn) | (ends & deep) | (of_roller & worn))
 
 
 def _first_ends(lives: Lives, solved: xr.Dataset) -> np.ndarray:
@@ -508,9 +514,9 @@ def with_lives(ds: xr.Dataset, whole: Carriage, solve: Callable[..., xr.Dataset]
         groups.setdefault(repr(whole.rollers[place[1]].options), []).append(place)
     for places in groups.values():
         options = {key: value for key, value in whole.rollers[places[0][1]].options.items() if key != "outputs"}
-        solved = solve_cases(
-            [cases[place] for place in places], outputs=("forces", "peak_stress", "life", "limits"), **options
-        )
+        of_group = [cases[place] for place in places]
+        outputs = ("forces", "peak_stress", "life", "limits", *groups_for_run_in(of_group))
+        solved = solve_cases(of_group, outputs=outputs, **options)
         flags = solved["regime"].attrs
         i, j = np.array(places).T
         speed = np.array([0.06 * float(cases[place].velocity) for place in places])  # km/h
@@ -519,7 +525,7 @@ def with_lives(ds: xr.Dataset, whole: Carriage, solve: Callable[..., xr.Dataset]
             lasts[end][j[lives.first]] = lives.summed[f"{LIFE}{end}"]
         ends[j[lives.first]] = _first_ends(lives, solved)
         case_hours[i, j], regime[i, j] = solved[LIFE].values, solved["regime"].values
-        flagged[i, j] = _flags(solved)
+        flagged[i, j] = _flags(lives.solved)
         damage[i, j] = block_damage(lives.time, solved[LIFE].values)  # of a km of travel
     meanings = {**flags, "flag_values": np.append(np.int8(-1), np.asarray(flags.get("flag_values", []), dtype=np.int8))}
     meanings["flag_meanings"] = f"lifted {flags.get('flag_meanings', '')}".strip()
