@@ -164,7 +164,7 @@ def _solution(whole: Carriage, springs: Springs, loads: list[Loads], swings: np.
         "conventions": "; ".join(CONVENTIONS),
         "with_play": ", ".join(name for one in whole.preloads if one.play > 0 for name in one.pair),
     }
-    return with_duty(xr.Dataset(variables, coords, attrs), whole.duty)
+    return with_duty(xr.Dataset(variables, coords, attrs), whole.duty, whole.strokes)
 
 
 def springs_of(whole: Carriage, unknown: Sequence[float] = ()) -> Springs:

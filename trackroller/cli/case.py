@@ -368,7 +368,7 @@ def run_wear(
     dataset = wear(new, to, resume=before, tell=tell, **options)
     if target is not None:
         write_result(dataset, target)
-    worn = with_duty(dataset, beside.get("duty"))
+    worn = with_duty(dataset, beside.get("duty"), beside.get("strokes"))
     if page is not None:
         write_wear(worn, page)
     print_record(answer_of_wear(worn))

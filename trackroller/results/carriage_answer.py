@@ -24,6 +24,7 @@ from trackroller.results.answer import Answer, Caution, Column, Part
 from trackroller.results.lives import FIRST_LIMIT
 from trackroller.results.roller_answer import CODES, facts_of_data
 from trackroller.roller.dataset import validity_bit
+from trackroller.roller.duty import strokes_words
 from trackroller.roller.stored_inputs import doubts_of
 
 LOADS = {"payload": "payload", "loads": "all loads"}  # parts of the loads that a margin multiplies
@@ -277,7 +278,7 @@ def _parts(ds: xr.Dataset) -> Iterator[Part]:
     """Yield the further tables of a carriage: loads, load cases with their margins, masses, and places."""
     loads = pd.DataFrame(list(_loads(ds)), columns=[one.name for one in OF_LOADS])
     columns = tuple(one for one in OF_LOADS if not _is_empty(loads[one.name]) or one.role)
-    yield Part("loads", "Loads of the rollers", loads, columns)
+    yield Part("loads", "Loads of the rollers", loads, columns, strokes_words(ds))
     cases = pd.DataFrame(list(_cases(ds)), columns=[one.name for one in OF_CASES])
     shown = tuple(one for one in OF_CASES if "_to_" not in one.name or f"{one.name}" in ds)
     yield Part("cases", "Load cases and margins", cases, shown, OF_MARGINS)

@@ -174,7 +174,7 @@ def _damage(spectrum: Spectrum, solved: xr.Dataset, database: MaterialDatabase, 
         one_roller = np.zeros(len(travel), dtype=int)
         solved = with_run_in(solved, one_roller, np.array(travel) / 1e3, shifts_to_first[None])
     labelled = _labelled(spectrum, variables, solved, rule).assign_attrs(_inputs(spectrum, database))
-    return with_duty(labelled, spectrum.duty)
+    return with_duty(labelled, spectrum.duty, spectrum.strokes)
 
 
 def _inputs(spectrum: Spectrum, database: MaterialDatabase) -> dict[str, str]:
