@@ -24,10 +24,9 @@ from trackroller.report.pages.record import (
     inputs_apart,
     options_text,
     pictures,
-    print_record,
     record_text,
 )
-from trackroller.report.printed import print_answer
+from trackroller.report.printed import print_answer, print_below_headline, print_part
 from trackroller.report.tables.inputs import Row, input_rows
 from trackroller.report.terminal import print_table, print_text
 from trackroller.report.words.assumptions import assumptions, friction_sentence, standards, strength_sentences
@@ -157,7 +156,9 @@ def print_facts(ds: xr.Dataset) -> None:
     fields = [str(name) for name, variable in ds.data_vars.items() if variable.ndim > 2]
     if fields:
         print_text(f"{', '.join(fields)} (write them with -o)", "fields")
-    print_record(answer)
+    for part in answer.parts:
+        print_part(answer, part)
+    print_below_headline(answer)
 
 
 @lives_in_years
