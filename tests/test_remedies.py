@@ -299,13 +299,13 @@ REMEDIES: dict[str, tuple[Any, dict[str, Any], str, dict[str, Any]]] = {
     "a column without a blank in its name": (
         study,
         {"table": "blank.csv", "design": "table", "factors": {}, "constraints": ["load case != 'b' and slip < 0.1"]},
-        "rename it to load_case in the table, and write load_case here.",
+        "Write load_case. If it is a column of your table, rename the column too.",
         {"table": "label.csv", "design": "table", "factors": {}, "constraints": ["load_case != 'b' and slip < 0.1"]},
     ),
     "a column without a blank, which was written as a text": (
         study,
         {"table": "blank.csv", "design": "table", "factors": {}, "constraints": ["'load case' < 3"]},
-        "rename it to load_case in the table, and write load_case here.",
+        "Write load_case. If it is a column of your table, rename the column too.",
         {"table": "number.csv", "design": "table", "factors": {}, "constraints": ["load_case < 3"]},
     ),
     "and in small letters": (

@@ -75,9 +75,9 @@ def name_with_blank(text: str) -> str:
 
 
 def rename_remedy(name: str) -> str:
-    """Return what to do with a column whose name is no name of an expression."""
+    """Return what to write for words that are no name of an expression, maybe those of a column."""
     new = re.sub(r"\W+", "_", name).strip("_")
-    return f"If '{name}' is a column, rename it to {new} in the table, and write {new} here."
+    return f"Write {new}. If it is a column of your table, rename the column too."
 
 
 def syntax_remedy(text: str) -> str:
