@@ -299,14 +299,20 @@ REMEDIES: dict[str, tuple[Any, dict[str, Any], str, dict[str, Any]]] = {
     "a column without a blank in its name": (
         study,
         {"table": "blank.csv", "design": "table", "factors": {}, "constraints": ["load case != 'b' and slip < 0.1"]},
-        "Write load_case. If it is a column of your table, rename the column too.",
-        {"table": "label.csv", "design": "table", "factors": {}, "constraints": ["load_case != 'b' and slip < 0.1"]},
+        "Write load_case: a column is known by this name, too.",
+        {"table": "blank.csv", "design": "table", "factors": {}, "constraints": ["load_case != 'b' and slip < 0.1"]},
+    ),
+    "a column of numbers without a blank in its name": (
+        study,
+        {"table": "number.csv", "design": "table", "factors": {}, "constraints": ["load case < 3"]},
+        "Write load_case: a column is known by this name, too.",
+        {"table": "number.csv", "design": "table", "factors": {}, "constraints": ["load_case < 3"]},
     ),
     "a column without a blank, which was written as a text": (
         study,
-        {"table": "blank.csv", "design": "table", "factors": {}, "constraints": ["'load case' < 3"]},
-        "Write load_case. If it is a column of your table, rename the column too.",
-        {"table": "number.csv", "design": "table", "factors": {}, "constraints": ["load_case < 3"]},
+        {"table": "run.csv", "design": "table", "factors": {}, "constraints": ["'run no' < 3"]},
+        "Write run_no: a column is known by this name, too.",
+        {"table": "run.csv", "design": "table", "factors": {}, "constraints": ["run_no < 3"]},
     ),
     "and in small letters": (
         study,
@@ -353,8 +359,8 @@ def test_what_the_message_says_gives_a_result(name, tmp_path, monkeypatch):
     Path("cases.csv").write_text(TABLE)
     Path("wrong.csv").write_text(TABLE.replace("axial_force", "axial load"))
     Path("blank.csv").write_text("load case,axial_force\na,0\nb,10\n")
-    Path("label.csv").write_text("load_case,axial_force\na,0\nb,10\n")
-    Path("number.csv").write_text("load_case,axial_force\n1,0\n4,10\n")
+    Path("run.csv").write_text("run no,axial_force\n1,0\n4,10\n")
+    Path("number.csv").write_text("load case,axial_force\n1,0\n4,10\n")
     do, wrong, remedy, mended = REMEDIES[name]
     with pytest.raises(tr.InputError) as caught:
         do(**wrong)

@@ -59,7 +59,8 @@ def checked_duty(value: Any) -> dict[str, float]:
     if not any(key in value for key in STROKES):
         return FIELD.canonical(every_day)
     if "hours_per_day" in value:
-        allowed, wrong = "either hours_per_day, or strokes_per_day and stroke", "stands beside strokes, which give it"
+        allowed = "either hours_per_day, or strokes_per_day and stroke"
+        wrong = "stands beside strokes, which give it"
         remedy = "Remove hours_per_day, or the strokes."
         raise InputError("duty.hours_per_day", value["hours_per_day"], allowed, remedy, wrong)
     duty = OF_STROKES.canonical(every_day)
@@ -227,16 +228,22 @@ def with_duty(
 
 def duty_of(ds: xr.Dataset) -> dict[str, float] | None:
     """Return the duty that the result of one case or spectrum was solved with, None if it has none."""
-    return json.loads(ds.attrs[ATTRIBUTE]) if ATTRIBUTE in ds.attrs else None
+    if ATTRIBUTE in ds.attrs:
+        return json.loads(ds.attrs[ATTRIBUTE])
+    return None
 
 
 def strokes_of(ds: xr.Dataset) -> dict[str, float] | None:
     """Return the strokes that the duty of a result was given in, None for a duty in hours."""
-    return json.loads(ds.attrs[STROKES_ATTRIBUTE]) if STROKES_ATTRIBUTE in ds.attrs else None
+    if STROKES_ATTRIBUTE in ds.attrs:
+        return json.loads(ds.attrs[STROKES_ATTRIBUTE])
+    return None
 
 
 def strokes_words(ds: xr.Dataset) -> str:
     """Return the duty of a result as a sentence if it was given in strokes, '' otherwise."""
     duty = duty_of(ds)
     strokes = strokes_of(ds)
-    return f"Duty: {duty_words(duty, strokes)}." if duty and strokes else ""
+    if duty is None or strokes is None:
+        return ""
+    return f"Duty: {duty_words(duty, strokes)}."

@@ -103,7 +103,9 @@ def _solve(client: Any, cases: xr.Dataset, database: Any) -> Iterator[xr.Dataset
     waiting: dict[str, np.ndarray] = {}
     count = cases.sizes["case"]
     size = max(8, min(2000, math.ceil(BATCH_SECONDS * rate(json.loads(cases.attrs["options"])))))
-    batches = np.array_split(np.arange(count), max(1, math.ceil(count / size))) if count else []
+    batches = []
+    if count:
+        batches = np.array_split(np.arange(count), max(1, math.ceil(count / size)))
     queue = as_completed([submit(index) for index in batches])  # type: ignore[no-untyped-call]
     for future in queue:
         index = waiting.pop(future.key)
