@@ -93,7 +93,7 @@ VALIDITY: dict[str, ValidityFlag] = {
     "worn": ValidityFlag(
         "the groove wears away within the life",
         "the life of the body to its first limit, in km of travel, exceeds run_in_distance, beyond which the profiles "
-        "are no longer those given (group wear)",
+        "are no longer those given (group wear); of a spectrum or carriage, both over all load cases",
         "Take the life as an estimate: beyond the run-in distance the worn groove decides pressure, stress and life.",
         of_body=True,
     ),

@@ -53,6 +53,7 @@ def facts_of(results: SolvedCases, own: Comparison | None = None) -> dict[str, A
         "models": [str(one) for one in models],
         "accuracy": str(results.config.accuracy),
         "duty": results.config.duty,
+        "strokes": None,
         "candidates": None,
         "conditions": None,
         "drawn": False,

@@ -31,6 +31,7 @@ from trackroller.results.placeholders import guess_cautions, placeholders_part
 from trackroller.results.places import level_text
 from trackroller.results.roller_answer import CODES, checks_left_out, facts_of_data, material_name
 from trackroller.roller.dataset import validity_bit
+from trackroller.roller.duty import strokes_words
 from trackroller.roller.limit_notes import notes_of
 from trackroller.roller.stored_inputs import NOT_GIVEN, doubts_of
 from trackroller.roller.temperature import HEAD as OF_TEMPERATURE
@@ -399,7 +400,8 @@ def _blocks(ds: xr.Dataset) -> Part:
         notes.append(f"{body}: contact {contact}, damage sum {least}{whole:.4g}")
     sums = f"{float(ds['distance'].sum()):,.6g} m and {float(ds['duration'].sum()):.4g} h"
     title = "Blocks of an hour of travel" if _by_share(ds) else "Blocks of a shift"
-    return Part("blocks", title, table, tuple(columns), f"Together {sums}; {'; '.join(notes)}.")
+    note = f"Together {sums}; {'; '.join(notes)}. {strokes_words(ds)}".strip()
+    return Part("blocks", title, table, tuple(columns), note)
 
 
 def _not_checked(ds: xr.Dataset) -> Mapping[str, tuple[str, ...]]:

@@ -103,7 +103,9 @@ def cross_check(study: Study) -> None:
         check_own_name(name, f"factors.{name}")
     wrong = Collector()
     with wrong.part():
-        check(config, study.parsed)
+        # a constraint may name a further column of the table, whose cells say whether it holds numbers
+        columns = study.drawn.columns if config.method.observed and config.constraints else {}
+        check(config, study.parsed, columns)
         check_search(config, study.parsed)
         check_until(config)
     for checked in (_check_roles, _check_parts, _check_options, _check_correlations, _check_materials):

@@ -16,6 +16,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping, Sequence
+from types import MappingProxyType
 from typing import Any, Literal
 
 import numpy as np
@@ -229,8 +230,11 @@ def check_scatter(config: Any, materials: Mapping[str, Iterable[Any]]) -> None:
             )
 
 
-def check(config: Any, factors: Mapping[str, Factor]) -> None:
-    """Check that the names in `analysis`, `pareto` and `constraints` exist; `InputError` gives the nearest one."""
+def check(config: Any, factors: Mapping[str, Factor], columns: Mapping[str, np.ndarray] = MappingProxyType({})) -> None:
+    """Check that the names in `analysis`, `pareto` and `constraints` exist; `InputError` gives the nearest one.
+
+    `columns` are those of the table of cases, of which a constraint may name any.
+    """
     check_own(config, factors)
     known = names_of_outputs(config)
     check_analysed(config)
@@ -244,7 +248,7 @@ def check(config: Any, factors: Mapping[str, Factor]) -> None:
             raise unknown_result("pareto", name, free, config.outputs)
         if name in factors and not factors[name].numeric:
             raise InputError("pareto", name, "a result or factor with one number a case", "Names have no order.")
-    _check_constraints(config, factors, free)
+    _check_constraints(config, factors, columns, free)
 
 
 def check_analysed(config: Any) -> None:
@@ -297,7 +301,10 @@ def statistic(name: str, kinds: tuple[str, ...] = STATISTICS) -> tuple[str, str]
     return "", name
 
 
-def _check_constraints(config: Any, factors: Mapping[str, Factor], free: list[str]) -> None:
+def _check_constraints(
+    config: Any, factors: Mapping[str, Factor], columns: Mapping[str, np.ndarray], free: list[str]
+) -> None:
+    free = list(dict.fromkeys([*free, *(name for name in columns if name not in MATERIAL_FIELDS)]))
     words = [*free, *MATERIAL_FIELDS, "material_pair", "regime"]
     for text in config.constraints:
         for name in names_in(text):
@@ -305,6 +312,7 @@ def _check_constraints(config: Any, factors: Mapping[str, Factor], free: list[st
                 raise unknown_result("constraints", name, [*words, *REGIMES], config.outputs)
         dummy: dict[str, Any] = dict.fromkeys(free, np.ones(2)) | {name: "" for name in words[len(free) :]}
         dummy |= {name: "" for name, factor in factors.items() if not factor.numeric} | {name: name for name in REGIMES}
+        dummy |= {name: "" for name, values in columns.items() if values.dtype.kind not in "fiu"}
         expressions.condition(text, dummy)
 
 
