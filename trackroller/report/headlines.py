@@ -30,7 +30,8 @@ Keys of `Answer.headline`; a key that is missing, None, NaN or empty is left out
 `wanted`, `n`      share that is wanted [1]; drawn conditions
 =================  =====================================================================================================
 
-`how sure`: `share`, `share_low`, `share_high`, `wanted`, `n` of drawn conditions, or `meets`, `of` of listed loads; and
+`how sure`, by `Answer.kind` (`share`, `count`, `cannot_tell` with `why`):
+`share`, `share_low`, `share_high`, `wanted`, `n` of drawn conditions, or `meets`, `of` of listed loads; and
 `low`, `high`, `ends`, `ends_high`, `body`, `error`, `extrapolated`, `exceeded`, `second`, `not_held` as above.
 
 `what matters`: `factors`, a list of at most two dicts, the largest first: `title`, `units`, `index`, `index_low`,
@@ -190,6 +191,7 @@ def _cannot_tell(answer: Answer) -> str:
 
 
 CAUSES = {
+    "chance": "no material has a life at this failure probability",
     "model": "the model does not judge every condition of a candidate",
     "conditions": "candidates share no condition",
     "materials": "a material lacks the life that others have",
@@ -222,7 +224,8 @@ def _lasts(answer: Answer) -> list[str]:
         place = "" if _one_condition(answer) else " at its worst condition"
         clauses.append(f"{whose}{_value_said(answer)}{place}{_then(head)}")
     clauses += _turn(head)
-    return [*clauses, *_other_rules(head), *_required(answer)]
+    others = [] if answer.kind == "cannot_tell" else _other_rules(head)
+    return [*clauses, *others, *_required(answer)]
 
 
 SILENT = ("none", "cannot_tell")  # kinds without a leader
@@ -294,6 +297,8 @@ def _turn(head: Mapping[str, Any]) -> list[str]:
 def how_sure(answer: Answer) -> Headline:
     """Say which share of the conditions, or how many of the listed loads, meet the requirement."""
     head = answer.headline
+    if answer.kind == "cannot_tell":
+        return Headline(_cannot_tell(answer), ".")
     if _known(head, "share"):
         lead = f"{_share(head)} of the {head['n']:,} drawn conditions {_reach(answer.required)}"
         wanted = [f"{percent(head['wanted'])} are wanted"] if _known(head, "wanted") else []

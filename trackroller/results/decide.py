@@ -43,7 +43,7 @@ class Decision:
     kind : see `trackroller.results.answer.Answer`
     order : all candidates, the best one first
     named : candidates that the headline names
-    why : of `cannot_tell`: `model`, `conditions` or `materials`
+    why : of `cannot_tell`: `model`, `chance`, `conditions` or `materials`
     measure : what to measure, see `Turning`
     """
 
@@ -151,7 +151,7 @@ class Decider:
         judged = self.table["judged"].to_numpy() == self.table["of"].to_numpy()
         known = [number for number in among if judged[number]]
         if not known:
-            return Decision("cannot_tell", order, [], "model")
+            return Decision("cannot_tell", order, [], self.own.why_unjudged)
         leader = known[0]
         order = [leader, *(n for n in order if n != leader)]
         if states_of(self.own, self.table, exact=True)[leader] != "open":
@@ -171,7 +171,9 @@ class Decider:
             pool = every[self.score > own.ranges.sign * own.ranges.worst_value]
         if not len(pool):
             unknown = (~judged & (table["holds"] == 0)).any() and (table["holds"] == 0).all()
-            return Decision("cannot_tell" if unknown else "none", order, [], "model" if unknown else "")
+            if unknown:
+                return Decision("cannot_tell", order, [], own.why_unjudged)
+            return Decision("none", order, [])
         if not own.rankable:
             return Decision("cannot_tell", order, [], "materials")
         if not own.matched and not own.drawn and own.conditions and own.count > 1:
