@@ -5,13 +5,17 @@ from __future__ import annotations
 import dataclasses
 
 import numpy as np
+import pandas as pd
 import pytest
+import yaml
 
 import trackroller as tr
 from trackroller.report.headlines import headline_of
+from trackroller.results.places import places_of
 from trackroller.roller.requirement import Requirement
 
 LIFE = "pair_life_to_first_limit_hours"
+LIFTED = 2  # number of this regime
 QT = "1.7225-quenched-tempered"
 BASE = {
     "guide_curve_radius": float("inf"),
@@ -25,7 +29,8 @@ BASE = {
 
 def solve(place, base=None, **keys):
     """Return the results of a small study with full sliding."""
-    own = {key: value for key, value in BASE.items() if key not in keys["factors"]} | (base or {})
+    given = {**BASE, **(base or {})}
+    own = {key: value for key, value in given.items() if key not in keys["factors"] and value is not None}
     study = {
         "name": place.name,
         "base": own,
@@ -37,9 +42,11 @@ def solve(place, base=None, **keys):
 
 
 def rows_of(results):
-    """Return one row a case from the variables of the data set, a column for each body and limit."""
-    names = [name for name in results.data.variables if name in ("regime", LIFE, *results.data.coords)]
-    return results.data[names].to_dataframe().reset_index()
+    """Return one row a case: its regime, its life and its inputs, from the variables of the data set."""
+    data = results.data
+    dims = set(data["regime"].dims)
+    inputs = [name for name in data.coords if data[name].dims and set(data[name].dims) <= dims]
+    return data[["regime", LIFE, *inputs]].to_dataframe().reset_index()
 
 
 @pytest.fixture(scope="module", params=["sure", "decide"])
@@ -141,3 +148,104 @@ def test_another_requirement_turns_no_second_verdict(tmp_path):
     row = results.answer.table.iloc[0]
     assert row["state"] == row["second_state"] == "missed"
     assert "rating" not in headline_of(results.answer).text
+
+
+def lifting(results):
+    """Return by hand which conditions, levels of the radial force, lift every roller off."""
+    frame = rows_of(results)
+    return frame.groupby("radial_force")["regime"].apply(lambda own: (own == LIFTED).all())
+
+
+def test_the_load_of_the_example_that_lifts_every_roller_off_is_asked_for(tmp_path):
+    factors = {"roller_profile_radius": {"values": [-6.3, -7, -8]}, "radial_force": {"values": [-10, -20]}}
+    results = solve(tmp_path, {"axial_force": None}, factors=factors)
+    assert lifting(results).all()
+    answer = results.answer
+    text = "Give axial force: without it 2 of 2 conditions (lifts off) are lost."
+    assert headline_of(answer).text == text
+    assert "at_end" not in {one.code for one in answer.warnings}, "no design is named"
+
+
+def test_a_load_is_asked_for_where_the_other_drawn_conditions_meet_the_requirement(tmp_path):
+    factors = {
+        "roller_profile_radius": {"values": [-6.3, -7]},
+        "radial_force": {"uniform": [-105, -20], "scatter": True},
+    }
+    keys = {"factors": factors, "design": "inner_outer", "samples": 12}
+    wanted = {"pair_life_hours": {"min": 200, "probability": 0.9}}
+    results = solve(tmp_path, {"axial_force": None}, requirement=wanted, **keys)
+    lost = lifting(results)
+    assert 0.5 < lost.mean() < 1, "some conditions are held, and meet the requirement"
+    assert (rows_of(results)[LIFE].dropna() > 400).all()
+    answer = results.answer
+    assert answer.kind == "give"
+    assert answer.headline["not_held"]["count"] == lost.sum()
+    assert headline_of(answer).text.startswith(f"Give axial force: without it {lost.sum()} of 12 conditions")
+
+
+def test_the_worst_of_a_nearest_design_is_not_said_where_it_lifts_off(tmp_path):
+    factors = {
+        "roller_profile_radius": {"values": [-6.3, -7]},
+        "radial_force": {"values": [-60, -150]},
+        "axial_force": {"values": [8, 50]},
+    }
+    results = solve(tmp_path, factors=factors, requirement={"pair_life_hours": {"min": 1e6}})
+    frame = rows_of(results)
+    held = frame[frame["roller_profile_radius"] == -6.3]["regime"] == 0
+    answer = results.answer
+    assert answer.kind == "none"
+    assert answer.headline["nearest"]["holds"] == held.sum() == 3
+    assert answer.headline["nearest"]["low"] > 0, "of the conditions that some design holds"
+    assert "at the worst" not in headline_of(answer).text
+
+
+def test_a_curve_with_equal_ends_is_a_dip(tmp_path):
+    """The stress by -15 N is that by 15 N: the curve neither rises nor falls, however small its height."""
+    factors = {"axial_force": {"values": [-12, 0, 12]}, "radial_force": {"values": [-100, -150, -200]}}
+    wanted = {"peak_stress_roller": {"max": 1000}}
+    results = solve(tmp_path, factors=factors, requirement=wanted)
+    stress = results.data["peak_stress"].sel(body="roller").max("contact").transpose("axial_force", ...)
+    by_hand = np.median(stress.to_numpy(), axis=1)
+    assert by_hand[0] == pytest.approx(by_hand[2], rel=1e-6) and 1.02 < by_hand[0] / by_hand[1] < 1.1
+    curve = next(one for one in results.answer.curves if one.factor == "axial_force")
+    assert curve.shape == "dip"
+    assert curve.height == pytest.approx(by_hand.max() / by_hand.min(), rel=1e-6)
+
+
+def test_an_error_that_is_not_stated_is_not_said(tmp_path, drawn_with_losses):
+    """A contact pressure states none, and a roller that lifts off has none."""
+    factors = {"roller_profile_radius": {"values": [-6.3, -7]}, "radial_force": {"values": [-60, -150]}}
+    results = solve(tmp_path, factors=factors, requirement={"max_pressure": {"max": 900}})
+    assert results.answer.table["error"].isna().all()
+    assert "error" not in [column.name for column in results.answer.columns]
+    table = drawn_with_losses.answer.table
+    assert table["error"][table["ends"] == "lifts off"].isna().all() and (table["ends"] == "lifts off").any()
+
+
+def test_a_place_does_not_list_every_level_of_a_factor():
+    pairs = pd.DataFrame([(force, friction) for force in (-60, -120) for friction in (0.1, 0.3)], columns=["F", "mu"])
+    hit = ((pairs["F"] == -60) | (pairs["mu"] == 0.3)).to_numpy()
+    found = places_of(pairs, ["F", "mu"], hit, np.ones(4, dtype=bool))
+    assert found == ({"F": (-60,)}, {"F": (-120,), "mu": (0.3,)})
+    inside = [np.all([pairs[name].isin(own) for name, own in place.items()], axis=0) for place in found]
+    assert (np.any(inside, axis=0) == hit).all()
+
+
+def test_single_unlike_cases_make_no_curve(tmp_path):
+    """Of loads that differ in everything no curve says what one of their factors does."""
+    loads = pd.DataFrame(
+        {
+            "radial_force": [-60.0, -75.0, -90.0, -105.0, -120.0],
+            "axial_force": [8.0, 2.0, 14.0, 5.0, 11.0],
+            "friction_coefficient": [0.2, 0.1, 0.3, 0.15, 0.25],
+        }
+    )
+    loads.to_csv(tmp_path / "loads.csv", index=False)
+    file = tmp_path / "study.yaml"
+    base = {key: value for key, value in BASE.items() if key not in loads} | {"guide_curve_radius": "inf"}
+    study = {"name": "loads", "design": "table", "table": "loads.csv", "base": base, "contact_model": "sliding"}
+    study |= {"accuracy": "preview", "requirement": {"pair_life_hours": {"min": 100}}}
+    file.write_text(yaml.safe_dump(study))
+    answer = tr.run(file, results=tmp_path / "results", progress=False).answer
+    assert (answer.question, answer.kind) == ("how sure", "count")
+    assert answer.curves == ()

@@ -257,6 +257,10 @@ def _headline(found: _Found, kind: str) -> dict[str, Any]:
     }
     if not settled:
         return head | {"nearest": _nearest(found, chosen)}
+    if found.wanted and _is_drawn(found):
+        own = _requirement(found, chosen)
+        head |= {key: own[key] for key in ("share", "share_low", "share_high")}
+        head |= {"wanted": max(one.wanted for one in found.shares), "n": found.results.design.meta["inner_samples"]}
     if kind != "front":
         binds = _binds(found, chosen)[:2]
         head["binds"] = listing(binds) if binds else ""

@@ -71,25 +71,7 @@ def candidate_columns(own: Comparison, table: pd.DataFrame) -> tuple[Column, ...
         *_ends_apart(table),
     ]
     columns += _count_columns(own)
-    if own.drawn:
-        share = "share of the drawn conditions that meet the requirement" if own.required else "share that is held"
-        columns += [
-            Column("share", "Share", "1", share, "share"),
-            Column("share_low", "95 %", "1", "Wilson's interval of the share", "share", until="share_high"),
-            Column(
-                "share_short",
-                "With error",
-                "1",
-                "share if all lives are shorter, or longer, by their told error",
-                "share",
-                until="share_long",
-            ),
-            Column("tenth", "Tenth part", units, "what nine of ten drawn conditions reach"),
-            Column(
-                "tenth_low", "Its 95 %", units, "interval of the tenth part by order statistics", until="tenth_high"
-            ),
-            Column("median_low", "95 % of the median", units, "interval by order statistics", until="median_high"),
-        ]
+    columns += _drawn_columns(own, units)
     if (table["second"] != "").any():
         columns += [
             Column("second", "Second model", "", "the second model of the same end with the shortest life", "text"),
@@ -109,15 +91,38 @@ def candidate_columns(own: Comparison, table: pd.DataFrame) -> tuple[Column, ...
             ),
             Column("longer", "Better in", "", better, "count"),
         ]
-    columns += [
-        Column("error", "Error", "1", "told 95 % error of the solution at the worst condition", "error"),
-        Column("extrapolated", "Extrapolated", "", "conditions whose life lies beyond the data of its rule", "count"),
-    ]
+    if table["error"].notna().any():
+        columns.append(Column("error", "Error", "1", "told 95 % error of the solution at the worst condition", "error"))
+    columns.append(
+        Column("extrapolated", "Extrapolated", "", "conditions whose life lies beyond the data of its rule", "count")
+    )
     if (table["edge"] != "").any():
         columns.append(
             Column("edge", "At the end of", "", "choices at the smallest or largest of their levels", "text")
         )
     return tuple(columns)
+
+
+def _drawn_columns(own: Comparison, units: str) -> list[Column]:
+    """Return the columns of drawn conditions: shares and order statistics with their intervals; [] for listed ones."""
+    if not own.drawn:
+        return []
+    share = "share of the drawn conditions that meet the requirement" if own.required else "share that is held"
+    return [
+        Column("share", "Share", "1", share, "share"),
+        Column("share_low", "95 %", "1", "Wilson's interval of the share", "share", until="share_high"),
+        Column(
+            "share_short",
+            "With error",
+            "1",
+            "share if all lives are shorter, or longer, by their told error",
+            "share",
+            until="share_long",
+        ),
+        Column("tenth", "Tenth part", units, "what nine of ten drawn conditions reach"),
+        Column("tenth_low", "Its 95 %", units, "interval of the tenth part by order statistics", until="tenth_high"),
+        Column("median_low", "95 % of the median", units, "interval by order statistics", until="median_high"),
+    ]
 
 
 def _count_columns(own: Comparison) -> list[Column]:
@@ -168,7 +173,7 @@ def _ends(own: Comparison) -> dict[str, Any]:
         "body": body,
         "ends_high": ends_high,
         "body_high": body_high,
-        "error": np.where(case < 0, 0.0, ranges.error[case]),
+        "error": np.where(case < 0, np.nan, ranges.told_error[case]),
         "extrapolated": _conditions_with(own, ranges.beyond & rows),
     }
 

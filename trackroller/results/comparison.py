@@ -266,6 +266,12 @@ class Comparison:
         """Return the cases in conditions that no candidate holds, shape (n,); none if no condition is held at all."""
         return np.asarray(self.own & ~self.reachable)
 
+    @cached_property
+    def never_held(self) -> np.ndarray:
+        """Return the cases in conditions that no candidate holds, drawn ones included, shape (n,)."""
+        uses = np.unique(self.pairs[1][self.all_in_pair(self.ranges.held)])
+        return np.asarray(self.own & ~np.isin(self.use, uses))
+
     @property
     def why_unjudged(self) -> str:
         """Return why cases are not judged: `chance` without a life at the failure probability asked for, or `model`."""
