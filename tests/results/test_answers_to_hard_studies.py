@@ -249,3 +249,40 @@ def test_single_unlike_cases_make_no_curve(tmp_path):
     answer = tr.run(file, results=tmp_path / "results", progress=False).answer
     assert (answer.question, answer.kind) == ("how sure", "count")
     assert answer.curves == ()
+
+
+def test_a_required_travel_is_a_required_life(tmp_path):
+    """20,000 km at 60 m/min, 3.6 km/h, take 5,556 h; wear is known within a range."""
+    factors = {"roller_profile_radius": {"values": [-6.3, -7]}, "radial_force": {"values": [-15, -40]}}
+    base = {"axial_force": 1, "permissible_wear_depth": 0.1, "required_travel": 20_000, "velocity": 60}
+    outputs = ["forces", "contact", "friction_work", "peak_stress", "life", "wear", "limits"]
+    results = solve(tmp_path, base, factors=factors, outputs=outputs)
+    hours = 20_000 / 3.6
+    ends = [results.data[f"{LIFE}{end}"].min("radial_force").to_series() for end in ("_low", "_high")]
+    answer = results.answer
+    assert [(one.output, one.least) for one in answer.required] == [(LIFE, pytest.approx(hours))]
+    assert (ends[0] < hours).all() and (ends[1] > hours).all(), "the range of the wear leaves it open"
+    for _, row in answer.table.iterrows():
+        low, high = (end[row["roller_profile_radius"]] for end in ends)
+        assert (row["low"], row["high"]) == (pytest.approx(low), pytest.approx(high))
+        assert row["state"] == "open"
+    assert answer.kind == "measure"
+    asked = answer.headline["measure"]
+    assert asked["what"].startswith("wear_coefficient") and asked["low"] < asked["turn"] < asked["high"]
+
+
+def test_a_response_surface_takes_a_requirement(tmp_path):
+    """The output that is required is the one that the factors are ranked by."""
+    factors = {"radial_force": {"uniform": [-160, -60]}, "contact_angle": {"uniform": [30, 45]}}
+    wanted = {"peak_stress_roller": {"max": 330}}
+    results = solve(tmp_path, factors=factors, design="central_composite", requirement=wanted)
+    answer = results.answer
+    stress = results.data["peak_stress"].sel(body="roller").max("contact").to_numpy()
+    assert answer.question == "what matters" and answer.output[0] == "peak_stress_roller"
+    assert [one.most for one in answer.required] == [330]
+    assert stress.min() < 330 < stress.max()
+    effect = {name: abs(own) for name, own in zip(answer.table["name"], answer.table["index"], strict=True)}
+    at = {name: results.table[name].to_numpy() for name in factors}
+    ends = {name: [stress[own == end].mean() for end in (own.min(), own.max())] for name, own in at.items()}
+    by_hand = {name: abs(high - low) for name, (low, high) in ends.items()}
+    assert max(effect, key=effect.get) == max(by_hand, key=by_hand.get) == answer.table["name"].iloc[0]
