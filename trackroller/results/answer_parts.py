@@ -177,7 +177,7 @@ def cautions(own: Comparison, shown: pd.DataFrame, named: int = 1) -> tuple[Caut
     ----------
     own : the comparison of a study
     shown : table of the answer, the leader first
-    named : number of the first rows that the headline names
+    named : number of the first rows that the headline names; 0 for none
     """
     found = [*case_cautions(own.results, own.ranges, own.own)]
     if "second_state" in shown and own.required:
@@ -185,9 +185,9 @@ def cautions(own: Comparison, shown: pd.DataFrame, named: int = 1) -> tuple[Caut
         if turned.iloc[1:].any():
             words = ", ".join(dict.fromkeys(shown["second"][turned]))
             found.append(Caution("second_model", int(turned.sum()), len(shown), words, "candidates"))
-    edges = [edge for edge in shown["edge"].iloc[: max(named, 1)] if edge]
+    edges = [edge for edge in shown["edge"].iloc[:named] if edge]
     if edges:
-        found.append(Caution("at_end", len(edges), max(named, 1), _edge_text(own, shown, edges[0]), "candidates"))
+        found.append(Caution("at_end", len(edges), named, _edge_text(own, shown, edges[0]), "candidates"))
     return (*found, *_unlike(own, shown))
 
 

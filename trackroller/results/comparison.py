@@ -266,19 +266,33 @@ class Comparison:
         """Return the cases in conditions that no candidate holds, shape (n,); none if no condition is held at all."""
         return np.asarray(self.own & ~self.reachable)
 
+    @cached_property
+    def never_held(self) -> np.ndarray:
+        """Return the cases in conditions that no candidate holds, drawn ones included, shape (n,)."""
+        uses = np.unique(self.pairs[1][self.all_in_pair(self.ranges.held)])
+        return np.asarray(self.own & ~np.isin(self.use, uses))
+
+    @property
+    def why_unjudged(self) -> str:
+        """Return why cases are not judged: `chance` without a life at the failure probability asked for, or `model`."""
+        return "chance" if self.results.without_chance else "model"
+
     # what meets the requirement
 
-    def met(self, exact: bool = False) -> tuple[np.ndarray, np.ndarray]:
+    def met(self, exact: bool = False, lives: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray]:
         """Return the cases that surely meet all requirements, and those that may, shape (n,) each.
 
         Parameters
         ----------
         exact : whether the errors of the solution do not count
+        lives : lives of a second model that take the place of those of the pair, at both ends, shape (2, n) [h]
         """
         sure = self.ranges.held & ~self.ranges.open
         may = np.where(self.ranges.judged, self.ranges.held, True)
         for one, own in self.judges:
             certain, possible = own.meets(one, exact)
+            if lives is not None and one.output in OF_PAIR:
+                certain, possible = lives >= one.least
             sure = sure & certain
             may = may & possible
         return sure, may

@@ -238,9 +238,11 @@ def check(config: Any, factors: Mapping[str, Factor], columns: Mapping[str, np.n
     check_own(config, factors)
     known = names_of_outputs(config)
     check_analysed(config)
-    if config.requirement and not config.method.weighted:
-        remedy = "Use inner_outer, lhs, sobol or saltelli. A grid or a table gives shares of its designs."
-        raise InputError("requirement", config.design, "a design whose rows have known weights", remedy)
+    if not config.method.weighted and any(own.in_shares for own in config.requirement.values()):
+        remedy = "Remove probability, or use inner_outer, lhs, sobol or saltelli."
+        raise InputError(
+            "requirement", config.design, "for probability: a design whose rows have known weights", remedy
+        )
     free = [*known, *factors, *PARAMETERS]
     _check_statistics(config, factors, known)
     for name in config.pareto if not config.method.points else ():
