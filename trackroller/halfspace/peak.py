@@ -54,6 +54,12 @@ MOST_ON_RIDGE, OF_GRID = 128, 84  # points on the line where sliding begins, for
 STICKS = 1.0 - 1e-4  # square of the traction over its bound below which an element sticks
 NEAR_RIM = 0.98  # distance from the centre up to which the ridge is followed
 SEED_WORTH = 0.85  # least stress of a seed over the largest
+# The highest stress of the other kind, at the surface or below it, may lie this many times as far behind. Coarse rules
+# and few elements lower a ridge at the surface by some per cent, and hardly a summit below it.
+RIVAL_LAG = 2.0
+
+# Relative change on coarser elements at the place of a peak above which the top of its hill is sought there, in sweeps.
+FALLEN, TOP_SWEEPS = 0.03, 3
 
 SPLIT = (0.02, 0.06)  # distances from the pole over the semi-axis at which a spike begins to count, and counts in full
 
@@ -177,19 +183,42 @@ def along_turn(patch, u, out):
 
 
 @compiled
+def best_rival(depth, values):
+    """Return the index of the largest of `values` (m,) among the points of the other kind; -1 without such a point.
+
+    The kinds are points at the surface, with `depth` (m,) zero, and points below it. The other kind is the one to
+    which the point with the largest value does not belong.
+    """
+    shallow = depth[values.argmax()] == 0.0
+    best = -1
+    for k in range(values.size):
+        if (depth[k] == 0.0) != shallow and (best < 0 or values[k] > values[best]):
+            best = k
+    return best
+
+
+@compiled
 def best_seeds(points, values, count, apart):
     """Return the indices of up to `count` scan points (m, 3) with the largest `values` (m,).
 
-    The points are `apart` from each other; they have at least the share SEED_WORTH of the largest value.
+    They have at least the share SEED_WORTH of the largest value, and are `apart` from each other. If all the others are
+    of the kind of the first, the last one is the best of the other kind, see `best_rival`: the highest stress at the
+    surface and the highest below it are separate hills.
     """
     left, chosen, number = values.copy(), np.empty(count, np.int64), 0
-    enough = SEED_WORTH * values.max()
+    enough, rival = SEED_WORTH * values.max(), best_rival(points[:, 2], values)
+    if rival >= 0 and values[rival] <= enough:
+        rival = -1
     while number < count:
         best = left.argmax()
-        if not left[best] > enough:
+        if rival >= 0 and number > 0 and (number == count - 1 or not left[best] > enough):
+            best = rival
+        elif not left[best] > enough:
             break
         chosen[number] = best
         number += 1
+        if rival >= 0 and (points[best, 2] == 0.0) == (points[rival, 2] == 0.0):
+            rival = -1
         for k in range(left.size):
             if ((points[k] - points[best]) ** 2).sum() < apart * apart:
                 left[k] = 0.0
@@ -449,13 +478,19 @@ def polish(target, climbs, k, rules, smallest, sweeps):
 def standing(climbs, share, gap, most):
     """Return which climbs stand, (m,): up to `most` of each body; the others are given up.
 
-    The highest climb and those above its `share` stand. Of points closer than `gap` only the highest stands.
+    The highest climb and those above its `share` stand. Of points closer than `gap` only the highest stands. If all of
+    them are of one kind, the best of the other kind stands too, see `best_rival`: it may lie RIVAL_LAG times as far
+    behind.
     """
     count = climbs.f.size // 2
     stand = np.zeros(climbs.f.size, np.bool_)
     for body in range(2):
         first = body * count
         left = climbs.f[first : first + count].copy()
+        depth = climbs.u[first : first + count, 2]
+        rival = best_rival(depth, left)
+        lowest = max((1.0 - RIVAL_LAG * (1.0 - share)) * left.max(), 0.0)
+        alone = not (rival >= 0 and left[rival] > lowest)
         enough = share * left.max()
         for _ in range(min(most, count)):
             best = left.argmax()
@@ -463,9 +498,12 @@ def standing(climbs, share, gap, most):
                 break
             stand[first + best] = True
             left[best] = -1.0
+            alone = alone or (depth[best] == 0.0) == (depth[rival] == 0.0)
             for other in range(count):
                 if ((climbs.u[first + other] - climbs.u[first + best]) ** 2).sum() < gap * gap:
                     left[other] = -1.0
+        if not alone:
+            stand[first + rival] = True
     for k in range(climbs.f.size):
         if not stand[k]:
             climbs.f[k] = -1.0
@@ -536,7 +574,7 @@ class Peak(Rows):
     """Peak von Mises stress and its place; arrays (n, 2), second axis roller and guide.
 
     `stress` per unit p_max (in MPa below solved patches), `x`, `y`, `z` [mm], `error` the estimated relative error, and
-    `change` its part by the elements: the relative change of the stress with tractions on a coarser grid.
+    `change` the relative change of the stress at this place with tractions on a coarser grid.
     """
 
     stress: np.ndarray
@@ -571,7 +609,25 @@ def _search_rows(first, last, patches, rules, effort, room, out):
             for body in range(2):
                 other = stress_at(coarse, body, out[i, body, 1:4], rules.summit)
                 out[i, body, 5] = abs(other / out[i, body, 0] - 1.0)
-                out[i, body, 4] += out[i, body, 5]
+                if out[i, body, 5] > FALLEN:
+                    other = _top_beside(coarse, body, out[i, body, 1:4], other, rules)
+                out[i, body, 4] += abs(other / out[i, body, 0] - 1.0)
+
+
+@woven
+def _top_beside(coarse, body, u, height, rules):
+    """Return the stress at the top of the hill of a coarse grid beside a point u (3,), where the stress is `height`.
+
+    A narrow hill lies elsewhere on coarse elements, and the stress at its place on finer ones says little of its top.
+    """
+    climbs = no_climbs(1, 0.1)
+    assign(climbs.u[body], u)
+    climbs.f[body] = height
+    along_turn(coarse.patch, u, climbs.along[body])
+    rule = rules.ridge if u[2] == 0.0 else rules.polish
+    for number in range(TOP_SWEEPS):
+        sweep(coarse, climbs, body, rule, 0.01, int(number > 0))
+    return climbs.f[body]
 
 
 @woven
@@ -601,8 +657,15 @@ def _write_highest(fine, climbs, rule, out):
     """Write the highest climb of each body, in normalised coordinates, into `out` (2, 6)."""
     count = climbs.f.size // 2
     for body in range(2):
-        best = body * count + climbs.f[body * count : (body + 1) * count].argmax()
+        first = body * count
+        heights = climbs.f[first : first + count]
+        best = first + heights.argmax()
         summit = stress_at(fine, body, climbs.u[best], rule)
+        other = best_rival(climbs.u[first : first + count, 2], heights)
+        if other >= 0 and heights[other] > 0.0:  # rough rules err otherwise at the surface than below it
+            beside = stress_at(fine, body, climbs.u[first + other], rule)
+            if beside > summit:
+                best, summit = first + other, beside
         out[body, 0] = summit
         assign(out[body, 1:4], climbs.u[best])
         out[body, 4] = 4.0 * (abs(summit - climbs.f[best]) + climbs.gained[best]) / summit
@@ -682,7 +745,8 @@ def find_peaks(
     Notes
     -----
     Valid for any ellipticity and 0 <= nu <= 0.5. The estimated error contains the change from the quadrature of the
-    climb to that of the summit, the last gain of the climb, and with `fields` the change on elements of twice the size.
+    climb to that of the summit, the last gain of the climb, and with `fields` the change on elements of twice the size:
+    at the place of the peak, or from top to top of the hill where the stress at this place changes much.
     """
     patches = np.ascontiguousarray(patches)
     out = Peak.empty(len(patches))

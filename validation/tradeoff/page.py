@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 from trackroller.contact.kalker import correction
@@ -14,6 +14,13 @@ from validation.tradeoff.measure import COMPLETE, MODELS, TOLERANCES
 from validation.tradeoff.truth import SAMPLES
 
 QUANTITIES = ("normal_force", "friction_force", "peak_stress")
+OUTPUTS = {
+    "friction_force": "F_T, F_A over μ F_N",
+    "normal_force": "F_N",
+    "friction_energy": "friction energy",
+    "peak_stress": "peak stress",
+    "life": "life",
+}
 
 
 def facts(data: Mapping[str, Any]) -> dict[str, Any]:
@@ -38,8 +45,6 @@ def facts(data: Mapping[str, Any]) -> dict[str, Any]:
                     f"{cost['complete']:.2g}",
                     f"{cost['forces']:.2g}",
                     *(_levels(exact[quantity]) for quantity in QUANTITIES),
-                    _share(exact["told_1_percent"]),
-                    _share(exact["peak_stress_exceeded"]) if row["model"] != "sliding" else "-",
                 )
             )
     for row in found["tolerances"]:
@@ -69,11 +74,34 @@ def facts(data: Mapping[str, Any]) -> dict[str, Any]:
     )
     return {
         "rung_rows": rungs,
+        "told_rows": _told_rows(found["told"]),
+        "ratio_rows": [_ratio_row(row) for row in found["told"]],
         "tolerance_rows": tolerances,
         "plan_columns": ["model", *(f"`{a}`" for a in (*RUNGS, *TOLERANCES))],
         "plan_rows": plan,
         "limits": ", ".join(limits),
     }
+
+
+def _told_rows(told: Iterable[Mapping[str, Any]]) -> list[tuple[str, ...]]:
+    """Return the rows of the table of told against true errors, by contact model, rung and output."""
+    return [
+        (
+            f"`{row['model']}`",
+            f"`{row['accuracy']}`",
+            OUTPUTS[name],
+            *(f"{rounded_up(float(own[level])):.1e}" for level in ("true", "true_95", "told")),
+            _share(own["covered"]),
+            f"{own['over']:.1f}",
+        )
+        for row in told
+        for name, own in row["checked"].items()
+    ]
+
+
+def _ratio_row(row: Mapping[str, Any]) -> tuple[str, ...]:
+    errors = (f"{rounded_up(row['ratio'][name]):.1e}" for name in ("peak_stress", "life"))
+    return f"`{row['model']}`", f"`{row['accuracy']}`", *errors, _share(row["agrees"])
 
 
 def _share(value: float) -> str:

@@ -147,7 +147,8 @@ class EllipseStresses(PatchStresses):
             effort = replace(settings, finalists=FINALISTS) if few else settings
             peak.put(piece, find_peaks(patches[piece], ratios[piece], effort, fields, coarse, bool(own)))
         # a model with an error of its own gains nothing from elements where the search alone is rough
-        doubt = (CHANGE_WEIGHT * peak.change if own else peak.error).max(axis=1)
+        # the change at the place of a peak, larger than that of its height, shows a narrow ridge
+        doubt = (CHANGE_WEIGHT * peak.change if own else np.fmax(peak.error, peak.change)).max(axis=1)
         goal = np.maximum(refined_above(elements), REFINED_SHARE * own * results.friction[flat])
         rough = np.flatnonzero((doubt > goal) & (results.slides_along[flat] == 0))
         if not own and settings.step > FINER_SEARCH["step"]:
