@@ -183,14 +183,13 @@ def along_turn(patch, u, out):
 
 
 @compiled
-def best_rival(depth, values):
-    """Return the index of the largest of `values` (m,) among the points of the other kind; -1 without such a point.
+def best_rival(depth, values, leader):
+    """Return the index of the largest of `values` (m,) among the points of another kind than the leader; -1 if none.
 
-    The kinds are points at the surface, with `depth` (m,) zero, and points below it. The other kind is the one to
-    which the point with the largest value does not belong.
+    The kinds are points at the surface, with `depth` (m,) zero, and points below it. The highest stress at the surface
+    and the highest below it are separate hills. `leader` is the index of a point.
     """
-    shallow = depth[values.argmax()] == 0.0
-    best = -1
+    shallow, best = depth[leader] == 0.0, -1
     for k in range(values.size):
         if (depth[k] == 0.0) != shallow and (best < 0 or values[k] > values[best]):
             best = k
@@ -201,24 +200,16 @@ def best_rival(depth, values):
 def best_seeds(points, values, count, apart):
     """Return the indices of up to `count` scan points (m, 3) with the largest `values` (m,).
 
-    They have at least the share SEED_WORTH of the largest value, and are `apart` from each other. If all the others are
-    of the kind of the first, the last one is the best of the other kind, see `best_rival`: the highest stress at the
-    surface and the highest below it are separate hills.
+    The points are `apart` from each other; they have at least the share SEED_WORTH of the largest value.
     """
     left, chosen, number = values.copy(), np.empty(count, np.int64), 0
-    enough, rival = SEED_WORTH * values.max(), best_rival(points[:, 2], values)
-    if rival >= 0 and values[rival] <= enough:
-        rival = -1
+    enough = SEED_WORTH * values.max()
     while number < count:
         best = left.argmax()
-        if rival >= 0 and number > 0 and (number == count - 1 or not left[best] > enough):
-            best = rival
-        elif not left[best] > enough:
+        if not left[best] > enough:
             break
         chosen[number] = best
         number += 1
-        if rival >= 0 and (points[best, 2] == 0.0) == (points[rival, 2] == 0.0):
-            rival = -1
         for k in range(left.size):
             if ((points[k] - points[best]) ** 2).sum() < apart * apart:
                 left[k] = 0.0
@@ -298,6 +289,8 @@ class Climbs(NamedTuple):
         Steps along radius, circumference and depth.
     along : numpy.ndarray, shape (m, 2)
         Direction of the first axis.
+    spared : numpy.ndarray of bool, shape (m,)
+        Climbs that stand as the best of their kind only. They make no other climb be given up, see `standing`.
     """
 
     u: np.ndarray
@@ -305,6 +298,7 @@ class Climbs(NamedTuple):
     gained: np.ndarray
     step: np.ndarray
     along: np.ndarray
+    spared: np.ndarray
 
 
 def lengths(rows: np.ndarray) -> np.ndarray:
@@ -463,7 +457,8 @@ def no_climbs(count, step):
     """Return climbs that are still given up, `count` in each body, with a first step."""
     steps, along = step * PROPORTIONS * np.ones((2 * count, 3)), np.zeros((2 * count, 2))
     along[:, 1] = 1.0
-    return Climbs(np.zeros((2 * count, 3)), np.full(2 * count, -1.0), np.zeros(2 * count), steps, along)
+    spared = np.zeros(2 * count, np.bool_)
+    return Climbs(np.zeros((2 * count, 3)), np.full(2 * count, -1.0), np.zeros(2 * count), steps, along, spared)
 
 
 @compiled
@@ -476,37 +471,44 @@ def polish(target, climbs, k, rules, smallest, sweeps):
 
 @compiled
 def standing(climbs, share, gap, most):
-    """Return which climbs stand, (m,): up to `most` of each body; the others are given up.
+    """Return which climbs stand, (m,): up to `most` of each body and a spared one; the others are given up.
 
     The highest climb and those above its `share` stand. Of points closer than `gap` only the highest stands. If all of
-    them are of one kind, the best of the other kind stands too, see `best_rival`: it may lie RIVAL_LAG times as far
-    behind.
+    them are of one kind, the best of the other kind is spared, see `best_rival`: it may lie RIVAL_LAG times as far
+    behind. A spared climb makes no other climb be given up, because rough rules may raise a point at the surface beside
+    the spin pole far above its stress.
     """
     count = climbs.f.size // 2
     stand = np.zeros(climbs.f.size, np.bool_)
     for body in range(2):
         first = body * count
-        left = climbs.f[first : first + count].copy()
+        heights = climbs.f[first : first + count]
         depth = climbs.u[first : first + count, 2]
-        rival = best_rival(depth, left)
-        lowest = max((1.0 - RIVAL_LAG * (1.0 - share)) * left.max(), 0.0)
-        alone = not (rival >= 0 and left[rival] > lowest)
-        enough = share * left.max()
+        left = heights.copy()
+        for k in range(count):
+            if climbs.spared[first + k]:
+                left[k] = -1.0
+        leader, alone = left.argmax(), True
+        highest = left[leader]
         for _ in range(min(most, count)):
             best = left.argmax()
-            if not left[best] >= enough:
+            if not left[best] >= share * highest:
                 break
             stand[first + best] = True
             left[best] = -1.0
-            alone = alone or (depth[best] == 0.0) == (depth[rival] == 0.0)
+            alone = alone and (depth[best] == 0.0) == (depth[leader] == 0.0)
             for other in range(count):
                 if ((climbs.u[first + other] - climbs.u[first + best]) ** 2).sum() < gap * gap:
                     left[other] = -1.0
-        if not alone:
+        rival = best_rival(depth, heights, leader)
+        lowest = max((1.0 - RIVAL_LAG * (1.0 - share)) * highest, 0.0)
+        if alone and rival >= 0 and heights[rival] > lowest:
             stand[first + rival] = True
+            climbs.spared[first + rival] = True
     for k in range(climbs.f.size):
         if not stand[k]:
             climbs.f[k] = -1.0
+            climbs.spared[k] = False
     return stand
 
 
@@ -647,7 +649,7 @@ def _climbed(fine, rough, points, rules, effort):
     set_steps(climbs, max(3.0 * effort.smallest, 0.01))
     for climb in np.flatnonzero(standing(climbs, 0.97, 0.1, effort.finalists)):
         rule = rules.ridge if climbs.u[climb, 2] == 0.0 else rules.polish
-        climbs.f[climb] = stress_at(fine, climb // effort.seeds, climbs.u[climb], rule)
+        climbs.f[climb] = stress_at(fine, 2 * climb // climbs.f.size, climbs.u[climb], rule)
         polish(fine, climbs, climb, rule, effort.smallest, 24 if effort.slender else 12)
     return climbs
 
@@ -658,14 +660,22 @@ def _write_highest(fine, climbs, rule, out):
     count = climbs.f.size // 2
     for body in range(2):
         first = body * count
-        heights = climbs.f[first : first + count]
-        best = first + heights.argmax()
+        heights = climbs.f[first : first + count].copy()
+        rival = -1
+        for k in range(count):
+            if climbs.spared[first + k]:
+                rival = k
+                heights[k] = -1.0
+        leader = heights.argmax()
+        if rival < 0:
+            rival = best_rival(climbs.u[first : first + count, 2], heights, leader)
+        best = first + leader
         summit = stress_at(fine, body, climbs.u[best], rule)
-        other = best_rival(climbs.u[first : first + count, 2], heights)
-        if other >= 0 and heights[other] > 0.0:  # rough rules err otherwise at the surface than below it
-            beside = stress_at(fine, body, climbs.u[first + other], rule)
-            if beside > summit:
-                best, summit = first + other, beside
+        if rival >= 0 and climbs.f[first + rival] > 0.0:  # rough rules err otherwise at the surface than below it
+            height = stress_at(fine, body, climbs.u[first + rival], rule)
+            if height > summit:
+                best = first + rival
+                summit = height
         out[body, 0] = summit
         assign(out[body, 1:4], climbs.u[best])
         out[body, 4] = 4.0 * (abs(summit - climbs.f[best]) + climbs.gained[best]) / summit
@@ -678,18 +688,33 @@ def _seeded(fine, rough, points, rules, effort):
     if effort.adhesion and has_ridges(fine, points, values):
         line = ridge_points(fine.patch, fine.field)
         points, values = np.concatenate((points, line)), np.concatenate((values, scan(fine, line, rules.scan)), axis=1)
-    climbs = no_climbs(count, 0.12)
-    u, f = climbs.u, climbs.f
+    climbs = no_climbs(count + 1, 0.12)
     for body in range(2):
-        k = body * count
-        for best in best_seeds(points, values[body], count, effort.apart):
-            assign(u[k], points[best])
-            f[k] = values[body, best]
-            if not effort.gridded:  # the first sweep of the others takes the rule of the scan, see `_climbed`
-                f[k] = stress_at(rough, body, u[k], rules.climb)
-            along_turn(fine.patch, u[k], climbs.along[k])
+        k = body * (count + 1)
+        seeds = best_seeds(points, values[body], count, effort.apart)
+        for best in seeds:
+            _start(fine, rough, climbs, k, points[best], values[body, best], rules, effort)
             k += 1
+        rival = best_rival(points[:, 2], values[body], seeds[0])
+        if rival < 0 or not values[body, rival] > SEED_WORTH * values[body].max():
+            continue
+        alone = True
+        for best in seeds:
+            alone = alone and (points[best, 2] == 0.0) == (points[seeds[0], 2] == 0.0)
+        if alone:
+            _start(fine, rough, climbs, k, points[rival], values[body, rival], rules, effort)
+            climbs.spared[k] = True
     return climbs
+
+
+@woven
+def _start(fine, rough, climbs, k, u, height, rules, effort):
+    """Let climb k start at a point u (3,) of a scan, where the stress is `height`."""
+    assign(climbs.u[k], u)
+    climbs.f[k] = height
+    if not effort.gridded:  # the first sweep of the others takes the rule of the scan, see `_climbed`
+        climbs.f[k] = stress_at(rough, 2 * k // climbs.f.size, climbs.u[k], rules.climb)
+    along_turn(fine.patch, climbs.u[k], climbs.along[k])
 
 
 def _rough(fields: np.ndarray) -> np.ndarray:
