@@ -14,7 +14,8 @@ from trackroller.roller.expected_errors import ratio_error, told_weights
 from trackroller.roller.told_errors import FORCES
 from validation import adopt
 from validation.benchmarks.samples import ordinary_designs
-from validation.tradeoff.told import OUTPUTS, neighbours, ratio_errors, row_of, true_errors
+from validation.tradeoff.page import AIM, MOST_OVER
+from validation.tradeoff.told import OUTPUTS, level_of, ratio_errors, row_of, sample, true_errors
 
 STEEL = "1.7225-quenched-tempered"
 # Its highest stresses at the surface and below it differ by 1 %: 28 elements lower the former by a few per cent.
@@ -31,6 +32,10 @@ TWO_HILLS = tr.Case(
     roller_material=STEEL,
     guide_material=STEEL,
 )
+# largest median told error over MOST_OVER times the true one, where told errors cannot cover and be small as well
+BEYOND = {("sliding", "peak_stress"): 3.1, ("sliding", "life"): 3.0, ("kalker", "normal_force"): 1.05}
+BEYOND |= {("sliding", "friction_force"): 1.15, ("sliding", "normal_force"): 1.15}
+BEYOND |= {(model, "friction_energy"): 1.4 for model in ("kalker_table", "kalker")}
 MEASURED = json.loads((adopt.DATA / "tradeoff.json").read_text(encoding="utf-8"))["told"]
 
 
@@ -57,22 +62,23 @@ def test_told_errors_cover_ordinary_designs(model, rung):
 
 @pytest.mark.parametrize("row", MEASURED, ids=lambda row: f"{row['model']}-{row['accuracy']}")
 def test_the_stored_table_covers_nearly_all_with_a_small_median(row):
-    """80 designs that calibrated nothing; errors of the sliding model are so small that few of them matter."""
-    assert row["accuracy"] in RUNGS
-    for quantity in ("peak_stress", "life"):
-        found = row["checked"][quantity]
-        assert 0.9 <= found["covered"] <= 0.99, quantity
-        assert found["over"] <= 5.0 or found["told"] < 2e-3, quantity
+    """They were judged on designs that calibrated nothing. Peaks of `sliding` are exact, or a hill is missed."""
+    assert row["accuracy"] in RUNGS and row["designs"] >= 500
+    for quantity, found in row["checked"].items():
+        assert AIM[0] <= found["covered"] <= AIM[1], quantity
+        beyond = BEYOND.get((row["model"], quantity), 1.0)
+        assert found["over"] <= MOST_OVER * beyond, quantity
+    for covered in row["ratio_covered"].values():
+        assert 0.92 <= covered <= 0.98
 
 
 def test_a_ratio_of_neighbours_errs_as_measured():
-    cases = ordinary_designs(30, 12)
-    both = cases, neighbours(cases)
-    rough, fine = ([tr.solve(part, OUTPUTS, accuracy=rung) for part in both] for rung in ("preview", "reference"))
-    found = ratio_errors(*rough, *fine)
+    cases = sample(30, 12)
+    rough, fine = (tr.solve(cases, OUTPUTS, accuracy=rung) for rung in ("preview", "reference"))
+    found = ratio_errors(rough, fine)
     for quantity in ("life", "peak_stress"):
         stored = ratio_error("preview", "kalker", quantity)
-        assert 0.3 * stored < found[quantity] < 2.0 * stored
+        assert 0.3 * stored < np.expm1(level_of(found[quantity])) < 2.0 * stored
     assert ratio_error("0.01", "kalker") is None and ratio_error("preview", "own") is None
     assert ratio_error("reference", "kalker") < ratio_error("standard", "kalker") < ratio_error("preview", "kalker")
 

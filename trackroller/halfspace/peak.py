@@ -56,7 +56,10 @@ NEAR_RIM = 0.98  # distance from the centre up to which the ridge is followed
 SEED_WORTH = 0.85  # least stress of a seed over the largest
 # The highest stress of the other kind, at the surface or below it, may lie this many times as far behind. Coarse rules
 # and few elements lower a ridge at the surface by some per cent, and hardly a summit below it.
-RIVAL_LAG = 2.0
+RIVAL_LAG = 1.5
+# The rule of the summit decides between both kinds, because the rule of the polish errs otherwise at the surface than
+# below it. A climb below this share of the highest one is too low for that error.
+CLOSE_RIVAL = 0.97
 
 # Relative change on coarser elements at the place of a peak above which the top of its hill is sought there, in sweeps.
 FALLEN, TOP_SWEEPS = 0.03, 3
@@ -469,6 +472,15 @@ def polish(target, climbs, k, rules, smallest, sweeps):
             break
 
 
+@woven
+def _give_up(climbs, stand):
+    """Give up the climbs that do not stand, (m,)."""
+    for k in range(climbs.f.size):
+        if not stand[k]:
+            climbs.f[k] = -1.0
+            climbs.spared[k] = False
+
+
 @compiled
 def standing(climbs, share, gap, most):
     """Return which climbs stand, (m,): up to `most` of each body and a spared one; the others are given up.
@@ -505,10 +517,7 @@ def standing(climbs, share, gap, most):
         if alone and rival >= 0 and heights[rival] > lowest:
             stand[first + rival] = True
             climbs.spared[first + rival] = True
-    for k in range(climbs.f.size):
-        if not stand[k]:
-            climbs.f[k] = -1.0
-            climbs.spared[k] = False
+    _give_up(climbs, stand)
     return stand
 
 
@@ -671,7 +680,7 @@ def _write_highest(fine, climbs, rule, out):
             rival = best_rival(climbs.u[first : first + count, 2], heights, leader)
         best = first + leader
         summit = stress_at(fine, body, climbs.u[best], rule)
-        if rival >= 0 and climbs.f[first + rival] > 0.0:  # rough rules err otherwise at the surface than below it
+        if rival >= 0 and climbs.f[first + rival] > CLOSE_RIVAL * climbs.f[best]:
             height = stress_at(fine, body, climbs.u[first + rival], rule)
             if height > summit:
                 best = first + rival

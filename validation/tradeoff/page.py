@@ -14,6 +14,8 @@ from validation.tradeoff.measure import COMPLETE, MODELS, TOLERANCES
 from validation.tradeoff.truth import SAMPLES
 
 QUANTITIES = ("normal_force", "friction_force", "peak_stress")
+RATIOS = ("peak_stress", "life")
+AIM, MOST_OVER = (0.95, 0.99), 5.0  # share of the true errors that told ones cover, and largest ratio of their medians
 OUTPUTS = {
     "friction_force": "F_T, F_A over μ F_N",
     "normal_force": "F_N",
@@ -75,6 +77,8 @@ def facts(data: Mapping[str, Any]) -> dict[str, Any]:
     return {
         "rung_rows": rungs,
         "told_rows": _told_rows(found["told"]),
+        "told_beyond": ", ".join(_beyond(found["told"])) or "none",
+        "told_designs": found["told"][0]["designs"],
         "ratio_rows": [_ratio_row(row) for row in found["told"]],
         "tolerance_rows": tolerances,
         "plan_columns": ["model", *(f"`{a}`" for a in (*RUNGS, *TOLERANCES))],
@@ -99,9 +103,20 @@ def _told_rows(told: Iterable[Mapping[str, Any]]) -> list[tuple[str, ...]]:
     ]
 
 
+def _beyond(told: Iterable[Mapping[str, Any]]) -> list[str]:
+    """Return the cells that miss the aim: the share that told errors cover, or their median over the true one."""
+    return [
+        f"{OUTPUTS[name]} of `{row['model']}` at `{row['accuracy']}`"
+        for row in told
+        for name, own in row["checked"].items()
+        if own["over"] > MOST_OVER or not AIM[0] <= own["covered"] <= AIM[1]
+    ]
+
+
 def _ratio_row(row: Mapping[str, Any]) -> tuple[str, ...]:
-    errors = (f"{rounded_up(row['ratio'][name]):.1e}" for name in ("peak_stress", "life"))
-    return f"`{row['model']}`", f"`{row['accuracy']}`", *errors, _share(row["agrees"])
+    errors = (f"{rounded_up(row['ratio'][name]):.1e}" for name in RATIOS)
+    covered = (_share(row["ratio_covered"][name]) for name in RATIOS)
+    return f"`{row['model']}`", f"`{row['accuracy']}`", *errors, *covered, _share(row["agrees"])
 
 
 def _share(value: float) -> str:
