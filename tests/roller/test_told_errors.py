@@ -57,7 +57,8 @@ def test_told_errors_cover_ordinary_designs(model, rung):
     for quantity, name in (("peak_stress", "error_estimate"), ("life", "life_error_estimate"), *FORCES.items()):
         told = ds[name].values
         found = row_of(errors[quantity], told if quantity == "friction_force" else np.log1p(told))
-        assert found["covered"] > 0.88 and found["over"] < 10.0, (quantity, found)
+        allowed = MOST_OVER * BEYOND.get((model, quantity), 1.0)
+        assert found["covered"] > 0.88 and found["over"] < 1.6 * allowed, (quantity, found)
 
 
 @pytest.mark.parametrize("row", MEASURED, ids=lambda row: f"{row['model']}-{row['accuracy']}")

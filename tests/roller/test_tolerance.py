@@ -44,12 +44,6 @@ def worst(truth, ds):
     return np.max(errors, axis=0) - truth.peak_error
 
 
-@pytest.fixture
-def estimates(monkeypatch):
-    """Let results state the estimates that a tolerance is held against, see `told_errors`."""
-    monkeypatch.setattr(solver, "calibrate", lambda *_: None)
-
-
 def test_estimates_cover_peaks_at_the_spin_pole(estimates):
     """Twice the elements change these peaks by a tenth of their error, which the formula for the pole estimates."""
     truth = TRUTH.take(CLOSE)
