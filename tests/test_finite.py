@@ -9,13 +9,17 @@ from pathlib import Path
 from typing import Any
 
 import openpyxl
+import pandas as pd
 import pytest
 import xarray as xr
 import yaml
 
 import trackroller as tr
 from trackroller.app.picture import read
+from trackroller.carriage.file import load_carriage
 from trackroller.cli.case import case_of
+from trackroller.damage.bearing import FIELD as BEARING
+from trackroller.damage.catalogue import FIELD as CATALOGUE
 from trackroller.materials import add_material
 from trackroller.materials.properties import ALTERNATIVES, PROPERTIES
 from trackroller.parameters import PARAMETERS
@@ -74,6 +78,12 @@ DOORS = {
         {"base": {name: value}, "blocks": [{"name": "a", "distance": 1}]}
     ),
     "block": lambda name, value: Spectrum.from_dict({"blocks": [{"name": "a", "distance": 1, name: value}]}),
+    "data frame": lambda name, value: tr.solve(pd.DataFrame({name: [1, value]}), ("forces",), **QUICK),
+    "row of a data frame": lambda name, value: tr.Case(**pd.DataFrame({name: [1, value]}).iloc[1]),
+    "column of a data frame": lambda name, value: of_factor(name, {"values": pd.Series([1, value])}),
+    "data frame of blocks": lambda name, value: Spectrum.from_dict(
+        {"blocks": pd.DataFrame({"name": ["a", "b"], "distance": [1, 1], name: [1, value]})}
+    ),
     "between": lambda name, value: tr.find({"motor_force": 0}, name, "max_pressure < 900", between=(1, value), **QUICK),
 }
 
@@ -130,6 +140,27 @@ CASE = {
     "friction_law": {"kind": "exponential", "lowest": 0.5, "speed": 100.0},
     "guide_profile": {"parabola": 6.0},
     "roller_profile": {"points": [[-2.0, 0.3], [-1.0, 0.08], [0.0, 0.0], [1.0, 0.08], [2.0, 0.3]], "smooth": 0.01},
+    "bearing": {
+        "rows": 2,
+        "row_distance": 8.0,
+        "kind": "ball",
+        "dynamic_rating": 3000.0,
+        "static_rating": 1500.0,
+        "e": 0.3,
+        "X": 0.56,
+        "Y": 1.5,
+        "X0": 0.6,
+        "Y0": 0.5,
+        "permissible_moment": 900.0,
+    },
+    "catalogue": {
+        "radial_force": 800.0,
+        "axial_force": 300.0,
+        "basic_life": 100.0,
+        "moment": 900.0,
+        "law": "dry",
+        "offset": 0.03,
+    },
     "wear_table": {"work_rate": [0.0, 1.0], "roller": [0.0, 1.0], "guide": [0.0, 1.0]},
     "roller_material": {"like": STEEL, "sn_points": [[700.0, 1e4], [500.0, 1e6]]},
     "duty": {"hours_per_day": 16.0, "days_per_year": 250.0},
@@ -171,7 +202,38 @@ SPECTRUM = {
     "blocks": [{"name": "a", "distance": 1.0, "radial_force": -100.0}, {"name": "b", "distance": 2.0}],
     "duty": {"hours_per_day": 16.0, "days_per_year": 250.0},
 }
+_ROLLER = {"pushes": [0.0, 0.0, -1.0], "x_R": [0.0, 1.0, 0.0]}
+CARRIAGE = {
+    "mass": {"value": 40.0, "at": [0.0, 0.0, 60.0]},
+    "payloads": [{"value": 60.0, "at": [80.0, 0.0, 150.0]}],
+    "drive": {"at": [0.0, 0.0, -20.0]},
+    "rollers": {
+        "FL": _ROLLER | {"at": [150.0, 40.0, 0.0], "stiffness": {"radial": 1e4, "axial": 1e3}},
+        "FR": _ROLLER | {"at": [150.0, -40.0, 0.0], "bearing": {"radial": 1e4, "axial": 1e3}, "stiffness": 1e4},
+        "RL": _ROLLER | {"at": [-150.0, 40.0, 0.0], "structure": {"radial": 1e4, "axial": 1e3}, "stiffness": 1e4},
+        "RR": _ROLLER | {"at": [-150.0, -40.0, 0.0], "catalogue": CASE["catalogue"], "stiffness": 1e4},
+        "lower": _ROLLER
+        | {"at": [150.0, 40.0, -9.0], "pushes": [0.0, 0.0, 1.0], "roller": {"bearing": CASE["bearing"]}},
+    },
+    "preload": [{"pair": ["FL", "lower"], "force": 100.0}],
+    "cases": [
+        {
+            "name": "a",
+            "share": 0.4,
+            "acceleration": 2.0,
+            "speed": 1.0,
+            "gradient": "2 deg",
+            "cant": 0.0,
+            "payload": 0.5,
+            "forces": [{"force": [0.0, 50.0, 0.0], "at": [0.0, 0.0, 200.0]}],
+        },
+        {"name": "b", "share": 0.6, "speed": 1.0},
+    ],
+    "distance": 1000.0,
+    "duty": {"strokes_per_day": 400.0, "stroke": 0.8, "days_per_year": 250.0},
+}
 FILES = {
+    "carriage": (CARRIAGE, load_carriage),
     "case": (CASE, lambda values: to_table(checked_case(values)[0])),  # the table has the values of the materials
     "study": (STUDY, lambda values: tr.load_study(values)),
     "search": (SEARCH, lambda values: tr.load_study(values)),
@@ -214,3 +276,95 @@ def test_no_number_of_a_file_is_infinite_or_nan_wherever_it_stands(kind):
                 continue
             taken.append((place, value))
     assert not taken
+
+
+UNDER = {"load_type": "axial", "stress_ratio": -1.0, "like": STEEL}
+COUPONS = {"amplitude": [900.0, 900, 800, 800, 700, 700], "cycles": [9e4, 1.3e5, 2e5, 3.5e5, 8e5, 1e6]}
+BENCH = {
+    "radial_force": [-120.0, -150, -150, -180, -180, -210],
+    "travel_from": [130.0, 100, 50, 41.5, 25, 43.4],
+    "travel_to": [130.0, 150, 75, 41.5, 50, 43.4],
+    "end": ["fatigue roller"] * 6,
+}
+RIG = {"motor_force": 0.0, "friction_coefficient": 0.1, "axial_force": 20.0, "contact_model": "sliding"}
+TABLES = {
+    "S-N tests": (COUPONS | {"failed": [True] * 6}, lambda table: tr.fit_sn(table, **UNDER)),
+    "bench": (BENCH, lambda table: tr.fit_bench(table, "fatigue_strength", base=RIG)),
+}
+
+
+@pytest.mark.parametrize("kind", TABLES)
+@pytest.mark.parametrize("made", [pd.DataFrame, dict], ids=["data frame", "columns"])
+def test_no_number_of_a_table_of_tests_is_infinite_or_nan(kind, made):
+    given, fit = TABLES[kind]
+    taken = []
+    for place in leaves(given):
+        for value in BAD:
+            try:
+                fit(made(changed(given, place, value)))
+            except tr.InputError:
+                continue
+            taken.append((place, value))
+    assert not taken
+
+
+def test_no_argument_of_a_fit_is_infinite_or_nan():
+    fit = tr.fit_sn(COUPONS | {"failed": [True] * 6}, **UNDER)
+    plan = ([RIG], RIG)
+    doors = {
+        "stress_ratio": lambda value: tr.fit_sn(COUPONS, **UNDER | {"stress_ratio": value}),
+        "slope": lambda value: tr.fit_sn(COUPONS, **UNDER, slope=value),
+        "scatter_in_cycles": lambda value: tr.fit_sn(COUPONS, **UNDER, scatter_in_cycles=value),
+        "prior": lambda value: tr.fit_sn(COUPONS, **UNDER, prior={"slope": [8, value]}),
+        "slope of a bench": lambda value: tr.fit_bench(BENCH, "fatigue_strength", base=RIG, slope=value),
+        "base of a bench": lambda value: tr.fit_bench(BENCH, "fatigue_strength", base=RIG | {"axial_force": value}),
+        "amplitude": lambda value: fit.interval("cycles", amplitude=value),
+        "cycles": lambda value: fit.interval("amplitude", cycles=value),
+        "confidence": lambda value: fit.interval("slope", confidence=value),
+        "failure_probability": lambda value: fit.interval("cycles", amplitude=700, failure_probability=value),
+        "life": lambda value: fit.life_hours(RIG, failure_probability=value),
+        "design of a life": lambda value: fit.life_hours(RIG | {"axial_force": value}),
+        "tests": lambda value: tr.next_tests(fit, *plan, tests=value),
+        "seed": lambda value: tr.next_tests(fit, *plan, seed=value),
+        "candidates": lambda value: tr.next_tests(fit, [RIG | {"axial_force": value}], RIG),
+        "end of wear": lambda value: tr.wear({"roller_material": "POM"}, to=value, **QUICK),
+    }
+    taken = []
+    for door, act in doors.items():
+        for value in BAD:
+            try:
+                act(value)
+            except tr.InputError:
+                continue
+            taken.append((door, value))
+    assert not taken
+
+
+FIELDS = [(field, number) for field in (BEARING, CATALOGUE) for number in field.numbers]
+
+
+@pytest.mark.parametrize(("field", "number"), FIELDS, ids=[f"{field.name}.{one.name}" for field, one in FIELDS])
+def test_no_value_of_a_bearing_or_catalogue_is_infinite_or_nan_at_any_door(field, number, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    for value in BAD:
+        given = CASE[field.name] | {number.name: value}
+        Path("case.yaml").write_text(yaml.safe_dump({field.name: given}))
+        doors = {
+            "Case": lambda given=given: tr.Case(**{field.name: given}),
+            "solve": lambda given=given: tr.solve({field.name: given}, ("forces",), **QUICK),
+            "row": lambda given=given: tr.Case(**{field.name: pd.DataFrame([given]).iloc[0]}),
+            "file": lambda: case_of(Path("case.yaml"), None),
+            "--set": lambda given=given: case_of(
+                None, [f"{field.name}={yaml.safe_dump(given, default_flow_style=True)}"]
+            ),
+            "page": lambda given=given: read({field.name: given}),
+            "base": lambda given=given: tr.load_study({"name": "x", "base": {field.name: given}}),
+            "level": lambda given=given: of_factor(field.name, {"values": [CASE[field.name], given]}),
+            "spectrum": lambda given=given: Spectrum.from_dict({"base": {field.name: given}, **BLOCKS}),
+        }
+        for door, act in doors.items():
+            with pytest.raises(tr.InputError, match=number.name):
+                pytest.fail(f"{door} takes {value}: {act()}")
+
+
+BLOCKS = {"blocks": [{"name": "a", "distance": 1.0}]}

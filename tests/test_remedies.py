@@ -2,16 +2,30 @@
 
 from __future__ import annotations
 
+import contextlib
+import re
+import shlex
+import subprocess
+import sys
+import time
+import tomllib
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 import xarray as xr
-from command_line import trackroller
+import yaml
+from command_line import trackroller, trackroller_process
+from distributed import LocalCluster
 
 import trackroller as tr
+from trackroller.app import studies
+from trackroller.errors import WorkError
+from trackroller.report import html
 from trackroller.roller.settings import checked_case
+from trackroller.study import cluster
 from trackroller.study.spectrum.file import Spectrum
 
 QUICK = {"contact_model": "sliding", "accuracy": "preview"}
@@ -363,3 +377,219 @@ def test_what_the_message_of_a_command_says_gives_a_result(name, tmp_path):
             (tmp_path / words[0]).mkdir()
         else:
             assert trackroller(first, *words, cwd=tmp_path) is not None
+
+
+ROOT = Path(__file__).parents[1]
+SMALL = {"name": "small", "outputs": ["forces"], "factors": {"axial_force": {"values": [0, 20, 40]}}} | QUICK
+OTHER = SMALL | {"factors": {"axial_force": {"values": [0, 20, 50]}}}
+
+
+def written(folder: Path, name: str, study: dict[str, Any]) -> None:
+    (folder / name).write_text(yaml.safe_dump(study))
+
+
+def solved(folder: Path, name: str = "small") -> int:
+    """Return the number of cases that a run has left."""
+    return int(xr.load_dataset(folder / "results" / name / "study.nc").sizes["axial_force"])
+
+
+@pytest.mark.parametrize("missing", ["distributed", "dask"])
+def test_a_missing_package_of_the_cluster_is_named_and_this_process_solves(missing, tmp_path, monkeypatch):
+    written(tmp_path, "s.yaml", SMALL)
+    with monkeypatch.context() as without:
+        without.setitem(sys.modules, missing, None)  # as if it were not installed
+        told = trackroller("run", "s.yaml", "-q", "--scheduler", "local", cwd=tmp_path, code=2).stderr
+    assert "pip install 'trackroller[cluster]'" in told and "Without --scheduler, this process solves." in told
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    assert {"dask", "distributed"} <= {*project["dependencies"], *project["optional-dependencies"]["cluster"]}
+    trackroller("run", "s.yaml", "-q", cwd=tmp_path)
+    assert solved(tmp_path) == 3
+
+
+@pytest.mark.parametrize("address", ["localhost:9", "tcp://localhost", "tcp://", "tcp://localhost:x", "Local", ""])
+def test_a_wrong_address_of_a_scheduler_is_refused_at_once(address, tmp_path):
+    written(tmp_path, "s.yaml", SMALL)
+    told = trackroller("run", "s.yaml", "-q", f"--scheduler={address}", cwd=tmp_path, code=2).stderr
+    remedy = f"tcp://{address}" if address == "localhost:9" else "local"
+    assert f"Write --scheduler {remedy}" in told and "tcp://host:port" in told
+
+
+@pytest.mark.parametrize("address", ["tcp://localhost:9", "tls://localhost:9"])
+def test_a_scheduler_that_does_not_answer_is_told(address, tmp_path, monkeypatch):
+    written(tmp_path, "s.yaml", SMALL)
+    monkeypatch.setattr(cluster, "PATIENCE", 0.5)
+    told = trackroller("run", "s.yaml", "-q", "--scheduler", address, cwd=tmp_path, code=2).stderr
+    assert "does not answer as a dask scheduler" in told and "Start one: dask scheduler, then dask worker" in told
+
+
+def test_the_address_that_a_message_writes_reaches_the_scheduler(tmp_path):
+    written(tmp_path, "s.yaml", SMALL)
+    with LocalCluster(n_workers=1, processes=False, protocol="tcp", dashboard_address=None) as running:
+        words = ("run", "s.yaml", "-q", "--scheduler")
+        told = trackroller(*words, running.scheduler_address.removeprefix("tcp://"), cwd=tmp_path, code=2).stderr
+        address = re.search(r"Write --scheduler (\S+)\.", told)[1]
+        trackroller(*words, address, cwd=tmp_path)
+    assert solved(tmp_path) == 3
+
+
+@contextlib.contextmanager
+def started(line: str, log: Path) -> Iterator[subprocess.Popen[bytes]]:
+    """Start a line of a message as a process whose output stands in a file, and end it afterwards."""
+    with open(log, "wb") as stream:
+        process = subprocess.Popen([sys.executable, "-m", *line.split()], stdout=stream, stderr=stream, cwd=log.parent)
+    try:
+        yield process
+    finally:
+        process.kill()
+        process.wait()
+
+
+def awaited(log: Path, pattern: str) -> str:
+    """Return the first group of a pattern as soon as a file holds it."""
+    for _ in range(1200):
+        found = re.search(pattern, log.read_text()) if log.is_file() else None
+        if found:
+            return found[1]
+        time.sleep(0.1)
+    raise AssertionError(f"waited in vain for {pattern}")
+
+
+@pytest.mark.long
+def test_a_lost_scheduler_is_started_as_the_message_says_and_the_run_goes_on(tmp_path):
+    """No worker is told; a scheduler that ends is told; the lines of the messages, as they stand, end in a result."""
+    written(tmp_path, "s.yaml", SMALL)
+    words = ["-m", "trackroller.cli", "run", "s.yaml", "-q", "--scheduler"]
+    with started("dask scheduler --host 127.0.0.1 --port 0 --no-dashboard", tmp_path / "s.log") as scheduler:
+        address = awaited(tmp_path / "s.log", r"Scheduler at:\s+(\S+)")
+        with open(tmp_path / "run.log", "wb") as log:
+            run = subprocess.Popen([sys.executable, *words, address], cwd=tmp_path, stdout=log, stderr=log)
+        worker = awaited(tmp_path / "run.log", r"has no worker yet; the run waits for one: (dask worker \S+)")
+        scheduler.kill()
+        assert run.wait(120) == 1
+    told = (tmp_path / "run.log").read_text()
+    assert "Traceback" not in told and "the dask scheduler does not answer any more. Start one: dask scheduler" in told
+    with started("dask scheduler --host 127.0.0.1 --port 0 --no-dashboard", tmp_path / "again.log"):
+        again = awaited(tmp_path / "again.log", r"Scheduler at:\s+(\S+)")
+        with started(worker.replace(address, again), tmp_path / "w.log"):
+            trackroller_process("run", "s.yaml", "-q", "--scheduler", again, cwd=tmp_path)
+    assert solved(tmp_path) == 3
+
+
+PAGES = (
+    "solve --set contact_model=sliding --set accuracy=preview --report page.pdf",
+    "spectrum load.yaml --report page.pdf",
+    "wear case.yaml --to 1km -q --report page.pdf",
+    "report small --out page.pdf",
+    "best small --out page.pdf",
+)
+BROWSER = """#!{python}
+import sys
+import time
+made = [word.split("=", 1)[1] for word in sys.argv if word.startswith("--print-to-pdf=")]
+open(made[0], "wb").write(b"%PDF-1.4 printed")
+"""
+
+
+@pytest.mark.parametrize("line", PAGES)
+def test_a_pdf_without_a_browser_becomes_a_page_or_a_pdf_after_one_was_installed(line, tmp_path, monkeypatch):
+    written(tmp_path, "load.yaml", QUICK | {"name": "load", "blocks": [{"name": "a", "distance": 1}]})
+    written(tmp_path, "case.yaml", QUICK | {"roller_material": "POM"})
+    if "small" in line:
+        written(tmp_path, "s.yaml", SMALL)
+        trackroller("run", "s.yaml", "-q", cwd=tmp_path)
+    monkeypatch.setattr(html.shutil, "which", lambda name: None)
+    before = sorted(tmp_path.rglob("*"))
+    told = trackroller(*shlex.split(line), cwd=tmp_path, code=1).stderr
+    assert "Install one of them, or write a page: give a name that ends in .html." in told
+    assert sorted(tmp_path.rglob("*")) == before
+    trackroller(*shlex.split(line.replace(".pdf", ".html")), cwd=tmp_path)
+    assert (tmp_path / "page.html").read_text().startswith("<!doctype html>")
+    browser = tmp_path / "chromium"
+    browser.write_text(BROWSER.format(python=sys.executable))
+    browser.chmod(0o755)
+    monkeypatch.setattr(html.shutil, "which", lambda name: str(browser) if name == "chromium" else None)
+    trackroller(*shlex.split(line), cwd=tmp_path)
+    assert (tmp_path / "page.pdf").read_bytes() == b"%PDF-1.4 printed"
+
+
+def test_a_browser_that_prints_nothing_is_told_and_a_page_is_written(tmp_path, monkeypatch):
+    monkeypatch.setattr(html, "_browser", lambda: "false")
+    line = PAGES[0].split()
+    told = trackroller(*line, cwd=tmp_path, code=1).stderr
+    assert "does not print the page" in told and "Give a name that ends in .html." in told
+    trackroller(*line[:-1], "page.html", cwd=tmp_path)
+    assert [path.name for path in tmp_path.iterdir()] == ["page.html"]
+
+
+HOLD = """
+import sys, portalocker
+stream = open(sys.argv[1], "ab")
+portalocker.lock(stream, portalocker.LockFlags.SHARED)
+print("held", flush=True)
+sys.stdin.read()
+"""
+
+
+@contextlib.contextmanager
+def held(lock: Path) -> Iterator[None]:
+    """Hold the lock of a file as a run holds it, in another process."""
+    words = [sys.executable, "-c", HOLD, str(lock)]
+    with subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as process:
+        assert process.stdout.readline() == "held\n"
+        yield
+        process.stdin.close()
+
+
+def test_a_folder_that_another_run_holds_is_free_under_another_name_or_after_its_end(tmp_path):
+    written(tmp_path, "s.yaml", SMALL)
+    trackroller("run", "s.yaml", "-q", cwd=tmp_path)
+    written(tmp_path, "s.yaml", OTHER)
+    files = {path: path.stat().st_mtime_ns for path in (tmp_path / "results").rglob("*") if path.is_file()}
+    with held(tmp_path / "results/small/plan/.lock"):
+        told = trackroller("run", "s.yaml", "-q", cwd=tmp_path, code=1).stderr
+        assert "another process is solving it, from another version of the study file" in told
+        assert "Wait until that process ends" in told and "give this one another name." in told
+        assert files == {path: path.stat().st_mtime_ns for path in (tmp_path / "results").rglob("*") if path.is_file()}
+        written(tmp_path, "other.yaml", OTHER | {"name": "other"})
+        trackroller("run", "other.yaml", "-q", cwd=tmp_path)
+        assert solved(tmp_path, "other") == 3
+    trackroller("run", "s.yaml", "-q", cwd=tmp_path)
+    assert solved(tmp_path) == 3
+
+
+def test_failed_cases_are_solved_again_after_the_other_run(tmp_path):
+    written(tmp_path, "s.yaml", SMALL)
+    trackroller("run", "s.yaml", "-q", cwd=tmp_path)
+    with held(tmp_path / "results/small/plan/.lock"):
+        told = trackroller("run", "s.yaml", "-q", "--rerun-failed", cwd=tmp_path, code=1).stderr
+        assert "another process is solving it, and failed cases are not removed under it. Wait until" in told
+        assert "another version" not in told, "the study file is the same"
+        trackroller("run", "s.yaml", "-q", cwd=tmp_path)  # the same version goes on beside it
+    trackroller("run", "s.yaml", "-q", "--rerun-failed", cwd=tmp_path)
+
+
+def test_the_page_says_of_a_study_that_runs_elsewhere_how_to_end_it(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    Path("studies").mkdir()
+    written(tmp_path, "studies/small.yaml", SMALL)
+    trackroller("run", "studies/small.yaml", "-q", cwd=tmp_path)
+    begun: list[Any] = []
+    folder = Path("results/small")
+    with held(folder / "plan/.lock"):
+        monkeypatch.setattr(studies.subprocess, "Popen", lambda *words, **how: begun.append(words))
+        for act in (lambda: studies.start(yaml.safe_dump(OTHER)), lambda: studies.delete("small", "small")):
+            with pytest.raises(WorkError, match=r"runs on the command line\. Wait until it ends, or stop it there"):
+                act()
+        with pytest.raises(WorkError, match="does not run from this page, so the page cannot pause it"):
+            studies.pause("small")
+        studies.start(yaml.safe_dump(OTHER | {"name": "other"}))  # another name, as the message says
+    monkeypatch.undo()
+    monkeypatch.chdir(tmp_path)
+    (folder / studies.LOCK).touch()
+    with held(folder / studies.LOCK):
+        with pytest.raises(WorkError, match=r"runs already\. Pause it first"):
+            studies.delete("small", "small")
+        studies.pause("small")
+        assert (folder / studies.PAUSE).is_file(), "the process of the page ends then"
+    studies.delete("small", "small")
+    assert len(begun) == 1 and not folder.exists()

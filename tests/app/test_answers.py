@@ -21,7 +21,7 @@ from trackroller.app.fields import all_fields, slider
 from trackroller.app.lane import STALE, Lane
 from trackroller.app.materials import material, save_material
 from trackroller.app.picture import curve, file_of_roller, picture, texts
-from trackroller.app.picture import found as range_of
+from trackroller.app.picture import find_range as range_of
 from trackroller.app.spectrum import spectrum
 from trackroller.app.studies import checked, file_of_study, headlines, listing, page_of
 from trackroller.errors import InputError, WorkError
@@ -33,7 +33,7 @@ from trackroller.study.file.load import load_study
 from trackroller.study.run import run_study
 from trackroller.study.spectrum.file import Spectrum
 from trackroller.study.spectrum.solve import solve_spectrum
-from trackroller.study.store.manifest import replacing
+from trackroller.study.store.put import replacing
 
 
 def test_every_parameter_stands_on_the_page():

@@ -8,6 +8,7 @@ import pytest
 import trackroller as tr
 from trackroller.damage.rating import contacts_to_limit, static_pressure
 from trackroller.errors import InputError
+from trackroller.materials import load_database
 from trackroller.results.placeholders import guess_cautions, placeholders_part
 
 STEEL = {"like": "1.7225-normalised", "hardness": 220.0, "yield_strength": 480.0}
@@ -106,4 +107,24 @@ def test_placeholders_are_one_warning_for_a_material_and_a_row_for_each_value():
         ("1.7225-normalised", "shakedown", "yield_strength", 400.0, 550.0, "MPa"),
     ]
     (caution,) = guess_cautions(part)
-    assert caution.where.startswith("1.7225-normalised: rating and shakedown")
+    assert caution.where == "1.7225-normalised: 2 values; rating and shakedown rest on them; see its notes"
+
+
+def test_a_warning_counts_the_guesses_of_a_material_and_the_table_has_its_notes():
+    pair = {"roller_material": "PA66-moist", "guide_material": "EN AW-6082-T6"}
+    case = tr.Case(**pair, motor_force=0, radial_force=-20, axial_force=2, permissible_wear_depth=0.1)
+    part = placeholders_part(tr.solve(case, ("wear", "shakedown", "limits"), contact_model="sliding"))
+    database = load_database()
+    for material in pair.values():
+        values = database.material(material).with_sources()
+        rows = (part.table["material"] == material) & (part.table["limit"] == "")
+        own = part.table[rows].set_index("value")
+        assert own.index.is_unique and {*own[own["guessed"] == "yes"].index} == {*values["guesses"]}
+        assert {key: own["note"][key] for key in values["notes"]} == values["notes"]
+        assert bool((own["guessed"] == "").any())
+    texts = [caution.where for caution in guess_cautions(part)]
+    # the S-N line of the alloy has tests behind it, and is no guess
+    assert texts == [
+        "PA66-moist: 7 values; shakedown and wear rest on them; see its notes",
+        "EN AW-6082-T6: 2 values; wear rests on them; see its notes",
+    ]

@@ -12,7 +12,7 @@ from synthetic_results import PAIRS, grid_study
 from trackroller.report.build import build_report
 from trackroller.study.file.load import parse_study
 from trackroller.study.store.folder import StudyFolder
-from trackroller.study.store.manifest import put, put_text
+from trackroller.study.store.put import put, put_text
 
 FACTORS = {
     "friction_coefficient": [0.05, 0.3, 0.4],

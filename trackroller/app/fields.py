@@ -61,7 +61,9 @@ def _group(parameter: Parameter) -> str:
     """Return the head below which the field of a parameter stands."""
     if parameter.name in SIZES:
         return "Sizes of a drawing, duty"
-    return "Limits" if parameter.name in OF_LIMITS else GROUPS[parameter.role]
+    if parameter.name in OF_LIMITS:
+        return "Limits"
+    return GROUPS[parameter.role]
 
 
 def slider(parameter: Parameter) -> tuple[float, float] | None:

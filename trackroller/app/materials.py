@@ -42,9 +42,12 @@ def material(name: str) -> dict[str, Any]:
     rows = []
     for prop in (*PROPERTIES.values(), *ALTERNATIVES.values()):
         row = known.get(prop.name, {})
-        mark = f"placeholder, {row['note']}" if row.get("placeholder") else row.get("note", "")
-        told = {"value": row.get("value", ""), "source": row.get("source", "not given"), "mark": mark}
-        rows.append({"field": prop.name, "symbol": prop.symbol, "label": prop.label, "unit": prop.unit, **told})
+        if row.get("placeholder"):
+            mark = f"placeholder, {row['note']}"
+        else:
+            mark = row.get("note", "")
+        value = {"value": row.get("value", ""), "source": row.get("source", "not given"), "mark": mark}
+        rows.append({"field": prop.name, "symbol": prop.symbol, "label": prop.label, "unit": prop.unit, **value})
     return {"description": own.description, "family": own.family, "rows": rows}
 
 
@@ -76,15 +79,19 @@ def save_material(name: str, like: str, values: dict[str, str], source: str) -> 
     check_names("value of a material", values, NUMBERS)
     if not source.strip():
         raise InputError("source", source, "where the values come from", "Name the data sheet or the test.")
-    database, file = load_database(), find_user_file(None) or FILE
+    database = load_database()
+    file = find_user_file(None) or FILE
     check_names("material value", values, (*PROPERTIES, *ALTERNATIVES))
     values = {field: str(text) for field, text in values.items()}
     changed = {field: typed(text) for field, text in values.items() if text.strip()}
-    base = {} if name in database or like == name else {"like": database.material(like, "like").name}
+    if name in database or like == name:
+        base = {}
+    else:
+        base = {"like": database.material(like, "like").name}
     if not changed:
         raise InputError("material", name, "at least one changed value", "Type another number into one of the fields.")
-    made = add_material(file, name, replace=True, source=source.strip(), **base, **changed)
-    return {"materials": material_rows(load_database()), "file": str(file), "doubts": doubts({}, [made])}
+    material = add_material(file, name, replace=True, source=source.strip(), **base, **changed)
+    return {"materials": material_rows(load_database()), "file": str(file), "doubts": doubts({}, [material])}
 
 
 def typed(text: str) -> float | str:

@@ -91,10 +91,14 @@ def answer(name: str) -> Callable[..., Any]:
 def plain(value: Any) -> Any:
     """Return a value as JSON can hold it: NaN as None, and infinite numbers as the texts inf and -inf."""
     if isinstance(value, float) and not math.isfinite(value):
-        return None if math.isnan(value) else "inf" if value > 0 else "-inf"
+        if math.isnan(value):
+            return None
+        return "inf" if value > 0 else "-inf"
     if isinstance(value, Mapping):
         return {str(key): plain(entry) for key, entry in value.items()}
-    return [plain(entry) for entry in value] if isinstance(value, (list, tuple)) else value
+    if isinstance(value, (list, tuple)):
+        return [plain(entry) for entry in value]
+    return value
 
 
 class _Handler(tornado.web.RequestHandler):
@@ -113,7 +117,9 @@ class _Handler(tornado.web.RequestHandler):
 
     def prepare(self) -> None:
         """Refuse who does not know the token, who asks under another name of this machine, and other sites."""
-        server, headers, host = self.settings["server"], self.request.headers, self.request.host.lower()
+        server = self.settings["server"]
+        headers = self.request.headers
+        host = self.request.host.lower()
         if host not in server.hosts:
             where = " and ".join(sorted(server.hosts))
             way = "Forward the same port number, or start the page with --allow-host and the host of the address line"
@@ -130,7 +136,10 @@ class _Handler(tornado.web.RequestHandler):
     async def answered(self, question: str, newest_of: str = "", /, **arguments: Any) -> Any:
         """Answer in the thread of the solver or of the files; `newest_of` names a page that needs the newest only."""
         server: Server = self.settings["server"]
-        lane = server.solver if question in SOLVING else server.files
+        if question in SOLVING:
+            lane = server.solver
+        else:
+            lane = server.files
         key = question, newest_of or secrets.token_hex(8)
         return await asyncio.wrap_future(lane.submit(key, lambda: answer(question)(**arguments)))
 
@@ -242,12 +251,14 @@ class Server:
 
     def __init__(self, port: int = 0, allow_hosts: Iterable[str] = ()) -> None:
         self.token = secrets.token_urlsafe(24)
-        self.solver, self.files = Lane("solver"), Lane("files")
+        self.solver = Lane("solver")
+        self.files = Lane("files")
         try:
             sockets = tornado.netutil.bind_sockets(port, HOST)
         except OSError as exc:
             raise WorkError(f"port {port} is not free ({exc.strerror}). Give another number with --port.") from None
-        number, further = sockets[0].getsockname()[1], list(allow_hosts)
+        number = sockets[0].getsockname()[1]
+        further = list(allow_hosts)
         self.hosts = {*further, *(f"{name}:{number}" for name in (HOST, "localhost"))}
         if number == USUAL:  # browsers leave it out
             self.hosts |= {HOST, "localhost"}

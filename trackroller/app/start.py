@@ -18,7 +18,8 @@ from trackroller.errors import InputError, WorkError
 from trackroller.files import check_utf_8, confine, refuse_links, try_lock, write_private
 
 PLACE = Path(".trackroller")  # in the folder that the page works in
-ADDRESS, OPENS = PLACE / "address.json", PLACE / "open.html"
+ADDRESS = PLACE / "address.json"
+OPENS = PLACE / "open.html"
 _HOST = re.compile(r"([a-z0-9]([a-z0-9._-]*[a-z0-9])?|\[[0-9a-f:.]+\])(:[0-9]{1,5})?")
 # the browser shows this file first: other users of the machine can read the arguments of a process, but not this file
 _OPENING = '<!doctype html>\n<meta http-equiv="refresh" content="0; url={0}">\n<a href="{0}">Open the page</a>\n'
@@ -66,7 +67,9 @@ def serve(folder: Path, port: int | None = None, browser: bool = True, allow_hos
         If the port is taken, or Tornado is missing.
     """
     if not folder.is_dir():
-        wrong = "is a file" if folder.exists() else "does not exist"
+        wrong = "does not exist"
+        if folder.exists():
+            wrong = "is a file"
         raise InputError("folder", str(folder), "a folder", "Create it first, or give another one.", wrong)
     check_utf_8(folder.absolute(), "folder")
     hosts = [checked_host(name) for name in allow_hosts]
@@ -113,10 +116,12 @@ def _tell_where(browser: bool, hosts: list[str]) -> None:
     """Say where the server of this folder runs that was started first."""
     try:
         known = json.loads(ADDRESS.read_text(encoding="utf-8"))
-        address, allowed = known["address"], known["hosts"]
+        address = known["address"]
+        allowed = known["hosts"]
     except (OSError, ValueError, KeyError, TypeError):
         raise WorkError(f"{Path.cwd()}: another server of this folder is just starting. Try again.") from None
-    if new := [host for host in hosts if host not in allowed]:
+    new = [host for host in hosts if host not in allowed]
+    if new:
         where = ", ".join(new)
         raise WorkError(
             f"the page of this folder runs already and does not answer at {where}. End it, and start again."

@@ -34,19 +34,15 @@ from trackroller.study.file.load import parse_study
 from trackroller.study.file.study import Study
 from trackroller.study.outputs import default_names, outputs
 from trackroller.study.status import plan_rows, status_of
+from trackroller.study.store.digests import digest_of_file, digest_of_text
 from trackroller.study.store.folder import StudyFolder, delete_study
-from trackroller.study.store.manifest import (
-    Manifest,
-    check_unaltered,
-    claim,
-    digest_of_file,
-    digest_of_text,
-    is_study,
-    why_altered,
-)
+from trackroller.study.store.manifest import Manifest, check_unaltered, why_altered
+from trackroller.study.store.mark import is_study
+from trackroller.study.store.put import claim
 from trackroller.yaml_file import errors_by_line, parse_mapping, write_yaml
 
-TEXTS, RESULTS = Path("studies"), Path("results")
+TEXTS = Path("studies")
+RESULTS = Path("results")
 WRITTEN = Manifest(Path(), ".trackroller/files.jsonl")  # studies and carriages that the page wrote or read
 MOST_CASES = 200_000  # larger studies belong on the command line, where nobody waits for a page
 PAGES = ("report.html", "explorer.html")
@@ -89,7 +85,9 @@ def checked(text: str | None = None, study: dict[str, Any] | None = None) -> dic
     """
     out: dict[str, Any] = {"text": text, "study": None, "errors": [], "plan": [], "doubts": []}
     try:
-        out["text"] = write_yaml(study or {}) if text is None else text
+        out["text"] = text
+        if text is None:
+            out["text"] = write_yaml(study or {})
         out["study"] = parse_mapping(out["text"], "study file")
         parsed = _study(out["text"])
         out |= {"plan": plan_rows(parsed, status_of(parsed, folder_of(parsed.name))), "doubts": parsed.doubts()}
@@ -107,10 +105,16 @@ def _study(text: str) -> Study:
         if data.get("table"):
             find_beside(data["table"], "table")  # only the folder of the page is read
         study = parse_study(data, TEXTS / "study.yaml")
-    cases, config = _least_cases(study), study.config
+    cases = _least_cases(study)
+    config = study.config
     if cases <= MOST_CASES:  # a larger design may fill the memory when it is drawn
-        searched = config.budget.designs * study.drawn.meta["inner_samples"] if config.method.proposes else 0
-        cases = max(study.drawn.size, searched, config.until.at_most if config.until else 0)
+        searched = 0
+        if config.method.proposes:
+            searched = config.budget.designs * study.drawn.meta["inner_samples"]
+        grown = 0
+        if config.until:
+            grown = config.until.at_most
+        cases = max(study.drawn.size, searched, grown)
     if cases > MOST_CASES:
         allowed = f"at most {MOST_CASES:,} cases on this page"
         raise InputError("design", f"{cases:,} cases", allowed, "Start larger studies with `trackroller run`.")
@@ -120,9 +124,12 @@ def _study(text: str) -> Study:
 def _least_cases(study: Study) -> int:
     """Return about how many cases a study has, found without drawing its design."""
     method = study.config.method
-    drawn = method.sampled or method.proposes
-    crossed = [len(f.levels) for f in study.parsed.values() if f.levels] if method.points or not drawn else []
-    return math.prod(crossed) * (int(study.config.samples) if drawn else 1)
+    count = 1
+    if method.sampled or method.proposes:
+        count = int(study.config.samples)
+    if method.points or not (method.sampled or method.proposes):
+        count *= math.prod(len(factor.levels) for factor in study.parsed.values() if factor.levels)
+    return count
 
 
 def start(text: str) -> dict[str, Any]:
@@ -130,7 +137,7 @@ def start(text: str) -> dict[str, Any]:
     name = _study(text).name
     folder = folder_of(name)
     if _works(name, folder):
-        raise WorkError(f"The study '{name}' runs already. Pause it first, or give this study another name.")
+        raise WorkError(f"{_running_sentence(name, folder)}, or give this study another name.")
     folder.create()
     _write_text(name, text, folder)
     states = [claim(folder.root / file) for file in (PROGRESS, PAUSE)]
@@ -171,7 +178,7 @@ def resume(name: str) -> dict[str, Any]:
 def pause(name: str) -> None:
     """Ask a running study to stop; its finished chunks stay."""
     folder = folder_of(name)
-    if not (_starts(name) or is_held(folder.root / LOCK)):
+    if not _runs_from_page(name, folder):
         raise WorkError(f"The study '{name}' does not run from this page, so the page cannot pause it.")
     claim(folder.root / PAUSE).touch()
 
@@ -182,7 +189,7 @@ def delete(name: str, confirm: str = "") -> None:
     if confirm != name:
         raise InputError("confirm", confirm, f"the name of the study, {name}", "Confirm the question of the page.")
     if _works(name, folder):
-        raise WorkError(f"The study '{name}' runs. Pause it first.")
+        raise WorkError(f"{_running_sentence(name, folder)}.")
     if not folder.root.is_dir():
         remedy = "It may be deleted already."
         raise InputError("name", name, "a study of this folder", remedy, "is not there")
@@ -191,7 +198,19 @@ def delete(name: str, confirm: str = "") -> None:
 
 def _works(name: str, folder: StudyFolder) -> bool:
     """Return whether a process works on a study, started here, by an earlier server or on the command line."""
-    return _starts(name) or is_held(folder.root / LOCK) or is_held(folder.lock)
+    return _runs_from_page(name, folder) or is_held(folder.lock)
+
+
+def _runs_from_page(name: str, folder: StudyFolder) -> bool:
+    """Return whether this server or an earlier one started the process of a study, so that the page can pause it."""
+    return _starts(name) or is_held(folder.root / LOCK)
+
+
+def _running_sentence(name: str, folder: StudyFolder) -> str:
+    """Return that a study runs and how to end it, as a sentence without its full stop."""
+    if _runs_from_page(name, folder):
+        return f"The study '{name}' runs already. Pause it first"
+    return f"The study '{name}' runs on the command line. Wait until it ends, or stop it there"
 
 
 def _starts(name: str) -> bool:
@@ -227,9 +246,22 @@ def _entry(name: str) -> dict[str, Any] | None:
     solved = sum(n for key, n in chunks.items() if folder.chunk(key).is_file())
     whole = folder.gathered.is_file() and solved == sum(chunks.values())
     files = list(_stats(folder.root))
-    newest, size = max((stat.st_mtime for stat in files), default=0.0), sum(stat.st_size for stat in files)
-    error = "" if works else progress.get("error") or _altered(folder.gathered, newest, size)
-    state = "running" if works else "stopped" if error else "done" if whole else "paused"
+    newest = max((stat.st_mtime for stat in files), default=0.0)
+    size = sum(stat.st_size for stat in files)
+    error = ""
+    if not works:
+        error = progress.get("error") or _altered(folder.gathered, newest, size)
+    done = solved
+    if works:
+        state = "running"
+        done = progress.get("done", solved)
+    elif error:
+        state = "stopped"
+    elif whole:
+        state = "done"
+        done = total
+    else:
+        state = "paused"
     return {
         "name": name,
         "question": folder.earlier().get("description", ""),
@@ -237,7 +269,7 @@ def _entry(name: str) -> dict[str, Any] | None:
         "step": progress.get("step", "starting"),
         "error": error,
         "total": total,
-        "done": total if state == "done" else progress.get("done", solved) if works else solved,
+        "done": done,
         "failed": progress.get("failed"),
         "bytes": size,
         "date": datetime.datetime.fromtimestamp(newest).isoformat(" ", "minutes"),
@@ -302,11 +334,11 @@ def headlines(name: str) -> dict[str, Any]:
         "cases": len(results.table),
         "factors": {str(row[0]): f"{row[2]} {row[1]}".strip(" –") for row in table.rows} if table else {},
         "numbers": _numbers(results),
-        "short": _said(results),
+        "short": _headline(results),
     }
 
 
-def _said(results: Results) -> list[tuple[str, str]]:
+def _headline(results: Results) -> list[tuple[str, str]]:
     """Return the headline and the warnings of a study, each with its head."""
     answer = shown_answer(results)
     warnings = " · ".join(warning_line(caution) for caution in answer.warnings)

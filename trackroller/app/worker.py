@@ -20,9 +20,12 @@ from typing import Any
 from trackroller.errors import InputError, WorkError
 from trackroller.files import confine, interrupts_wait_for_files, refuse_links, try_lock, wait_for_lock
 from trackroller.study.store.folder import StudyFolder
-from trackroller.study.store.manifest import Manifest, claim, put_unlisted
+from trackroller.study.store.manifest import Manifest
+from trackroller.study.store.put import claim, put_unlisted
 
-LOCK, PROGRESS, PAUSE = ".page.lock", ".page.json", ".pause"
+LOCK = ".page.lock"
+PROGRESS = ".page.json"
+PAUSE = ".pause"
 TICK = 0.4  # seconds between two looks for the wish to pause, and between two records of progress
 
 

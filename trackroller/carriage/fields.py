@@ -89,17 +89,21 @@ def _in_cases(whole: Carriage, field: str, place: str, value: float) -> Carriage
     own: dict[str, Any] = {field: math.radians(value) if field in ("gradient", "cant") else value}
 
     def new(case: LoadCase) -> LoadCase:
-        meant = word_of(case.name) == place if place else _states(case, field)
+        if place:
+            meant = word_of(case.name) == place
+        else:
+            meant = _states(case, field)
         return replace(case, **own) if meant else case
 
     return replace(whole, cases=tuple(map(new, whole.cases)))
 
 
 def _of_roller(whole: Carriage, field: str, place: str, value: float) -> Carriage:
-    rollers = (
-        replace(roller, at=_moved(roller.at, field, value)) if word_of(roller.name) == place else roller
-        for roller in whole.rollers
-    )
+    rollers = []
+    for roller in whole.rollers:
+        if word_of(roller.name) == place:
+            roller = replace(roller, at=_moved(roller.at, field, value))
+        rollers.append(roller)
     return replace(whole, rollers=tuple(rollers))
 
 
@@ -112,7 +116,8 @@ def _moved(at: np.ndarray, axis: str, value: float) -> np.ndarray:
 def _stretched(axis: int) -> Callable[[Carriage, float], Carriage]:
     def change(whole: Carriage, value: float) -> Carriage:
         places = np.array([roller.at[axis] for roller in whole.rollers])
-        middle, distance = (places.max() + places.min()) / 2, np.ptp(places)
+        middle = (places.max() + places.min()) / 2
+        distance = np.ptp(places)
         new = middle + (places - middle) * value / distance
         pairs = zip(whole.rollers, new, strict=True)
         return replace(whole, rollers=tuple(replace(r, at=_moved(r.at, AXES[axis], x)) for r, x in pairs))
@@ -121,16 +126,19 @@ def _stretched(axis: int) -> Callable[[Carriage, float], Carriage]:
 
 
 def _payload(whole: Carriage, value: float) -> Carriage:
-    total = sum(one.value for one in whole.payloads)
-    shares = [one.value / total if total > 0 else 1 / len(whole.payloads) for one in whole.payloads]
+    total = sum(mass.value for mass in whole.payloads)
+    shares = [1 / len(whole.payloads) for _ in whole.payloads]
+    if total > 0:
+        shares = [mass.value / total for mass in whole.payloads]
     pairs = zip(whole.payloads, shares, strict=True)
-    return replace(whole, payloads=tuple(PointMass(value * share, one.at) for one, share in pairs))
+    return replace(whole, payloads=tuple(PointMass(value * share, mass.at) for mass, share in pairs))
 
 
 def _payload_place(axis: int) -> Callable[[Carriage, float], Carriage]:
     def change(whole: Carriage, value: float) -> Carriage:
         weights = np.array([one.value for one in whole.payloads])
-        weights = weights if weights.sum() > 0 else np.ones(len(weights))
+        if not weights.sum() > 0:
+            weights = np.ones(len(weights))
         step = value - float(np.average([one.at[axis] for one in whole.payloads], weights=weights))
         moved = (PointMass(one.value, _moved(one.at, AXES[axis], one.at[axis] + step)) for one in whole.payloads)
         return replace(whole, payloads=tuple(moved))
@@ -143,7 +151,9 @@ def _pairs(field: str) -> Callable[[Carriage, float], Carriage]:
         def new(pair: Preload) -> Preload:
             if (pair.play == 0) != (field == "preload"):
                 return pair
-            return Preload(pair.pair, **{"force" if field == "preload" else "play": value})
+            if field == "preload":
+                return Preload(pair.pair, force=value)
+            return Preload(pair.pair, play=value)
 
         return replace(whole, preloads=tuple(map(new, whole.preloads)))
 

@@ -78,8 +78,12 @@ def spectrum_of(whole: Carriage, ds: xr.Dataset, name: str) -> dict[str, Any]:
         text += f" No block holds {100 * share:.4g} % of the travel, in which the roller is lifted: {named}."
     base, options = parts_for_spectrum(roller.given)
     head = {"name": name_of_study(f"{whole.name}-{name}"), "description": text, "base": base, "blocks": blocks}
-    duty = whole.duty if whole.duty is not None else roller.given.get("duty")
-    return head | ({"duty": dict(duty)} if isinstance(duty, Mapping) else {}) | options
+    duty = whole.duty
+    if duty is None:
+        duty = roller.given.get("duty")
+    if isinstance(duty, Mapping):
+        head["duty"] = dict(duty)
+    return head | options
 
 
 def study_of(whole: Carriage, ds: xr.Dataset, table: str) -> tuple[dict[str, Any], str]:
@@ -111,13 +115,15 @@ def study_of(whole: Carriage, ds: xr.Dataset, table: str) -> tuple[dict[str, Any
     _check_settled(ds)
     _check_same_options(whole)
     base, varying = _shared(whole)
-    of_travel = (*OF_LOADS, OVERROLLINGS) if math.isfinite(whole.stroke) else OF_LOADS
+    of_travel: tuple[str, ...] = OF_LOADS
+    if math.isfinite(whole.stroke):
+        of_travel = (*OF_LOADS, OVERROLLINGS)
     units = {name: PARAMETERS[name].unit for name in (*varying, *of_travel) if name in PARAMETERS}
     heads = [*HEADS.split(","), *of_travel, *varying]
-    rows: list[list[Any]] = [[f"{name} [{units[name]}]" if units.get(name, "-") != "-" else name for name in heads]]
+    rows: list[list[Any]] = [[_head(name, units.get(name, "-")) for name in heads]]
     for (i, j), case in sorted(cases_of(whole, ds).items()):
         fields = [getattr(case, name) for name in (*of_travel, *varying)]
-        shown = [value if isinstance(value, str) else f"{value:.10g}" for value in fields]
+        shown = [_cell(value) for value in fields]
         names = [inert_cell(name) for name in (whole.cases[i].name, whole.rollers[j].name)]
         rows.append([*names, f"{whole.cases[i].share:.10g}", *shown])
     out = io.StringIO()
@@ -136,7 +142,10 @@ def study_of(whole: Carriage, ds: xr.Dataset, table: str) -> tuple[dict[str, Any
     columns = zip(heads, zip(*rows[1:], strict=True), strict=True)
     varies = [name for name, column in columns if name not in OF_LOADS and len({*column}) > 1]
     study["roles"] = dict.fromkeys(varies, "condition")  # all cases are conditions of one design
-    duty = {} if whole.duty is None else {"duty": dict(whole.duty)}
+    if whole.duty is None:
+        duty = {}
+    else:
+        duty = {"duty": dict(whole.duty)}
     given = whole.rollers[0].options
     options = {key: value for key, value in given.items() if "study" in OPTIONS[key].files and key != "outputs"}
     return study | duty | options, out.getvalue()
@@ -149,7 +158,8 @@ def name_of_study(text: str) -> str:
     """
     plain = unicodedata.normalize("NFKD", text).encode("ascii", "ignore").decode()
     name = re.sub(r"[^A-Za-z0-9_]+", "-", plain).strip("-_")
-    name = name if len(name) <= MOST_LETTERS else f"{name[:40]}-{name[-20:]}"
+    if not len(name) <= MOST_LETTERS:
+        name = f"{name[:40]}-{name[-20:]}"
     return name or "carriage"
 
 
@@ -173,23 +183,38 @@ def _check_same_options(whole: Carriage) -> None:
                 raise InputError(f"rollers.{roller.name}.roller", f"{key}: {own}", allowed, "Change one of the files.")
 
 
+def _head(name: str, unit: str) -> str:
+    """Return the head of a column."""
+    if unit == "-":
+        return name
+    return f"{name} [{unit}]"
+
+
+def _cell(value: Any) -> str:
+    """Return a value of a case as the cell of a table."""
+    if isinstance(value, str):
+        return value
+    return f"{value:.10g}"
+
+
 def _shared(whole: Carriage) -> tuple[dict[str, Any], list[str]]:
     """Return what the files of all rollers say alike, and the fields in which the rollers differ."""
     given = [
         {key: value for key, value in parts_for_spectrum(roller.given)[0].items() if key not in OF_LOADS}
         for roller in whole.rollers
     ]
-    if all(one == given[0] for one in given):
+    if all(entry == given[0] for entry in given):
         return given[0], []
     cases = [roller.case for roller in whole.rollers if roller.case is not None]
     fields = [{key: value for key, value in case.as_dict().items() if key not in OF_LOADS} for case in cases]
-    varying = [key for key in fields[0] if any(one[key] != fields[0][key] for one in fields)]
+    varying = [key for key in fields[0] if any(entry[key] != fields[0][key] for entry in fields)]
     for key in varying:
         if key in MAPPING_FIELDS:
-            allowed, remedy = "the same for all rollers", "Write the spectrum of each roller with --spectrum instead."
+            allowed = "the same for all rollers"
+            remedy = "Write the spectrum of each roller with --spectrum instead."
             raise InputError(key, None, allowed, remedy, "differs among the rollers")
-    told = {key for key in fields[0] if not all(key in case.not_given for case in cases)}
-    return {key: value for key, value in fields[0].items() if key in told and key not in varying}, varying
+    given_fields = {key for key in fields[0] if not all(key in case.not_given for case in cases)}
+    return {key: value for key, value in fields[0].items() if key in given_fields and key not in varying}, varying
 
 
 def _short(value: Any) -> float:

@@ -38,8 +38,10 @@ def run_carriage(
         return
     file = _given(file)
     target = _target(out, spectrum, study)
-    page = None if report is None else writable_page(report)
-    table = _beside(target) if target is not None and study else None
+    page = _page(report)
+    table = None
+    if target is not None and study:
+        table = _beside(target)
     from trackroller.carriage.file import load_carriage
     from trackroller.carriage.files import spectrum_of, study_of
     from trackroller.carriage.solve import doubts_of_rollers, forces_of, solve_carriage  # heavy: scipy
@@ -74,6 +76,13 @@ def run_carriage(
         print_carriage(ds)
 
 
+def _page(report: Path | None) -> Path | None:
+    """Return the path of the page, checked before anything is solved."""
+    if report is None:
+        return None
+    return writable_page(report)
+
+
 def _given(file: Path | None) -> Path:
     """Return the carriage file; a user who has none learns how to get one."""
     if file is None:
@@ -89,15 +98,19 @@ def _write_example(file: Path | None, out: Path | None, others: Mapping[str, obj
     """Write or print the example; a file that is there stays."""
     from trackroller.carriage.example import EXAMPLE
 
-    more = [str(file)] * (file is not None) + [name for name, value in others.items() if value]
-    if more:
+    beside = [name for name, value in others.items() if value]
+    if file is not None:
+        beside.insert(0, str(file))
+    if beside:
         remedy = f"Write the example first: {START.format('shuttle.yaml')}"
-        raise InputError("--example", more[0], "nothing but -o beside it", remedy, "stands beside it")
+        raise InputError("--example", beside[0], "nothing but -o beside it", remedy, "stands beside it")
     if out is None:
         print(EXAMPLE, end="")
         return
     if out.suffix.lower() not in YAML or os.path.lexists(out):
-        wrong = "is there already" if os.path.lexists(out) else ""
+        wrong = ""
+        if os.path.lexists(out):
+            wrong = "is there already"
         raise InputError("--out", str(out), "a new file whose name ends in .yaml", "Give another name.", wrong)
     write_text(writable(out), EXAMPLE)
     print_line(f"{out} is written. Change its values, then: trackroller carriage {shlex.quote(str(out))}")
@@ -108,7 +121,9 @@ def _beside(study: Path) -> Path:
     table = study.with_suffix(".csv")
     if not os.path.lexists(table):
         return table
-    written = study.read_text(encoding="utf-8").splitlines() if study.is_file() else []
+    written = []
+    if study.is_file():
+        written = study.read_text(encoding="utf-8").splitlines()
     if not table.is_file() or TABLE_OF_US.format(table.name, sha256(table)) not in written:
         allowed = f"a name beside which {table.name} is free, or as this command wrote it"
         remedy = f"Give another name with -o, or move {table.name} away."
@@ -123,9 +138,13 @@ def _target(out: Path | None, spectrum: str | None, study: bool) -> Path | None:
     if spectrum is not None and study:
         raise InputError("--study", "true", "one of --spectrum and --study", "Run the command once for each.")
     if spectrum is None and not study:
-        return None if out is None else writable_data(out, " --json prints the result as text.")
-    option = "--study" if spectrum is None else "--spectrum"
-    if out is None or out.suffix.lower() not in YAML:
-        allowed = f"a file whose name ends in .yaml, which {option} writes"
-        raise InputError("--out", None if out is None else str(out), allowed, "Add -o shift.yaml.")
-    return writable(out)
+        if out is None:
+            return None
+        return writable_data(out, " --json prints the result as text.")
+    option = "--spectrum"
+    if spectrum is None:
+        option = "--study"
+    if out is not None and out.suffix.lower() in YAML:
+        return writable(out)
+    allowed = f"a file whose name ends in .yaml, which {option} writes"
+    raise InputError("--out", out and str(out), allowed, "Add -o shift.yaml.")

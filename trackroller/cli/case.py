@@ -65,8 +65,15 @@ def case_of(path: Path | None, words: list[str] | None) -> tuple[Case, dict[str,
     if path is not None and "=" in path.name and not path.exists():
         remedy = f"Write --set {path}: each key has a --set of its own."
         raise InputError("case file", str(path), "the path of a file", remedy, "does not exist")
-    text, given = "" if path is None else read_text(path, "case file"), settings_of(words)
-    values = parse_mapping(text, "case file") if path is not None else {} if given else dict(LASTING)
+    if path is None:
+        text = ""
+    else:
+        text = read_text(path, "case file")
+    given = settings_of(words)
+    if path is not None:
+        values = parse_mapping(text, "case file")
+    else:
+        values = {} if given else dict(LASTING)
     named = {*given, *(ALIASES.get(name, name) for name in given)}
     with errors_by_line(text, named, aliases=ALIASES), files_beside(path):
         return checked_case(overridden(values, given))
@@ -104,17 +111,17 @@ def _served(case: Case, options: Mapping[str, Any]) -> tuple[str, ...]:
     from trackroller.roller.options import Options
     from trackroller.roller.stages.outcome import solved_of, to_compute  # heavy: as above
 
-    wanted = Options(**{**options, "outputs": ("limits",)})
-    limits = to_compute(solved_of(to_table(case), {}, wanted), wanted)
+    of_limits = Options(**{**options, "outputs": ("limits",)})
+    limits = to_compute(solved_of(to_table(case), {}, of_limits), of_limits)
     return tuple(limit.group for limit in limits)
 
 
-def solve_case(case: Case, options: Mapping[str, Any], beside: Mapping[str, Any], **more: Any) -> xr.Dataset:
-    """Solve a case with what `case_of` returned beside it; `more` are further options of `solve`."""
+def solve_case(case: Case, options: Mapping[str, Any], beside: Mapping[str, Any], **further: Any) -> xr.Dataset:
+    """Solve a case with what `case_of` returned beside it; `further` are other options of `solve`."""
     tell_doubts(case)
     from trackroller.roller.solver import solve  # heavy: xarray and dask
 
-    return with_beside(solve(case, **{**options, **more}), beside)
+    return with_beside(solve(case, **{**options, **further}), beside)
 
 
 def writable(out: Path) -> Path:
@@ -162,7 +169,9 @@ def _is_ours(path: Path, suffix: str) -> bool:
     content = path.read_bytes()
     if suffix == ".csv":
         return not content or {b"regime", b"converged"} <= {*content.partition(b"\n")[0].split(b",")}
-    head = content[:4096] if suffix in (".html", ".htm") else content
+    head = content
+    if suffix in (".html", ".htm"):
+        head = content[:4096]
     return not content or (
         content.startswith(KINDS.get(suffix, (b"CDF", b"\x89HDF"))) and MARKS.get(suffix, MADE) in head
     )
@@ -173,13 +182,15 @@ def write_yaml_file(target: Path, values: Mapping[str, Any], comment: str = "") 
 
     A `comment` is a line below the mark.
     """
-    write_text(target, "\n".join([BY_US, *([comment] if comment else []), write_yaml(values)]))
+    parts = [BY_US, comment, write_yaml(values)]
+    write_text(target, "\n".join(part for part in parts if part))
 
 
 def free_for_page(page: Path) -> None:
     """Refuse to write a page that the user did not name over a file that is no page of this program."""
     if os.path.lexists(page) and not (page.is_file() and _is_ours(page, ".html")):
-        allowed, wrong = "a new file, or a page that trackroller wrote", "is a file of somebody else"
+        allowed = "a new file, or a page that trackroller wrote"
+        wrong = "is a file of somebody else"
         raise InputError("--out", str(page), allowed, "Give another path with -o.", wrong)
 
 
@@ -215,8 +226,34 @@ def _options(given: Case, options: Mapping[str, Any], limits: str | None, sheet:
         return {}
     if limits is not None:
         return {"outputs": (*COMPLETE[:2], *groups_of(limits)), "not_checked": _left_out(limits)}
-    own = dict.fromkeys((*(SHEET_OUTPUTS if sheet else COMPLETE), "limits", *_served(given, options)))
-    return {"outputs": tuple(own)}
+    shown: tuple[str, ...] = COMPLETE
+    if sheet:
+        shown = SHEET_OUTPUTS
+    outputs = dict.fromkeys((*shown, "limits", *_served(given, options)))
+    return {"outputs": tuple(outputs)}
+
+
+def _target(out: Path | None) -> Path | None:
+    """Return the path of the results, a workbook or netCDF, checked before anything is solved."""
+    if out is None:
+        return None
+    if out.suffix.lower() == ".xlsx":
+        return writable(out)
+    return writable_data(out, f" {WORKBOOK}{PRINTED}")
+
+
+def _page(sheet: Path | None) -> Path | None:
+    """Return the path of the page, checked before anything is solved."""
+    if sheet is None:
+        return None
+    return writable_page(sheet)
+
+
+def _name(case: Path | None) -> str:
+    """Return the name of a case for its page; an example without a file has none."""
+    if case is None:
+        return ""
+    return case.stem
 
 
 def solve_and_tell(  # noqa: PLR0913 - one argument for each option of the command
@@ -236,29 +273,29 @@ def solve_and_tell(  # noqa: PLR0913 - one argument for each option of the comma
     met in the range that is sought.
     """
     if find is not None or condition is not None:
-        if out is not None or sheet is not None or limits is not None:
-            remedy = "Give one of them at a time."
-            raise InputError("--find", find or "", "a search alone, without -o, --report and --limits", remedy)
+        _check_search_alone(find, out, sheet, limits)
         return _find_and_tell(case, settings, find, condition, as_json)
     given, options, beside = case_of(case, settings)
     book = out is not None and out.suffix.lower() == ".xlsx"
-    target = None if out is None else writable(out) if book else writable_data(out, f" {WORKBOOK}{PRINTED}")
-    page = None if sheet is None else writable_page(sheet)
+    target = _target(out)
+    page = _page(sheet)
     plain = as_json or (target is not None and not book) or "outputs" in options
-    more: dict[str, Any] = {"shortcuts": False} if no_shortcuts else {}
-    more |= _options(given, options, limits, page is not None, plain)
+    chosen = _options(given, options, limits, page is not None, plain)
+    if no_shortcuts:
+        chosen["shortcuts"] = False
     tell_start(case, settings)
-    dataset = solve_case(given, options, beside, **more)
+    dataset = solve_case(given, options, beside, **chosen)
     if target is not None:
         _write_roller(dataset, target, book)
     from trackroller.report.pages.sheet import as_json as json_of  # heavy: rich and jinja2
     from trackroller.report.pages.sheet import print_facts, print_limits, write_sheet
 
     if page is not None:
-        write_sheet(dataset, page, case.stem if case is not None else "")
+        write_sheet(dataset, page, _name(case))
+    shows_limits = limits is not None and not is_failed(dataset)
     if as_json:
         print(json_of(dataset))
-    elif target is None and limits is not None and not is_failed(dataset):
+    elif target is None and shows_limits:
         print_limits(dataset)
     elif target is None:
         print_facts(dataset)
@@ -269,21 +306,35 @@ def solve_and_tell(  # noqa: PLR0913 - one argument for each option of the comma
     return 1
 
 
+def _check_search_alone(find: str | None, out: Path | None, sheet: Path | None, limits: str | None) -> None:
+    """Refuse other results beside a search."""
+    if out is not None or sheet is not None or limits is not None:
+        remedy = "Give one of them at a time."
+        raise InputError("--find", find or "", "a search alone, without -o, --report and --limits", remedy)
+
+
 def _find_and_tell(
     path: Path | None, settings: list[str] | None, name: str | None, condition: str | None, as_json: bool
 ) -> int:
     """Print the range of a parameter in which a condition is met; return 1 if no value meets it."""
     if name is None or condition is None:
-        lacking, example = ("--find", "axial_force") if name is None else ("--for", "'max_pressure < 900'")
+        if name is None:
+            lacking, example = "--find", "axial_force"
+        else:
+            lacking, example = "--for", "'max_pressure < 900'"
         raise InputError(lacking, "", "both --find and --for", f"For example {lacking} {example}.", "is missing")
     case, options, _ = case_of(path, settings)
     tell_start(path, settings)
     tell_doubts(case)
     from trackroller.roller.find import find  # heavy: xarray and dask
 
-    found = find(case, name, condition, **{key: value for key, value in options.items() if key != "outputs"})
-    print(json.dumps(found.as_dict(), allow_nan=False) if as_json else found.text)
-    return 0 if found.met else 1
+    settings_of_solve = {key: value for key, value in options.items() if key != "outputs"}
+    range_ = find(case, name, condition, **settings_of_solve)
+    if as_json:
+        print(json.dumps(range_.as_dict(), allow_nan=False))
+    else:
+        print(range_.text)
+    return int(not range_.met)
 
 
 def run_spectrum(file: Path | None, as_json: bool, out: Path | None, report: Path | None, log: Path | None) -> None:
@@ -297,8 +348,14 @@ def run_spectrum(file: Path | None, as_json: bool, out: Path | None, report: Pat
         return
     if file is None:
         raise InputError("spectrum file", None, "the path of a file", "Write trackroller spectrum shift.yaml.")
-    target = None if out is None else writable_data(out, PRINTED)
-    page = None if report is None else writable_page(report)
+    if out is None:
+        target = None
+    else:
+        target = writable_data(out, PRINTED)
+    if report is None:
+        page = None
+    else:
+        page = writable_page(report)
     from trackroller.report.pages.sheet import as_json as json_of  # heavy: jinja2
     from trackroller.report.pages.spectrum import print_spectrum, write_spectrum
     from trackroller.study.spectrum.file import load_spectrum
@@ -325,7 +382,10 @@ def _write_log(log: Path, roller: Path | None, out: Path | None, more: bool) -> 
     target = writable(out)
     from trackroller.study.spectrum.history import spectrum_of_log  # heavy: numpy
 
-    given = {} if roller is None else read_mapping(roller, "case file")
+    if roller is None:
+        given = {}
+    else:
+        given = read_mapping(roller, "case file")
     if roller is not None:
         case_of(roller, None)  # refuses wrong values before the log is read
     spectrum, notes = spectrum_of_log(log, given)
@@ -339,7 +399,10 @@ def run_wear(
 ) -> None:
     """Follow a roller while it wears; `out` receives the states one by one, and a later run goes on from there."""
     target = None if out is None else writable_data(out)
-    page = None if report is None else writable_page(report)
+    if report is None:
+        page = None
+    else:
+        page = writable_page(report)
     new, options, beside = case_of(case, settings)
     tell_start(case, settings)
     tell_doubts(new)
@@ -347,7 +410,6 @@ def run_wear(
     from trackroller.report.pages.record import print_record
     from trackroller.report.pages.wear import write_wear
     from trackroller.results.wear_answer import answer_of_wear
-    from trackroller.roller.duty import with_duty
     from trackroller.roller.wear import wear
     from trackroller.study.store.netcdf import read_netcdf
 
@@ -363,12 +425,13 @@ def run_wear(
     if target is not None and target.exists() and target.stat().st_size:
         before = read_netcdf(target, "--out", "A run goes on from what the file holds: give another name.")
         if "next_step" not in before:
-            allowed, wrong = "a new file, or one that `trackroller wear` wrote, to go on from", "holds something else"
+            allowed = "a new file, or one that `trackroller wear` wrote, to go on from"
+            wrong = "holds something else"
             raise InputError("--out", str(out), allowed, "Give another name.", wrong)
     dataset = wear(new, to, resume=before, tell=tell, **options)
     if target is not None:
         write_result(dataset, target)
-    worn = with_duty(dataset, beside.get("duty"))
+    worn = with_beside(dataset, beside)
     if page is not None:
         write_wear(worn, page)
     print_record(answer_of_wear(worn))

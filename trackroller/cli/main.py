@@ -53,8 +53,8 @@ StudyFile = Annotated[Path, typer.Argument(help="study file (YAML)", show_defaul
 AnyStudy = Annotated[str, typer.Argument(help="study file, or name of a study that was run", show_default=False)]
 
 
-def _version(wanted: bool) -> None:
-    if wanted:
+def _version(asked_for: bool) -> None:
+    if asked_for:
         typer.echo(f"trackroller {__version__}")
         raise typer.Exit
 
@@ -288,8 +288,7 @@ def run_app(command: Callable[[], object]) -> int:
         with interrupts_wait_for_files():
             command()
     except SystemExit as exc:
-        code = exc.code if isinstance(exc.code, int) else int(exc.code is not None)
-        return _tell(STOPPED, code) if code == INTERRUPTED else code
+        return _code_of(exc)
     except InputError as exc:
         return max(_tell(text, 2) for text in exc.shown)
     except WorkError as exc:
@@ -304,6 +303,15 @@ def run_app(command: Callable[[], object]) -> int:
     except Exception as exc:
         return _tell(f"internal error, {type(exc).__name__}. Please report it with the log {_log(exc)}", 3)
     return 0
+
+
+def _code_of(exc: SystemExit) -> int:
+    """Return the exit code of a command that ended itself; an interruption is told."""
+    if exc.code == INTERRUPTED:
+        return _tell(STOPPED, INTERRUPTED)
+    if isinstance(exc.code, int):
+        return exc.code
+    return int(exc.code is not None)
 
 
 def _tell_of_file(exc: OSError) -> int:
@@ -322,13 +330,25 @@ def _plain(error: UnicodeError) -> tuple[str, int]:
     if not isinstance(error, UnicodeEncodeError):
         raise error
     run = error.object[error.start : error.end]
-    power = "^" if unicodedata.decomposition(run[0]).startswith("<super>") else ""
+    power = ""
+    if unicodedata.decomposition(run[0]).startswith("<super>"):
+        power = "^"
     return power + "".join(map(_plain_sign, run)), error.end
 
 
 def _plain_sign(sign: str) -> str:
     parts = unicodedata.normalize("NFKD", sign)  # a superscript 2 becomes 2, a letter loses its accent
-    return SIGNS.get(sign) or "".join(SIGNS.get(part, part if part.isascii() else "") for part in parts) or "?"
+    if sign in SIGNS:
+        return SIGNS[sign]
+    return "".join(_ascii_sign(part) for part in parts) or "?"
+
+
+def _ascii_sign(sign: str) -> str:
+    if sign in SIGNS:
+        return SIGNS[sign]
+    if sign.isascii():
+        return sign
+    return ""
 
 
 def _tell(line: str, code: int) -> int:

@@ -44,7 +44,9 @@ def _print_rows(rows_of: Callable[..., list[dict[str, str]]], *names: str) -> No
     from trackroller.report.terminal import print_table
 
     rows = rows_of(load_database(), *names)
-    heads = list(rows[0] if rows else ())
+    heads: list[str] = []
+    if rows:
+        heads = list(rows[0])
     print_table(heads, [[row.get(head, "") for head in heads] for row in rows])
 
 
@@ -57,7 +59,8 @@ def _points_of(path: Path) -> dict[str, Any]:
     names = ("amplitude", "cycles")
     if set(table.rows[0]) != set(names):
         remedy = "Name the columns so, the amplitude with its unit in brackets, and remove other columns."
-        given, allowed = ", ".join(table.rows[0]), "the columns amplitude [MPa] and cycles"
+        given = ", ".join(table.rows[0])
+        allowed = "the columns amplitude [MPa] and cycles"
         raise InputError("sn_points", given, allowed, remedy).at(path, head)
     points = [[table.number(row, name, LEAST) for name in names] for row in table]
     return {"value": points, "source": f"{path.name}, SHA-256 {table.digest}"}

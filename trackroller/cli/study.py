@@ -31,7 +31,7 @@ from trackroller.study.status import Status, find_folder, find_study, plan_rows,
 from trackroller.study.store.crate import compare_results, damaged_files, read_crate, study_of_crate, write_crate
 from trackroller.study.store.folder import StudyFolder, check_folder
 from trackroller.study.store.ledger import study_folder
-from trackroller.study.store.manifest import is_study
+from trackroller.study.store.mark import is_study
 
 EXPLORER = "explorer.html"
 MOST = 20_000  # --explain examines at most this many cases of a study
@@ -63,7 +63,9 @@ def run_with_progress(
             progress=bar.advanced,
         )
     if solved_before and all(solved_before):
-        unused = f"; --scheduler {scheduler} is not used" if scheduler else ""
+        unused = ""
+        if scheduler:
+            unused = f"; --scheduler {scheduler} is not used"
         print_line(f"nothing is left to solve of '{checked.name}'{unused}")
     if report:
         print(_report(ledger.folder))
@@ -76,7 +78,10 @@ def make_report(study: str, results: Path, out: Path | None) -> None:
     """Make analysis, figures and report of a study that was run, and a copy at `out`; or write its cases to `out`."""
     folder = find_study(study, results)[1]
     table = out is not None and out.suffix.lower() in (".xlsx", ".csv")
-    target = out if out is None else writable(out) if table else writable_page(out)
+    if out is None:
+        target = out
+    else:
+        target = writable(out) if table else writable_page(out)
     if target is not None and table:
         from trackroller.report.workbook import write_results
         from trackroller.results.stored_study import open_study  # heavy: SALib
@@ -104,17 +109,32 @@ def print_explorer(study: str, results: Path, out: Path | None) -> None:
     from trackroller.report.explorer.page import write_explorer
     from trackroller.results.stored_study import open_study
 
-    found = find_folder(study, results)
-    path = Path(study) if found is None and Path(study).exists() else results / study if found is None else found.root
-    target = out if out is None else writable_page(out)
+    path = results / study
+    folder_of_study = find_folder(study, results)
+    if folder_of_study is not None:
+        path = folder_of_study.root
+    elif Path(study).exists():
+        path = Path(study)
+    target = _page(out)
     if target is not None and target.suffix.lower() == ".pdf":
         raise InputError("--out", str(out), "a file whose name ends in .html; the explorer works in a browser")
-    solved, folder = open_study(path), StudyFolder(path if path.is_dir() else path.parent)
+    solved = open_study(path)
+    root = path
+    if not path.is_dir():
+        root = path.parent
+    folder = StudyFolder(root)
     if out is None and is_study(folder.root):
         folder.create()
     elif out is None:
         free_for_page(folder.root / EXPLORER)
     print(write_explorer(solved, target or place_of_pages(solved, folder) / EXPLORER))
+
+
+def _page(out: Path | None) -> Path | None:
+    """Return the path of a page, checked before anything is made."""
+    if out is None:
+        return None
+    return writable_page(out)
 
 
 def print_best(study: str, results: Path, out: Path | None, as_json: bool = False) -> None:
@@ -125,9 +145,11 @@ def print_best(study: str, results: Path, out: Path | None, as_json: bool = Fals
     from trackroller.results.results import shown_answer
     from trackroller.results.stored_study import open_study
 
-    target = out if out is None else writable_page(out)
-    found = find_folder(study, results)
-    folder = Path(study) if found is None and Path(study).is_dir() else find_study(study, results)[1].root
+    target = _page(out)
+    if find_folder(study, results) is None and Path(study).is_dir():
+        folder = Path(study)
+    else:
+        folder = find_study(study, results)[1].root
     solved = open_study(folder)
     answer = shown_answer(solved)
     if as_json:
@@ -155,7 +177,8 @@ def print_status(study: str, results: Path, figures: bool) -> int:
     _print_left(status)
     if status.outdated:
         print_text("another version of the solver made the results: the next run solves every case anew", "outdated")
-    if regimes := [f"{count} {name}" for name, count in status.regimes.items() if count]:
+    regimes = [f"{count} {name}" for name, count in status.regimes.items() if count]
+    if regimes:
         print(f"regimes   {', '.join(regimes)}")
     for reason, count in status.by_reason.items():
         print(f"failed    {count} x {reason}")
@@ -168,8 +191,8 @@ def print_status(study: str, results: Path, figures: bool) -> int:
     if figures:
         from trackroller.report.build import draw_solved  # heavy: matplotlib
 
-        place, drawn = draw_solved(folder)
-        print(f"figures   {len(drawn)} in {place}")
+        place, names = draw_solved(folder)
+        print(f"figures   {len(names)} in {place}")
     return int(bool(status.corrupt))
 
 
@@ -181,8 +204,10 @@ def _print_left(status: Status) -> None:
             print(f"next      {status.upcoming}")
         if status.done:
             print("look      `trackroller report` and `explore` work on the solved cases")
+    elif status.gathered:
+        print("gathered  yes")
     else:
-        print("gathered  " + ("yes" if status.gathered else "not yet: run it once more"))
+        print("gathered  not yet: run it once more")
 
 
 def print_repeat(study: str, case: int, results: Path) -> int:
@@ -198,13 +223,13 @@ def print_repeat(study: str, case: int, results: Path) -> int:
 
 def _print_differences(compared: Mapping[str, Difference]) -> bool:
     """Print the variables that differ by more than rounding explains, and return whether there are any."""
-    found = {name: difference for name, difference in compared.items() if difference.found}
-    for name, (apart, allowed, scale) in found.items():
+    differing = {name: difference for name, difference in compared.items() if difference.found}
+    for name, (apart, allowed, scale) in differing.items():
         if apart < math.inf:
             print(f"{name}: differs by {apart:.1e} of {scale}; rounding explains {allowed:.0e}")
         else:
             print(f"{name}: is missing now, or has other gaps or words")
-    return bool(found)
+    return bool(differing)
 
 
 def _how_equal(compared: Mapping[str, Difference]) -> str:
@@ -224,19 +249,25 @@ def _crate_at(named: Path, results: Path) -> Path:
     if named.is_file():
         packed = named.suffix.lower() in ARCHIVES
         wrong = "is an archive" if packed else "is a file"
-        tool = "unzip" if named.suffix.lower() == ".zip" else "tar xf"
-        remedy = f"Unpack it ({tool} {named.name}), and name the folder." if packed else "Name the folder."
+        tool = "tar xf"
+        if named.suffix.lower() == ".zip":
+            tool = "unzip"
+        remedy = "Name the folder."
+        if packed:
+            remedy = f"Unpack it ({tool} {named.name}), and name the folder."
         raise InputError("folder", str(named), "the folder of a study, such as results/NAME", remedy, wrong)
     inside = results / named
-    return inside if not named.exists() and inside.is_dir() else named
+    if not named.exists() and inside.is_dir():
+        return inside
+    return named
 
 
 def print_verified(folder: Path, results: Path) -> int:
     """Print the damaged files of a crate and return the exit code: 0 if there is none."""
     folder = _crate_at(folder, results)
     damaged = damaged_files(folder)
-    for name, what in damaged.items():
-        print(f"{what}: {name}")
+    for name, state in damaged.items():
+        print(f"{state}: {name}")
     if not damaged:
         print(f"{len(read_crate(folder))} files are as they were written")
     return int(bool(damaged))
@@ -253,7 +284,8 @@ def print_rerun(crate: Path, results: Path) -> int:
     ledger = run_study(study, results)
     compared = compare_results(stored, ledger.folder.gathered)
     differs = _print_differences(compared)
-    if new := [name for name, difference in compared.items() if math.isnan(difference.apart)]:
+    new = [name for name, difference in compared.items() if math.isnan(difference.apart)]
+    if new:
         print(f"not compared, because {stored} lacks them: {', '.join(new)}")
     if not differs:
         same = len(compared) - len(new)
@@ -312,7 +344,8 @@ def _explain(study: Study, no_shortcuts: bool) -> None:
     options, group = options_of_cases(design, {})
     if len(table) > MOST:
         print(f"stages of the first {MOST} of {len(table)} cases")
-        table, group = table.take(np.arange(MOST)), group[:MOST]
+        table = table.take(np.arange(MOST))
+        group = group[:MOST]
     for number in np.unique(group):
         rows = np.flatnonzero(group == number)
         own = dict(options[number])
@@ -325,8 +358,10 @@ def _explain(study: Study, no_shortcuts: bool) -> None:
 
 
 def _print_stages(table, options) -> None:
-    rows = [
-        (stage.name, f"{stage.count}" if stage.runs else "-", f"{stage.total} {stage.unit}", stage.why)
-        for stage in stages_of(table, options)
-    ]
+    rows = []
+    for stage in stages_of(table, options):
+        count = "-"
+        if stage.runs:
+            count = f"{stage.count}"
+        rows.append((stage.name, count, f"{stage.total} {stage.unit}", stage.why))
     print_table(("stage", "runs", "of", "why"), rows, right=(1, 2))

@@ -19,10 +19,10 @@ from trackroller.materials.file import find_user_file
 from trackroller.study.cost import duration
 from trackroller.study.file.load import load_study
 from trackroller.study.file.study import Study
+from trackroller.study.store.fingerprint import StudyCases
 from trackroller.study.store.folder import StudyFolder, Tell, check_for_workflow, unheard
-from trackroller.study.store.identity import Cases
 from trackroller.study.store.ledger import Ledger, read_ledger, study_folder, working_ledger
-from trackroller.study.store.manifest import claim
+from trackroller.study.store.put import claim
 
 CONFIG_KEYS = ("study", "results")
 _held = contextlib.ExitStack()  # keeps the lock of the study until this process ends
@@ -53,7 +53,8 @@ def workflow_config(config: Mapping[str, Any], source: Path, *, strict: bool = T
     for key in config if strict else ():
         if key not in CONFIG_KEYS:
             raise unknown_name("--config key", str(key), CONFIG_KEYS)
-    study, results = config.get("study"), config.get("results", "results")
+    study = config.get("study")
+    results = config.get("results", "results")
     advice = "Write it in config/config.yaml or give --config study=config/studies/NAME.yaml."
     if not isinstance(study, str):
         raise InputError("study", study, "the path of a study file", advice)
@@ -101,12 +102,13 @@ def workflow_ledger(config: Mapping[str, str], main: bool, tell: Tell = unheard)
     WorkError
         If the study was edited after the main process had planned it.
     """
-    study, results = load_study(config["study"], planned=not main), config["results"]
+    study = load_study(config["study"], planned=not main)
+    results = config["results"]
     folder = study_folder(study.name, results)
     if main:
         check_for_workflow(folder.create().root)
     if study.decides:  # its rule plans each generation
-        return Ledger(Cases(study), folder)
+        return Ledger(StudyCases(study), folder)
     if main:
         return _held.enter_context(working_ledger(study, results, tell=tell))
     ledger = read_ledger(study, folder)
@@ -120,7 +122,9 @@ def workflow_ledger(config: Mapping[str, str], main: bool, tell: Tell = unheard)
 
 def study_inputs(study: Study) -> list[str]:
     """Return the files a study's cases depend on: study file, table of cases, and the user's materials."""
-    paths = [str(study.path)] if study.path is not None else []
+    paths = []
+    if study.path is not None:
+        paths = [str(study.path)]
     if study.config.table is not None:
         paths.append(str(study.table_path))
     user = find_user_file()
@@ -141,9 +145,11 @@ def captions(study: Study, folder: StudyFolder) -> dict[str, str]:
         The study's folder; without figures only the caption of the report is there.
     """
     index = folder.root / "figures" / "index.json"
-    drawn = json.loads(index.read_text(encoding="utf-8")) if index.is_file() else []
+    figures = []
+    if index.is_file():
+        figures = json.loads(index.read_text(encoding="utf-8"))
     texts = {"report": f"Study {study.name}: {study.config.description or 'no description'}"}
-    texts |= {item["name"]: f"{item['sentence']} {item['caption']}".strip() for item in drawn}
+    texts |= {item["name"]: f"{item['sentence']} {item['caption']}".strip() for item in figures}
     return {name: _as_paragraph(text) for name, text in texts.items()}
 
 
@@ -153,7 +159,8 @@ def _as_paragraph(text: str) -> str:
     A directive such as `.. include::` needs a line of its own, and every markup needs a punctuation mark. So all white
     space becomes single spaces, and each mark is escaped.
     """
-    words = " ".join("".join(c if c.isprintable() or c.isspace() else "?" for c in text).split())
+    printable = [sign if sign.isprintable() or sign.isspace() else "?" for sign in text]
+    words = " ".join("".join(printable).split())
     return re.sub(r"([^\w\s]|_)", r"\\\1", words)
 
 
@@ -169,9 +176,12 @@ def show_progress(folder: StudyFolder, to: TextIO = sys.stderr) -> None:
     """
     plan = folder.record()
     total = plan["distinct"]
-    done = total - sum(size for name, size in plan["chunks"].items() if not folder.chunk(name).is_file())
-    line = f"{folder.root.name}: {done:,} of {total:,} cases solved ({100 * done // max(total, 1)} %)"
-    print(line, file=to, flush=True, end="\r" if to.isatty() and done < total else "\n")
+    solved = total - sum(size for name, size in plan["chunks"].items() if not folder.chunk(name).is_file())
+    line = f"{folder.root.name}: {solved:,} of {total:,} cases solved ({100 * solved // max(total, 1)} %)"
+    end = "\n"
+    if to.isatty() and solved < total:
+        end = "\r"
+    print(line, file=to, flush=True, end=end)
 
 
 def hide_chatter(handlers: Iterable[logging.Handler], report: Callable[[], str]) -> None:
@@ -185,21 +195,24 @@ def hide_chatter(handlers: Iterable[logging.Handler], report: Callable[[], str])
         Returns the path of the report, which that message names.
     """
 
-    def wanted(record: logging.LogRecord) -> bool:
+    def is_shown(record: logging.LogRecord) -> bool:
         if record.getMessage().startswith("Nothing to be done"):
-            record.msg, record.args = f"Nothing to be done. Report: {report()}", ()
+            record.msg = f"Nothing to be done. Report: {report()}"
+            record.args = ()
             return True
         return record.levelno > logging.INFO
 
     for handler in handlers:
-        handler.addFilter(wanted)
+        handler.addFilter(is_shown)
 
 
 def finished(folder: StudyFolder, seconds: float) -> str:
     """Return the last line of a run: where the report is and how long the run took."""
     report = folder.root / "report.html"
     took = duration(seconds)
-    return f"Report: {report}, made in {took}" if report.is_file() else f"Done in {took}; there is no report yet."
+    if report.is_file():
+        return f"Report: {report}, made in {took}"
+    return f"Done in {took}; there is no report yet."
 
 
 def log_to(path: str, step: str = "") -> None:

@@ -32,14 +32,16 @@ def curve_of(solved: SolvedRollers) -> SNCurve:
 
 def amplitude(solved: SolvedRollers) -> np.ndarray:
     """Return the stress that enters the S-N curve by the option `life_criterion`, (n, contact, body) [MPa]."""
-    criterion, values = solved.options["life_criterion"], solved.values
+    criterion = solved.options["life_criterion"]
+    values = solved.values
     if criterion not in STRESS_OF:
         return values["peak_stress"]
     name = STRESS_OF[criterion]
     if criterion == "dang_van" and not solved.options["credit_pressure"]:
         name = "dang_van_utilisation_without_pressure"
-    limit = 1.0 if criterion in ("von_mises_amplitude", "goodman") else solved.materials["fatigue_limit"][:, None, :]
-    return np.asarray(values[name] * limit)
+    if criterion in ("von_mises_amplitude", "goodman"):  # these are stresses already
+        return np.asarray(values[name])
+    return np.asarray(values[name] * solved.materials["fatigue_limit"][:, None, :])
 
 
 def overloaded(peak_stress: np.ndarray, tensile_strength: np.ndarray) -> np.ndarray:
@@ -93,9 +95,13 @@ def life(solved: SolvedRollers) -> Values:
     -----
     The error of a stress other than the peak is not estimated, so its life has no error either.
     """
-    stress, curve = amplitude(solved), curve_of(solved)
+    stress = amplitude(solved)
+    curve = curve_of(solved)
     published = solved.options["life_criterion"] not in STRESS_OF
-    error = solved.values["error_estimate"] if published else np.full_like(stress, np.nan)
+    if published:
+        error = solved.values["error_estimate"]
+    else:
+        error = np.full_like(stress, np.nan)
     lifeless = _without_life(solved)
     cycles = np.where(lifeless[:, None, :], np.nan, curve.life_cycles(stress))
     with np.errstate(over="ignore"):  # lives longer than the range of numbers are infinite
@@ -103,7 +109,7 @@ def life(solved: SolvedRollers) -> Values:
     roller, guide = np.moveaxis(hours.min(axis=1), 1, 0)
     pair, first = first_failure(roller, guide)
     pair = np.where(lifeless.any(axis=1), np.nan, pair)
-    return {
+    results = {
         "life_cycles": cycles,
         "life_error_estimate": np.where(np.isnan(cycles), np.nan, _error_of_life(curve.slope(stress), error)),
         "life_hours": hours,
@@ -111,13 +117,17 @@ def life(solved: SolvedRollers) -> Values:
         "guide_life_hours": guide,
         "pair_life_hours": pair,
         "first_to_fail": first,
-    } | ({} if published else {"fatigue_stress": stress})
+    }
+    if not published:
+        results["fatigue_stress"] = stress
+    return results
 
 
 def verdict(solved: SolvedRollers, results: Values) -> Verdict:
     """Return the utilisation of the fatigue limit and the life at the failure probability, (n, body)."""
     p = solved.options["failure_probability"]
-    curve, stress = curve_of(solved).changed(failure_probability=p), amplitude(solved)
+    curve = curve_of(solved).changed(failure_probability=p)
+    stress = amplitude(solved)
     known = curve.scatters | (p == 0.5)
     living = known & ~_without_life(solved)[:, None, :]
     hours = curve.life_cycles(stress) / solved.overrollings_per_hour[:, None, :]

@@ -47,10 +47,14 @@ def unknown_field(kind: str, name: str, options: Iterable[str], elsewhere: Itera
     load it.
     """
     error = unknown_name(kind, name, options, elsewhere)
-    files = () if VARIABLE in os.environ else sorted(FOLDER.glob("*.py"))
+    files: list[Path] = []
+    if VARIABLE not in os.environ:
+        files = sorted(FOLDER.glob("*.py"))
     quoted = re.compile(rf"""["']{re.escape(name)}["']""")
     file = next((file for file in files if quoted.search(file.read_text(encoding="utf-8", errors="replace"))), None)
-    return error if file is None else InputError(kind, name, error.allowed, _how(file), error.wrong)
+    if file is None:
+        return error
+    return InputError(kind, name, error.allowed, _how(file), error.wrong)
 
 
 def check_fields(kind: str, names: Iterable[object], options: Iterable[str]) -> None:
@@ -63,7 +67,9 @@ def check_fields(kind: str, names: Iterable[object], options: Iterable[str]) -> 
 def digests() -> dict[Path, str]:
     """Return the SHA-256 of each allowed file, sorted by name; the files are read once, before they are loaded."""
     folder = os.environ.get(VARIABLE)
-    files = sorted(Path(folder).resolve().glob("*.py")) if folder else ()
+    files: list[Path] = []
+    if folder:
+        files = sorted(Path(folder).resolve().glob("*.py"))
     return {path: hashlib.sha256(path.read_bytes()).hexdigest() for path in files}
 
 
@@ -122,11 +128,11 @@ def _errors_of(path: Path) -> Iterator[None]:
     except (InputError, KeyboardInterrupt, MemoryError):
         raise
     except BaseException as error:
-        why = f"{type(error).__name__}: {error}".rstrip(": ")
-        wrong = f"stops with {why}"
+        reason = f"{type(error).__name__}: {error}".rstrip(": ")
+        wrong = f"stops with {reason}"
         remedy = "Correct this line, or leave out --allow-code."
-        told = InputError("limits", path.name, "a program without errors", remedy, wrong)
-        raise told.at(path, _line_of(error, path)) from error
+        of_user = InputError("limits", path.name, "a program without errors", remedy, wrong)
+        raise of_user.at(path, _line_of(error, path)) from error
 
 
 def _line_of(error: BaseException, path: Path) -> int:

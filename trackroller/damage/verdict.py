@@ -39,9 +39,9 @@ def _life(
 ) -> tuple[tuple[str, Any, str, str, str, Any], ...]:
     """Return the rows of a life and of the ends of its range."""
     ends = (("", "", ""), ("_low", "low end of the ", ", low end"), ("_high", "high end of the ", ", high end"))
-    more = LIFE | {"of": of}
+    fields = LIFE | {"of": of}
     return tuple(
-        (name + end, dims, "h", "", head + meaning, more | {"end": end[1:], "label": label + tail})
+        (name + end, dims, "h", "", head + meaning, fields | {"end": end[1:], "label": label + tail})
         for end, head, tail in ends
     )
 
@@ -109,7 +109,10 @@ def first_of(
     life, known = np.where(broken, 0.0, life), (counted & ~np.isnan(life)) | broken
     first = np.min(np.where(known, life, np.inf), axis=1)
     rank = np.where(known & (life == first[:, None, :]), np.nan_to_num(used, nan=0.0), -1.0)
-    unknown = concerned & ~known if lacking is None else concerned & ~known & ~lacking
+    if lacking is None:
+        unknown = concerned & ~known
+    else:
+        unknown = concerned & ~known & ~lacking
     some = known.any(axis=1)
     never = np.isinf(first) & unknown.any(axis=1)
     return np.where(never | ~some, np.nan, first), np.where(some, np.argmax(rank, axis=1), -1)
@@ -137,6 +140,15 @@ def states(used: np.ndarray, life: np.ndarray, broken: np.ndarray, limits: Seque
     state = np.where(np.isnan(used[0]) & np.isnan(life), STATES.index("unknown"), STATES.index("kept"))
     state = np.where(bounded & (most > 1.0), STATES.index("open"), state)
     return np.where((bounded & (least > 1.0)) | broken, STATES.index("exceeded"), state)
+
+
+def _ends(hours: np.ndarray, low: np.ndarray | None, high: np.ndarray | None) -> list[np.ndarray]:
+    """Return the life of a limit and the ends of its range, which is the life itself where the limit gives none."""
+    if low is None:
+        low = hours
+    if high is None:
+        high = hours
+    return [hours, low, high]
 
 
 def verdict(places: Sequence[SolvedRollers], limits: Sequence[Limit], numbers: Sequence[int], unknown: int) -> Values:
@@ -167,10 +179,13 @@ def verdict(places: Sequence[SolvedRollers], limits: Sequence[Limit], numbers: S
     tensile strength breaks at once.
     """
     shape = len(places), len(places[0].rolling_radius), len(limits), len(BODIES)
-    used, broken = np.full(shape, np.nan), np.zeros(shape[1:], dtype=bool)
+    used = np.full(shape, np.nan)
+    broken = np.zeros(shape[1:], dtype=bool)
     lives = {end: np.full(shape, np.nan) for end in ENDS}
     timed = np.zeros(len(limits), dtype=bool)
-    lacking = np.stack([limit.lacking(places[0]) for limit in limits], axis=1) if limits else broken
+    lacking = broken
+    if limits:
+        lacking = np.stack([limit.lacking(places[0]) for limit in limits], axis=1)
     for i, limit in enumerate(limits):
         assert limit.verdict is not None
         concerned = [body in limit.bodies for body in BODIES]
@@ -180,8 +195,8 @@ def verdict(places: Sequence[SolvedRollers], limits: Sequence[Limit], numbers: S
                 used[place, :, i] = np.where(concerned, own.utilisation, np.nan)
             if own.life_hours is not None:
                 timed[i] = True
-                for end, hours in zip(ENDS, (None, own.life_low, own.life_high), strict=True):
-                    lives[end][place, :, i] = np.where(concerned, own.life_hours if hours is None else hours, np.nan)
+                for end, hours in zip(ENDS, _ends(own.life_hours, own.life_low, own.life_high), strict=True):
+                    lives[end][place, :, i] = np.where(concerned, hours, np.nan)
             if own.at_once is not None:
                 broken[:, i] = own.at_once
     at_once = breaking(np.asarray(broken.any(axis=1)), limits)

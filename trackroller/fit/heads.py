@@ -74,23 +74,23 @@ def read_heads(heads: Iterable[str], known: Collection[str], names: Mapping[str,
         If two heads stand for one column.
     """
     columns = {other: column for column, others in names.items() for other in (column, *others.split())}
-    found: dict[str, Head] = {}
-    taken: dict[str, str] = {}
+    renamed: dict[str, Head] = {}
+    heads_of_columns: dict[str, str] = {}
     for head in map(str, heads):
         name, unit = split_head(head)
         if name in known:
-            one = Head(name, unit)
+            meaning = Head(name, unit)
         else:
-            one = _read_head(name, unit, columns)
-            if not one.column:
+            meaning = _read_head(name, unit, columns)
+            if not meaning.column:
                 continue
-            found[head] = one
-        if one.column in taken:
-            remedy = f"Remove one of the columns {taken[one.column]} and {head}."
-            wrong = f"stands for {one.column}, as {taken[one.column]} does"
-            raise InputError("column", head, f"one column for {one.column}", remedy, wrong)
-        taken[one.column] = head
-    return found
+            renamed[head] = meaning
+        if meaning.column in heads_of_columns:
+            remedy = f"Remove one of the columns {heads_of_columns[meaning.column]} and {head}."
+            wrong = f"stands for {meaning.column}, as {heads_of_columns[meaning.column]} does"
+            raise InputError("column", head, f"one column for {meaning.column}", remedy, wrong)
+        heads_of_columns[meaning.column] = head
+    return renamed
 
 
 def _read_head(name: str, unit: str, columns: Mapping[str, str]) -> Head:
@@ -123,7 +123,8 @@ def has_failed(text: str, column: str, marks: bool) -> bool | None:
     marks : bool
         Whether the column only marks cells, so that an empty one says no.
     """
-    word, code = _joined(text), text.strip().lower()
+    word = _joined(text)
+    code = text.strip().lower()
     if word in FAILED or word in WHOLE:
         return word in FAILED
     if code in YES or code in NO or (not code and marks):
@@ -145,4 +146,6 @@ def told_heads(heads: Mapping[str, str], units: Mapping[str, str]) -> str:
     """Return a sentence on heads, by column, that were read as another name of it; '' without such a head."""
     meaning = {"censored": "the opposite of failed"}
     parts = [f"'{head}' as {meaning.get(column, column)}{units.get(column, '')}" for column, head in heads.items()]
-    return f"Columns were read by other names: {listing(parts)}." if parts else ""
+    if parts:
+        return f"Columns were read by other names: {listing(parts)}."
+    return ""

@@ -54,7 +54,9 @@ Solved = Callable[[float, np.ndarray], np.ndarray]
 Profile = Callable[[float, np.ndarray], tuple[float, np.ndarray]]
 NEAR = 0.02  # in ln S, how far below a stress a fatigue limit is tried first
 SAME_MAXIMUM = 1e-6  # difference of ln L within which two maxima count as one
-MOST_LIMITS, LIMIT_SCATTERS = 40, (0.01, 0.04, 0.15, 0.5)  # at which the likelihood is looked at for starts
+# at which the likelihood is looked at for starts
+MOST_LIMITS = 40
+LIMIT_SCATTERS = (0.01, 0.04, 0.15, 0.5)
 MOST_STARTS = 6  # limits from which Newton's method starts
 MOST_FURTHER = 2  # starts for a value of a profile that is less likely than an interval allows
 STEPS = np.arange(-2.0, 6.1, 0.5).tolist()  # of ln N, at which finite lives are tried below a fatigue limit
@@ -136,10 +138,14 @@ class Line:
     @cached_property
     def free(self) -> tuple[str, ...]:
         """Return the names of the values that are fitted."""
-        held = {"slope"} if self.slope is not None or not self.sloped else set()
-        held |= {"log_scatter"} if self.scatter is not None else set()
-        held |= set() if self.knee else {"log_limit", "log_limit_scatter"}
-        return tuple(name for name in NAMES if name not in held)
+        constant = set()
+        if self.slope is not None or not self.sloped:
+            constant.add("slope")
+        if self.scatter is not None:
+            constant.add("log_scatter")
+        if not self.knee:
+            constant |= {"log_limit", "log_limit_scatter"}
+        return tuple(name for name in NAMES if name not in constant)
 
     @cached_property
     def bounds(self) -> dict[str, tuple[float, float]]:
@@ -150,19 +156,31 @@ class Line:
     @property
     def size(self) -> int:
         """Return the number of specimens."""
-        return len(self.tests.stress) if self.specimens is None else self.specimens
+        if self.specimens is None:
+            return len(self.tests.stress)
+        return self.specimens
 
     @cached_property
     def reference(self) -> float:
         """Return ln S_0: the mean of ln S over the failures, over all tests if none failed."""
-        own = self.tests.stress[self.tests.failed] if self.tests.failed.any() else self.tests.stress
+        if self.tests.failed.any():
+            own = self.tests.stress[self.tests.failed]
+        else:
+            own = self.tests.stress
         return float(own.mean())
 
     @cached_property
-    def _held(self) -> np.ndarray:
+    def _constants(self) -> np.ndarray:
         """Return the values that are held, NaN for free ones, as `Values` orders them."""
-        slope = 0.0 if not self.sloped else math.nan if self.slope is None else self.slope
-        return np.array([math.nan, slope, math.nan if self.scatter is None else math.log(self.scatter), 0.0, 0.0])
+        slope = math.nan
+        log_scatter = math.nan
+        if not self.sloped:
+            slope = 0.0
+        elif self.slope is not None:
+            slope = self.slope
+        if self.scatter is not None:
+            log_scatter = math.log(self.scatter)
+        return np.array([math.nan, slope, log_scatter, 0.0, 0.0])
 
     @cached_property
     def _places(self) -> list[int]:
@@ -175,7 +193,7 @@ class Line:
 
     def values(self, points: np.ndarray) -> Values:
         """Return the values at points (..., p) of the free ones, each of shape (...)."""
-        every = np.broadcast_to(self._held, (*np.shape(points)[:-1], len(NAMES))).copy()
+        every = np.broadcast_to(self._constants, (*np.shape(points)[:-1], len(NAMES))).copy()
         every[..., self._places] = points
         return Values(*np.moveaxis(every, -1, 0))
 
@@ -201,18 +219,23 @@ class Line:
     def _of_points(self, points: np.ndarray) -> np.ndarray:
         """Return ln L at a list of points, (m,)."""
         v = Values(*(np.asarray(value)[:, None] for value in self.values(points)))
-        total, scatter = np.zeros(len(points)), np.exp(v.log_scatter)
+        total = np.zeros(len(points))
+        scatter = np.exp(v.log_scatter)
         for kind, (x, low, high, times) in self._distinct.items():
             mean = v.level - v.slope * (x - self.reference)
             above = (low - mean) / scatter
             if kind == "observed":
                 part = -0.5 * above**2 - v.log_scatter
             else:
-                part = log_ndtr(-above) if kind == "suspended" else _between(above, (high - mean) / scatter)
+                if kind == "suspended":
+                    part = log_ndtr(-above)
+                else:
+                    part = _between(above, (high - mean) / scatter)
             if self.knee:
                 excess = (x - v.log_limit) / np.exp(v.log_limit_scatter)
                 part = part + log_ndtr(excess)
-                part = np.logaddexp(log_ndtr(-excess), part) if kind == "suspended" else part
+                if kind == "suspended":
+                    part = np.logaddexp(log_ndtr(-excess), part)
             total += part @ times
         return total
 
@@ -220,13 +243,14 @@ class Line:
     def _distinct(self) -> dict[str, tuple[np.ndarray, ...]]:
         """Return stress, ends and number of equal tests, by the kind of their end."""
         rows = np.stack([self.tests.stress, self.tests.low, self.tests.high], axis=1)
-        found, times = np.unique(rows, axis=0, return_counts=True)
+        different, times = np.unique(rows, axis=0, return_counts=True)
+        _, low, high = different.T
         kinds = {
-            "observed": found[:, 1] == found[:, 2],
-            "inspected": (found[:, 1] < found[:, 2]) & np.isfinite(found[:, 2]),
-            "suspended": np.isposinf(found[:, 2]),
+            "observed": low == high,
+            "inspected": (low < high) & np.isfinite(high),
+            "suspended": np.isposinf(high),
         }
-        return {kind: (*found[own].T, times[own]) for kind, own in kinds.items() if own.any()}
+        return {kind: (*different[of_kind].T, times[of_kind]) for kind, of_kind in kinds.items() if of_kind.any()}
 
     @cached_property
     def estimate(self) -> np.ndarray:
@@ -244,14 +268,14 @@ class Line:
         def loss(points: np.ndarray) -> np.ndarray:
             return -self.log_likelihood(points)
 
-        found = sorted((least(loss, start, self.limits) for start in self._starts()), key=_value)
+        minima = sorted((least(loss, start, self.limits) for start in self._starts()), key=_value)
         if self.knee and self.tests.failed.any():
-            found += [least(loss, start, self.limits) for start in self._starts_by_limit()]
-        lowest = min(map(_value, found))
+            minima += [least(loss, start, self.limits) for start in self._starts_by_limit()]
+        lowest = min(map(_value, minima))
         # of places that are equally likely the first one stays, so that further starts change no last digit
-        found.sort(key=lambda one: max(_value(one) - lowest, SAME_MAXIMUM))
-        different = found[:1]
-        for one in found[1:]:
+        minima.sort(key=lambda one: max(_value(one) - lowest, SAME_MAXIMUM))
+        different = minima[:1]
+        for one in minima[1:]:
             if all(abs(_value(one) - _value(other)) > SAME_MAXIMUM for other in different):
                 different.append(one)
         return [place for place, _ in different]
@@ -281,25 +305,37 @@ class Line:
 
     def _starts(self) -> list[np.ndarray]:
         """Return places to start from: the regression of the failures, with steeper slopes beside it."""
-        lowest, failed = self.tests.stress.min(), self.tests.failed
-        limit = lowest - 0.05 if failed.all() else float(np.median(self.tests.stress[~failed]))
+        lowest = self.tests.stress.min()
+        failed = self.tests.failed
+        if failed.all():
+            limit = lowest - 0.05
+        else:
+            limit = float(np.median(self.tests.stress[~failed]))
         return [self._point(own._replace(log_limit=limit)) for own in self._lines_of_failures((5.0, 12.0))]
 
     def _lines_of_failures(self, slopes: Sequence[float]) -> list[Values]:
         """Return lines through the middle of the failures: that of the regression, and those of given slopes."""
-        x, y, failed = self.tests.stress - self.reference, self.tests.middle, self.tests.failed
-        own = failed if failed.any() else np.ones_like(failed)
-        x, y = x[own], y[own]
+        x = self.tests.stress - self.reference
+        y = self.tests.middle
+        failed = self.tests.failed
+        if failed.any():
+            x, y = x[failed], y[failed]
         spread = float(((x - x.mean()) ** 2).sum())
-        fitted = -float((x * (y - y.mean())).sum()) / spread if spread > 1e-12 else 8.0
-        tried = [fitted, *slopes] if self.slope is None else [self.slope]
-        found = []
-        for slope in tried if self.sloped else [0.0]:
-            held = float(np.clip(slope, *BOUNDS["slope"])) if self.sloped else 0.0
-            along = y + held * x
+        fitted = 8.0
+        if spread > 1e-12:
+            fitted = -float((x * (y - y.mean())).sum()) / spread
+        if not self.sloped:
+            starts = [0.0]
+        elif self.slope is not None:
+            starts = [float(np.clip(self.slope, *BOUNDS["slope"]))]
+        else:
+            starts = [float(np.clip(slope, *BOUNDS["slope"])) for slope in (fitted, *slopes)]
+        lines = []
+        for slope in starts:
+            along = y + slope * x
             scatter = max(float(np.std(along)), 0.1)
-            found.append(Values(float(along.mean()), held, math.log(scatter), 0.0, math.log(0.05)))
-        return found
+            lines.append(Values(float(along.mean()), slope, math.log(scatter), 0.0, math.log(0.05)))
+        return lines
 
     def _starts_by_limit(self) -> list[np.ndarray]:
         """Return the likeliest values with some fatigue limits, and those without a limit."""
@@ -319,7 +355,7 @@ class Line:
             limits = np.append(limits[0], np.quantile(self.tests.stress, np.linspace(0.0, 1.0, MOST_LIMITS - 1)))
         lines = self._lines_of_failures((5.0, 12.0, 25.0))
         lines.append(replace(self, knee=False).best)  # on it a run-out is a long life
-        found = [
+        points = [
             [
                 self._point(own._replace(log_limit=limit, log_limit_scatter=math.log(scatter)))
                 for own in lines
@@ -327,7 +363,7 @@ class Line:
             ]
             for limit in limits.tolist()
         ]
-        return np.clip(np.array(found), *self.limits.T)
+        return np.clip(np.array(points), *self.limits.T)
 
     def _point(self, values: Values) -> np.ndarray:
         """Return the free ones of values, (p,)."""
@@ -341,10 +377,10 @@ class Line:
         confidence : float
             Share of intervals that hold the true value, such as 0.9.
         """
-        left = max(self.size - len(self.free), 1)
-        square = float(stdtrit(left, 0.5 + 0.5 * confidence)) ** 2
+        freedom = max(self.size - len(self.free), 1)
+        square = float(stdtrit(freedom, 0.5 + 0.5 * confidence)) ** 2
         # with one or two tests more than values, t^2/2 would be far too wide: the mean of complete data has this form
-        return min(0.5 * square, 0.5 * self.size * math.log1p(square / left))
+        return min(0.5 * square, 0.5 * self.size * math.log1p(square / freedom))
 
     def log_life(self, values: Values, log_stress: float, probability: float) -> np.ndarray:
         """Return ln N at which a share of specimens has failed; inf below a fatigue limit that more survive.
@@ -406,7 +442,9 @@ class Line:
         endless = any(math.isinf(life(point)) for point in likely)
         if not endless:
             endless = self._endless(log_stress, probability) >= self._goal(confidence)
-        return Interval(low, math.inf if endless else high)
+        if endless:
+            return Interval(low, math.inf)
+        return Interval(low, high)
 
     def _finite_lives(
         self, log_stress: float, probability: float, confidence: float, level: Solved
@@ -418,16 +456,18 @@ class Line:
         goal = self._goal(confidence)
         profile = self._profile(0, level, goal)
         likely, step = max((profile(straight + step, start[1:])[0], step) for step in STEPS)
-        return [(straight + step, start)] if likely >= goal else []
+        if likely >= goal:
+            return [(straight + step, start)]
+        return []
 
     def _endless(self, log_stress: float, probability: float) -> float:
         """Return the largest ln L of lines whose fatigue limit at a failure probability is a stress."""
         place = self.free.index("log_limit")
 
-        def loss(rest: np.ndarray) -> np.ndarray:
-            limit = log_stress - np.exp(rest[..., -1]) * float(ndtri(probability))
+        def loss(others: np.ndarray) -> np.ndarray:
+            limit = log_stress - np.exp(others[..., -1]) * float(ndtri(probability))
             inside = (limit >= self.limits[place, 0]) & (limit <= self.limits[place, 1])
-            return np.where(inside, -self.log_likelihood(np.insert(rest, place, limit, axis=-1)), LARGE)
+            return np.where(inside, -self.log_likelihood(np.insert(others, place, limit, axis=-1)), LARGE)
 
         limits = np.delete(self.limits, place, axis=0)
         return max(-least(loss, np.delete(start, place), limits)[1] for start in self.maxima)
@@ -471,9 +511,8 @@ class Line:
         place = self.free.index(name)
         low, high = self.bounds[name]
         begins = [(float(point[place]), point) for point in self._likely(confidence)]
-        found = self._ends(begins, place, _itself, confidence)
-        open_low, open_high = found.low <= low, found.high >= high
-        return Interval(low if open_low else found.low, high if open_high else found.high)
+        ends = self._ends(begins, place, _itself, confidence)
+        return Interval(max(ends.low, low), min(ends.high, high))
 
     def _ends(
         self, begins: Sequence[tuple[float, np.ndarray]], place: int, solved: Solved, confidence: float
@@ -487,7 +526,9 @@ class Line:
         if not self.tests.failed.any():
             return self._without_failures(place, solved, confidence)
         goal = self._goal(confidence)
-        bounds = self.limits[place] if place else (-math.inf, math.inf)
+        bounds = -math.inf, math.inf
+        if place:
+            bounds = self.limits[place]
         profile = self._profile(place, solved, goal)
         low, high = math.inf, -math.inf
         for value, point in begins:
@@ -510,18 +551,18 @@ class Line:
             further = np.clip(np.delete(np.concatenate(points), place, axis=1), *limits.T)
 
         def profile(value: float, start: np.ndarray) -> tuple[float, np.ndarray]:
-            def loss(rest: np.ndarray) -> np.ndarray:
-                own = solved(value, rest)
-                points = np.insert(rest, place, np.where(np.isfinite(own), own, 0.0), axis=-1)
+            def loss(others: np.ndarray) -> np.ndarray:
+                own = solved(value, others)
+                points = np.insert(others, place, np.where(np.isfinite(own), own, 0.0), axis=-1)
                 return np.where(np.isfinite(own), -self.log_likelihood(points), LARGE)
 
             if not len(start):
                 return -float(loss(start)), start
-            found = least(loss, start, limits)
-            if -found[1] < goal and len(further):
+            minimum = least(loss, start, limits)
+            if -minimum[1] < goal and len(further):
                 for other in further[np.argsort(loss(further), kind="stable")[:MOST_FURTHER]]:
-                    found = min(found, least(loss, other, limits), key=_value)
-            return -found[1], found[0]
+                    minimum = min(minimum, least(loss, other, limits), key=_value)
+            return -minimum[1], minimum[0]
 
         return profile
 
@@ -529,7 +570,8 @@ class Line:
         """Return the one-sided bound of a level that no failure has bounded from above."""
         if len(self.free) > 1 or place:
             return Interval(-math.inf, math.inf)
-        goal, none = math.log(0.5 - 0.5 * confidence), np.empty(0)
+        goal = math.log(0.5 - 0.5 * confidence)
+        none = np.empty(0)
 
         def excess(value: float) -> float:
             return float(self.log_likelihood(np.atleast_1d(solved(value, none)))) - goal
@@ -558,9 +600,11 @@ def least(loss: Callable[[np.ndarray], np.ndarray], start: np.ndarray, limits: n
         new = np.clip(point + step, *limits.T)
         if -(new - point) @ gradient < TOLERANCE:
             break
-        found = expanded(loss, new)
-        if found[0] < value:
-            point, (value, gradient, curvature), damping = new, found, 0.1 * damping
+        expansion = expanded(loss, new)
+        if expansion[0] < value:
+            point = new
+            value, gradient, curvature = expansion
+            damping = 0.1 * damping
         else:
             damping = max(10.0 * damping, 1e-2 * float(np.abs(np.diag(curvature)).max()), 1e-3)
     return point, value
@@ -568,22 +612,33 @@ def least(loss: Callable[[np.ndarray], np.ndarray], start: np.ndarray, limits: n
 
 def expanded(loss: Callable[[np.ndarray], np.ndarray], point: np.ndarray) -> tuple[float, np.ndarray, np.ndarray]:
     """Return value, gradient and second derivatives of a function at a point, by central differences."""
-    n, unit = len(point), STEP * np.eye(len(point))
+    n = len(point)
+    unit = STEP * np.eye(len(point))
     first, second = np.triu_indices(n, 1)
-    both, apart = unit[first] + unit[second], unit[first] - unit[second]
+    both = unit[first] + unit[second]
+    apart = unit[first] - unit[second]
     places = np.concatenate([np.zeros((1, n)), unit, -unit, both, -both, apart, -apart])
     values = np.nan_to_num(loss(point + places), nan=LARGE, posinf=LARGE)
     m = len(first)
-    up, down, crossed = values[1 : n + 1], values[n + 1 : 2 * n + 1], values[2 * n + 1 :]
+    up = values[1 : n + 1]
+    down = values[n + 1 : 2 * n + 1]
+    crossed = values[2 * n + 1 :]
     curvature = np.diag((up + down - 2.0 * values[0]) / STEP**2)
     mixed = (crossed[:m] + crossed[m : 2 * m] - crossed[2 * m : 3 * m] - crossed[3 * m :]) / (4.0 * STEP**2)
     curvature[first, second] = curvature[second, first] = mixed
     return float(values[0]), (up - down) / (2.0 * STEP), curvature
 
 
-def _value(found: tuple[np.ndarray, float]) -> float:
-    """Return the value of what `least` found."""
-    return found[1]
+def log_or_end(value: float) -> float:
+    """Return ln of a number >= 0: -inf for 0, inf for inf."""
+    if value == 0:
+        return -math.inf
+    return math.log(value)
+
+
+def _value(minimum: tuple[np.ndarray, float]) -> float:
+    """Return the value at a minimum that `least` returned."""
+    return minimum[1]
 
 
 def _itself(value: float, others: np.ndarray) -> np.ndarray:
@@ -595,7 +650,8 @@ def _between(low: np.ndarray, high: np.ndarray) -> np.ndarray:
     """Return ln(Phi(high) - Phi(low)), accurate in both tails."""
     flip = low > 0
     low, high = np.where(flip, -high, low), np.where(flip, -low, high)
-    upper, lower = log_ndtr(high), log_ndtr(low)
+    upper = log_ndtr(high)
+    lower = log_ndtr(low)
     return np.asarray(upper + np.log1p(-np.minimum(np.exp(lower - upper), 1.0 - 1e-15)))
 
 
@@ -608,23 +664,33 @@ def _end(
     bounds: tuple[float, float] | np.ndarray,
 ) -> float:
     """Return one end of an interval: step outward until the profile lies below its goal, then close in."""
-    step, inner, start = 0.1, best, others
+    step = 0.1
+    inner = best
+    start = others
     while True:
         outer = inner + side * step
         if not bounds[0] < outer < bounds[1]:
-            outer = float(bounds[0] if side < 0 else bounds[1])
+            outer = float(bounds[1])
+            if side < 0:
+                outer = float(bounds[0])
             if profile(outer, start)[0] >= goal:
                 return outer
-        value, found = profile(outer, start)
+        value, point = profile(outer, start)
         if value < goal:
             break
-        inner, start, step = outer, found, 2.0 * step
+        inner = outer
+        start = point
+        step = 2.0 * step
         if abs(inner - best) > FARTHEST:
             return side * math.inf
     for _ in range(40):
         middle = 0.5 * (inner + outer)
         if abs(outer - inner) < 1e-4 * max(1.0, abs(inner - best)):
             break
-        value, found = profile(middle, start)
-        inner, outer, start = (middle, outer, found) if value >= goal else (inner, middle, start)
+        value, point = profile(middle, start)
+        if value >= goal:
+            inner = middle
+            start = point
+        else:
+            outer = middle
     return 0.5 * (inner + outer)

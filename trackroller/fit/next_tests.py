@@ -94,7 +94,8 @@ def next_tests(
         raise InputError("tests", tests, "a whole number from 1 to 20", "Give 3 for three tests.")
     longest = _longest_travel(longest)
     failure_probability = share("failure_probability", failure_probability)
-    own, body = fit.group("fatigue"), str(fit.given.get("body", "roller"))
+    own = fit.group("fatigue")
+    body = str(fit.given.get("body", "roller"))
     cases = _cases(candidates)
     chosen_design, options, _ = checked_case(fields_of(design))
     check_same(fit.given, options, fit.name)
@@ -133,7 +134,8 @@ def ranked(
     tests, failure_probability, longest, seed
         See `next_tests`.
     """
-    line, draws = own.line, _drawn(own.posterior, seed)
+    line = own.line
+    draws = _fewer_points(own.posterior, seed)
     goal = np.asarray(line.log_life(draws.values, stresses[0][-1], failure_probability))
     if not np.isfinite(goal).all():
         remedy = "Give a design that is loaded above the fatigue limit."
@@ -168,10 +170,13 @@ class _Candidate:
     """A test that could run: its end under drawn values, and the likelihood of each end under all values."""
 
     def __init__(self, line: Line, draws: Posterior, stress: float, limit: float) -> None:
-        values, scatter = draws.values, np.exp(draws.values.log_scatter)
+        values = draws.values
+        scatter = np.exp(draws.values.log_scatter)
         mean = np.asarray(line.log_life(values, stress, 0.5))
         self.median = float(np.exp(np.median(np.minimum(mean, limit))))
-        self.mean, self.scatter, self.limit = mean, scatter, limit
+        self.mean = mean
+        self.scatter = scatter
+        self.limit = limit
 
     def log_likelihood(self, outcome: np.ndarray) -> np.ndarray:
         """Return ln L of ends (m,) under all values, (m, points); an end at the limit is a suspension."""
@@ -179,12 +184,12 @@ class _Candidate:
         observed = -0.5 * z**2 - np.log(self.scatter)
         return np.where((outcome >= self.limit)[:, None], log_ndtr(-z), observed)
 
-    def drawn(self, points: np.ndarray, normal: np.ndarray) -> np.ndarray:
+    def sampled(self, points: np.ndarray, normal: np.ndarray) -> np.ndarray:
         """Return the end under the values of some points, with standard normal numbers, both (m,)."""
         return np.minimum(self.mean[points] + self.scatter[points] * normal, self.limit)
 
 
-def _drawn(posterior: Posterior, seed: int) -> Posterior:
+def _fewer_points(posterior: Posterior, seed: int) -> Posterior:
     """Return a posterior with fewer points of equal weight."""
     rng = np.random.default_rng(seed)
     rows = rng.choice(len(posterior.weight), POINTS, p=posterior.weight)
@@ -212,8 +217,11 @@ def _cases(candidates: Any) -> list[Case]:
 
 
 def _plain(value: Any) -> Any:
-    value = value.item() if isinstance(value, np.generic) else value
-    return None if isinstance(value, float) and math.isnan(value) else value
+    if isinstance(value, np.generic):
+        value = value.item()
+    if isinstance(value, float) and math.isnan(value):
+        return None
+    return value
 
 
 def _stresses(cases: Sequence[Case], options: Mapping[str, Any], body: str) -> Stresses:
@@ -221,8 +229,10 @@ def _stresses(cases: Sequence[Case], options: Mapping[str, Any], body: str) -> S
     solved = solved_rollers(cases, options)
     for i, regime in enumerate(solved.regime):
         if regime != "rolling":
-            what = "design" if i == len(cases) - 1 else f"candidate {i + 1}"
-            raise InputError(what, regime, "a roller that rolls", "Change its loads, or leave it out.")
+            case = f"candidate {i + 1}"
+            if i == len(cases) - 1:
+                case = "design"
+            raise InputError(case, regime, "a roller that rolls", "Change its loads, or leave it out.")
     b = BODIES.index(body)
     worse = np.argmax(solved.stress[:, :, b], axis=1)
     rows = np.arange(len(cases))
@@ -236,7 +246,7 @@ def _remaining(tests: Sequence[_Candidate], goal: np.ndarray, points: np.ndarray
     """Return the mean variance of ln B10 after tests whose ends are drawn."""
     log_weight = np.zeros((len(points), len(goal)))
     for i, test in enumerate(tests):
-        log_weight += test.log_likelihood(test.drawn(points, normal[:, i]))
+        log_weight += test.log_likelihood(test.sampled(points, normal[:, i]))
     weight = np.exp(log_weight - log_weight.max(axis=1, keepdims=True))
     weight /= weight.sum(axis=1, keepdims=True)
     mean = weight @ goal
@@ -255,12 +265,13 @@ def _ranked(
     normal = rng.normal(size=(OUTCOMES, tests))
     centred = goal - goal.mean()
     alone = np.array([_remaining([one], centred, points, normal) for one in candidates])
-    chosen, after = [int(np.argmin(alone))], [float(alone.min())]
+    chosen = [int(np.argmin(alone))]
+    after = [float(alone.min())]
     while len(chosen) < tests:
         before = [candidates[i] for i in chosen]
-        left = np.array([_remaining([*before, one], centred, points, normal) for one in candidates])
-        chosen.append(int(np.argmin(left)))
-        after.append(float(left.min()))
+        variances = np.array([_remaining([*before, one], centred, points, normal) for one in candidates])
+        chosen.append(int(np.argmin(variances)))
+        after.append(float(variances.min()))
     random = [
         _remaining([candidates[i] for i in rng.integers(0, len(candidates), tests)], centred, points, normal)
         for _ in range(12)
@@ -324,22 +335,25 @@ def tests_until(fit: Fit, plan: xr.Dataset, factor: float, *, campaigns: int = C
     """
     factor = check_factor(factor)
     own = fit.group("fatigue")
-    line, values = own.line, own.posterior.values
+    line = own.line
+    values = own.posterior.values
     chosen = plan["chosen"].values
     stress, limit, rate = (plan[name].values[chosen] for name in ("stress", "longest_cycles", "overrollings_per_hour"))
     if line.knee and np.isinf(limit).any():
         remedy = "Give it with --longest, in Python longest=...: a specimen below its limit never fails."
         raise InputError("longest", None, "the travel after which a test stops", remedy)
-    design, p = math.log(float(plan["design_stress"])), float(plan.attrs["failure_probability"])
+    design = math.log(float(plan["design_stress"]))
+    p = float(plan.attrs["failure_probability"])
     if _ln_width(line, design, p) <= math.log(factor):
         zeros = np.zeros(campaigns)
         return _campaigns(zeros, zeros)
     rng = np.random.default_rng(seed)
-    found = []
+    campaigns_run = []
     for row in rng.choice(len(own.posterior.weight), campaigns, p=own.posterior.weight):
         truth = Values(*(float(np.broadcast_to(value, own.posterior.weight.shape)[row]) for value in values))
         place = np.arange(MOST_TESTS) % len(chosen)
-        x, limits = np.log(stress[place]), np.log(limit[place])
+        x = np.log(stress[place])
+        limits = np.log(limit[place])
         end = truth.level - truth.slope * (x - line.reference)
         end = end + math.exp(truth.log_scatter) * rng.normal(size=MOST_TESTS)
         if line.knee:
@@ -348,8 +362,11 @@ def tests_until(fit: Fit, plan: xr.Dataset, factor: float, *, campaigns: int = C
         tests = Tests(x, np.minimum(end, limits), np.where(end < limits, end, np.inf))
         number = _first(line, tests, design, p, math.log(factor))
         hours = np.exp(tests.low) / rate[place]
-        found.append((number, hours[: int(number)].sum() if math.isfinite(number) else math.inf))
-    return _campaigns(*np.array(found, float).T)
+        if math.isfinite(number):
+            campaigns_run.append((number, hours[: int(number)].sum()))
+        else:
+            campaigns_run.append((number, math.inf))
+    return _campaigns(*np.array(campaigns_run, float).T)
 
 
 def check_factor(factor: Any) -> float:
@@ -392,8 +409,12 @@ def _first(line: Line, tests: Tests, log_stress: float, probability: float, goal
     while not narrow(high):
         if high >= MOST_TESTS:
             return math.inf
-        low, high = high, min(2 * high, MOST_TESTS)
+        low = high
+        high = min(2 * high, MOST_TESTS)
     while high - low > 1:
         middle = (low + high) // 2
-        low, high = (low, middle) if narrow(middle) else (middle, high)
+        if narrow(middle):
+            high = middle
+        else:
+            low = middle
     return float(high)

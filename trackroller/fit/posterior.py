@@ -19,7 +19,8 @@ from scipy.special import gammaincinv, ndtri
 
 from trackroller.fit.line import NAMES, Line, Values, expanded
 
-COARSE, FINE = 4096, 16384  # points of the first sets, and of the last
+COARSE = 4096  # points of the first sets
+FINE = 16384  # points of the last set
 ROUNDS = 3  # sets that only find mean and covariance
 FREEDOM = 4.0  # of the t distribution, whose tails must be heavier than those of the posterior
 WIDER = 1.3  # factor on the standard deviations of the posterior that was found
@@ -102,9 +103,15 @@ def log_prior(line: Line, points: np.ndarray, priors: Mapping[str, Normal], at: 
     limit, or of the strength at the cycles `at` of a line without one.
     """
     values = line.values(points)
-    density = -np.log(values.slope) if line.sloped and "slope" in line.free else np.zeros(np.shape(values.level))
+    if line.sloped and "slope" in line.free:
+        density = -np.log(values.slope)
+    else:
+        density = np.zeros(np.shape(values.level))
     for name, prior in priors.items():
-        value = log_strength(line, values, at) if name == "log_strength" else getattr(values, name)
+        if name == "log_strength":
+            value = log_strength(line, values, at)
+        else:
+            value = getattr(values, name)
         density = density + prior.log_density(np.asarray(value))
     return np.asarray(density)
 
@@ -137,14 +144,16 @@ def posterior(line: Line, priors: Mapping[str, Normal] | None = None, at: float 
     -----
     ASSUME: the values lie within the bounds of `trackroller.fit.line.BOUNDS`.
     """
-    priors, p = dict(priors or {}), len(line.free)
+    priors = dict(priors or {})
+    p = len(line.free)
 
     def density(points: np.ndarray) -> np.ndarray:
         inside = ((points >= line.limits[:, 0]) & (points <= line.limits[:, 1])).all(axis=-1)
         clipped = np.clip(points, *line.limits.T)
         return np.where(inside, line.log_likelihood(clipped) + log_prior(line, clipped, priors, at), -np.inf)
 
-    middle, factor = line.estimate, _factor(line)
+    middle = line.estimate
+    factor = _factor(line)
     for count in (COARSE,) * ROUNDS + (FINE,):
         standard, log_proposal = _standard_points(p, count)
         points = middle + WIDER * standard @ factor.T
@@ -154,8 +163,8 @@ def posterior(line: Line, priors: Mapping[str, Normal] | None = None, at: float 
         middle = weight @ points
         spread = (points - middle).T @ (weight[:, None] * (points - middle))
         factor = np.linalg.cholesky(spread + 1e-12 * np.eye(p))
-    kept = weight > KEPT * weight.max()
-    return Posterior(line.values(points[kept]), weight[kept] / weight[kept].sum())
+    counts = weight > KEPT * weight.max()
+    return Posterior(line.values(points[counts]), weight[counts] / weight[counts].sum())
 
 
 @functools.cache

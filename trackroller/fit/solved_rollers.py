@@ -86,7 +86,10 @@ def solved_rollers(cases: Sequence[Case], options: Mapping[str, Any]) -> Solved:
         groups.append("multiaxial")
     ds = solve(list(cases), **{**options, "outputs": groups})
     regime = [REGIMES[int(i)] for i in np.atleast_1d(ds["regime"].values)]
-    stress = ds["fatigue_stress"] if "fatigue_stress" in ds else ds["peak_stress"]
+    if "fatigue_stress" in ds:
+        stress = ds["fatigue_stress"]
+    else:
+        stress = ds["peak_stress"]
     radius = np.array([_rolling_radius(case) for case in cases])
     velocity = np.array([case.velocity for case in cases])
     guide = np.array([case.guide_overrollings_per_hour or math.nan for case in cases])

@@ -88,7 +88,8 @@ class MaterialDatabase:
             raise InputError(field, material, "a name of the database or a mapping with its values", remedy)
         if material in self.materials:
             return self.materials[material]
-        akin, same = self.search(material), {_letters(name) for name in self.materials}
+        akin = self.search(material)
+        same = {_letters(name) for name in self.materials}
         if nearest(material, self.materials) is None or (len(akin) > 1 and _letters(material) not in same):
             allowed = "the name of a material of the database"
             remedy = f"Write the name of the material that is meant: {' or '.join(akin)}."
@@ -143,7 +144,8 @@ class MaterialDatabase:
         A wear coefficient of the material itself has priority over that of the pair. Without either, the material has
         no wear coefficient.
         """
-        own, other = self.material(body), self.material(partner)
+        own = self.material(body)
+        other = self.material(partner)
         if own.wear_coefficient is not None:
             return own
         for pair in product(self._names_of(own), self._names_of(other)):
@@ -170,7 +172,9 @@ class MaterialDatabase:
         if isinstance(body, str) and body in self.materials:
             body = self.materials[body]
         if isinstance(body, Material):
-            return (body.name, body.family) if body.family else (body.name,)
+            if body.family:
+                return body.name, body.family
+            return (body.name,)
         match = {family.lower(): family for family in self.families()}.get(body.lower())
         if match is None:
             raise unknown_name("material or family", body, dict.fromkeys((*self.materials, *self.families())))
@@ -178,7 +182,8 @@ class MaterialDatabase:
 
     def _unknown_pair(self, names: list[tuple[str, ...]], level: str) -> InputError:
         label = tuple(body[-1] for body in names)
-        known = ", ".join("-".join(sorted(p) if len(p) == 2 else [*p, *p]) for p in self.friction_table)
+        pairs = [sorted(pair) for pair in self.friction_table]  # one name stands for both bodies
+        known = ", ".join(f"{pair[0]}-{pair[-1]}" for pair in pairs)
         remedy = (
             "Give friction_coefficient in the case, add the pair under `friction:` in your materials file, "
             "or give the material a `family` that has a friction coefficient."
@@ -189,7 +194,8 @@ class MaterialDatabase:
             close = nearest(body[-1], self.families())
             if close:
                 remedy += f" Did you mean the family '{close}'?"
-        allowed, wrong = f"the pairs {known}", f"has no {level} value in the friction table"
+        allowed = f"the pairs {known}"
+        wrong = f"has no {level} value in the friction table"
         return InputError("friction_coefficient of the pair", "-".join(label), allowed, remedy, wrong)
 
 

@@ -72,7 +72,9 @@ def add_material(path: Path | str, name: str, /, *, replace: bool = False, **val
     if not values:
         remedy = f"Give one of {', '.join(PROPERTIES)}."
         raise InputError(f"material '{name}'", None, "at least one value", remedy)
-    text = read_text(path, "materials file") if path.exists() else HEADER
+    text = HEADER
+    if path.exists():
+        text = read_text(path, "materials file")
     builtin = read_database(None)
     build_database(text, str(path), over=builtin)  # raises an error if the file is wrong before the change
     text = _with_entry(text, path, name, _entry(values), replace)
@@ -84,12 +86,17 @@ def add_material(path: Path | str, name: str, /, *, replace: bool = False, **val
 def _entry(values: Mapping[str, Any]) -> dict[str, Any]:
     """Return the entry for the file; every number becomes a mapping with unit, source and placeholder mark."""
     common = {"source": values.get("source", "user's own"), "placeholder": values.get("placeholder", False)}
-    note = {"note": values["note"]} if "note" in values else {}
+    note = {}
+    if "note" in values:
+        note = {"note": values["note"]}
     entry: dict[str, Any] = {key: values[key] for key in ("description", "family", "like") if key in values}
     for key, prop in NUMBERS.items():
         if key not in values:
             continue
-        given = values[key] if isinstance(values[key], Mapping) else {"value": values[key]}
+        if isinstance(values[key], Mapping):
+            given = values[key]
+        else:
+            given = {"value": values[key]}
         parts = split_quantity(given.get("value"))
         if parts:
             given = {**given, "value": _plain(key, read_number(parts[0])), "unit": parts[1]}
@@ -97,10 +104,16 @@ def _entry(values: Mapping[str, Any]) -> dict[str, Any]:
         known = [part for part in VALUE_KEYS if part in record]
         entry[key] = {part: record[part] for part in (*known, *(set(record) - set(known)))}
     if POINTS in values:
-        line = values[POINTS] if isinstance(values[POINTS], Mapping) else {"value": values[POINTS]}
+        if isinstance(values[POINTS], Mapping):
+            line = values[POINTS]
+        else:
+            line = {"value": values[POINTS]}
         entry[POINTS] = {"value": None, **common, **note, **line}
     if FIELD in values:
-        entry[FIELD] = {**common, **note, **values[FIELD]} if isinstance(values[FIELD], Mapping) else values[FIELD]
+        if isinstance(values[FIELD], Mapping):
+            entry[FIELD] = {**common, **note, **values[FIELD]}
+        else:
+            entry[FIELD] = values[FIELD]
     return entry
 
 
@@ -118,7 +131,9 @@ def _plain(field: str, value: Any) -> Any:
         number = read_number(value)
     except ValueError:
         raise InputError(field, value, "a number, a text or a mapping of them") from None
-    return int(number) if number.is_integer() and abs(number) < 1e15 else number
+    if number.is_integer() and abs(number) < 1e15:
+        return int(number)
+    return number
 
 
 def _with_entry(text: str, path: Path, name: str, entry: dict[str, Any], replace: bool) -> str:
@@ -129,7 +144,10 @@ def _with_entry(text: str, path: Path, name: str, entry: dict[str, Any], replace
     editor.indent(mapping=2, sequence=4, offset=2)
     data = editor.load(text)
     # ruamel.yaml would drop the comments of a file without entries, so they are put before the new section.
-    kept, data = (text.rstrip() + "\n", CommentedMap()) if data is None else ("", data)
+    comments = ""
+    if data is None:
+        comments = text.rstrip() + "\n"
+        data = CommentedMap()
     if data.get("materials") is None:
         data["materials"] = CommentedMap()
     materials = data["materials"]
@@ -142,7 +160,7 @@ def _with_entry(text: str, path: Path, name: str, entry: dict[str, Any], replace
     materials.setdefault(_text(name), CommentedMap()).update(_block(entry))
     out = io.StringIO()
     editor.dump(data, out)
-    return kept + out.getvalue()
+    return comments + out.getvalue()
 
 
 def _block(entry: Mapping[str, Any]) -> Any:
@@ -159,7 +177,9 @@ def _block(entry: Mapping[str, Any]) -> Any:
 
 def _text(value: Any) -> Any:
     """Return a text, in quotes where YAML 1.1 would not read it as text, such as 1.4301, yes or 1:30."""
-    return DoubleQuotedScalarString(value) if isinstance(value, str) and needs_quotes(value) else value
+    if isinstance(value, str) and needs_quotes(value):
+        return DoubleQuotedScalarString(value)
+    return value
 
 
 def _write(path: Path, text: str) -> None:

@@ -41,12 +41,18 @@ def find_user_file(argument: Path | str | None = None) -> Path | None:
     InputError
         If the argument or the environment variable names a file that does not exist.
     """
-    named = argument if argument is not None else os.environ.get(MATERIALS) or None
+    named: Path | str | None = argument
     if named is None:
-        return DEFAULT_USER_FILE.resolve() if DEFAULT_USER_FILE.is_file() else None
+        named = os.environ.get(MATERIALS) or None
+    if named is None:
+        if DEFAULT_USER_FILE.is_file():
+            return DEFAULT_USER_FILE.resolve()
+        return None
     path = Path(os.path.expanduser(named))
     if not path.is_file():
-        field = "materials file" if argument is not None else MATERIALS
+        field = MATERIALS
+        if argument is not None:
+            field = "materials file"
         remedy = "Correct the path, or leave it out to use the built-in materials."
         raise InputError(field, str(named), "the path of a YAML file", remedy, "does not exist or is no file")
     return path.resolve()
@@ -65,14 +71,16 @@ def own_file(path: Path | str) -> Path:
     InputError
         If it is no path, names a folder, or begins with a home that this machine does not know.
     """
-    allowed, remedy = "the path of a YAML file", "Write a name such as config/materials.yaml."
+    allowed = "the path of a YAML file"
+    remedy = "Write a name such as config/materials.yaml."
     if not isinstance(path, (str, os.PathLike)):
         raise InputError("materials file", path, allowed, remedy)
     expanded = os.path.expanduser(path)
     if os.path.isdir(expanded or "."):
         raise InputError("materials file", str(path), allowed, remedy, "is a folder")
     if expanded.startswith("~"):  # a folder of this name would be made
-        remedy, wrong = "Write the whole path.", "names a home that this machine does not know"
+        remedy = "Write the whole path."
+        wrong = "names a home that this machine does not know"
         raise InputError("materials file", str(path), allowed, remedy, wrong)
     return Path(os.path.realpath(expanded))
 
@@ -84,7 +92,9 @@ def posterior_path(file: Path | str, name: str) -> Path:
 
 def read_database(user_file: Path | None) -> MaterialDatabase:
     """Return the built-in database with the values of the user's file, which is parsed again only if it has changed."""
-    return _cached(None, "") if user_file is None else _cached(user_file, read_text(user_file, "materials file"))
+    if user_file is None:
+        return _cached(None, "")
+    return _cached(user_file, read_text(user_file, "materials file"))
 
 
 @functools.lru_cache(maxsize=8)
@@ -149,7 +159,10 @@ def _checked(data: Any, file: str, over: MaterialDatabase | None) -> MaterialDat
         with wrong.part("wear", str(i)):
             wear |= parser.wear(entry)
     wrong.check()
-    return MaterialDatabase(materials, friction, (*(over.files if over else ()), file), wear)
+    files: tuple[str, ...] = (file,)
+    if over:
+        files = (*over.files, file)
+    return MaterialDatabase(materials, friction, files, wear)
 
 
 def _sections(data: Any, file: str, wrong: Collector) -> dict[str, Any]:
@@ -163,8 +176,13 @@ def _sections(data: Any, file: str, wrong: Collector) -> dict[str, Any]:
     result: dict[str, Any] = {}
     for section, kind in SECTIONS.items():
         given = data.get(section)
-        result[section] = given if isinstance(given, kind) else kind()
+        if isinstance(given, kind):
+            result[section] = given
+        else:
+            result[section] = kind()
         if given is not None and not isinstance(given, kind):
-            form = "a list of pairs" if kind is list else "a mapping from names"
+            form = "a mapping from names"
+            if kind is list:
+                form = "a list of pairs"
             wrong.errors.append(InputError(section, given, form))
     return result

@@ -31,7 +31,9 @@ def contradictions(values: Mapping[str, Any]) -> dict[str, str]:
     values : mapping
         Values of the material by name, `fatigue_limit` among them; None or nothing where a value is not given.
     """
-    strength, limit, out = values["tensile_strength"], values["fatigue_limit"], {}
+    strength = values["tensile_strength"]
+    limit = values["fatigue_limit"]
+    out = {}
     if (values.get("yield_strength") or 0.0) > strength:
         out["yield_strength"] = f"it must not exceed R_m = {strength:g} MPa"
     if (values.get("surface_hardened") or 0.0) not in (0.0, 1.0):
@@ -133,7 +135,9 @@ class Material(_OfLimits):  # type: ignore[misc, valid-type]
     @property
     def fatigue_limit(self) -> float:
         """Return the fatigue limit sigma_D [MPa] at N_k cycles."""
-        return self.sn_points[-1][0] if self.sn_points else self.fatigue_strength_ratio * self.tensile_strength
+        if self.sn_points:
+            return self.sn_points[-1][0]
+        return self.fatigue_strength_ratio * self.tensile_strength
 
     @property
     def woehler_exponent(self) -> float:
@@ -146,7 +150,8 @@ class Material(_OfLimits):  # type: ignore[misc, valid-type]
     @property
     def sn_line(self) -> tuple[tuple[float, float], ...]:
         """Return the points (stress [MPa], cycles [1]) that the S-N curve runs through, the last one its knee."""
-        upper, knee = (self.tensile_strength, self.cycles_at_tensile_strength), self.cycles_at_fatigue_limit
+        upper = (self.tensile_strength, self.cycles_at_tensile_strength)
+        knee = self.cycles_at_fatigue_limit
         return self.sn_points or (upper, (self.fatigue_limit, knee))
 
     @property
@@ -159,7 +164,9 @@ class Material(_OfLimits):  # type: ignore[misc, valid-type]
         """Return the names of the values that are guesses without a source, those of single limits left out."""
         guessed = [name for name, record in self.records.items() if record.placeholder and name not in OF_LIMITS]
         table: TemperatureTable | None = self.temperature_dependence
-        return (*guessed, FIELD) if table is not None and table.placeholder else tuple(guessed)
+        if table is not None and table.placeholder:
+            return (*guessed, FIELD)
+        return tuple(guessed)
 
     @property
     def guesses_of_limits(self) -> dict[str, Value]:
@@ -174,20 +181,23 @@ class Material(_OfLimits):  # type: ignore[misc, valid-type]
 
     def _ends(self) -> dict[str, tuple[float, float]]:
         """Return the worse and the better end of each placeholder of a limit; one without a range has none."""
-        return {
-            name: r.range[::-1] if name in LESS_IS_BETTER else r.range
-            for name, r in self.records.items()
-            if r.placeholder and r.range is not None and name in OF_LIMITS
-        }
+        ends = {}
+        for name, record in self.records.items():
+            if record.placeholder and record.range is not None and name in OF_LIMITS:
+                low, high = record.range
+                ends[name] = (low, high)
+                if name in LESS_IS_BETTER:
+                    ends[name] = (high, low)
+        return ends
 
-    def moved(self, position: float, held: Collection[str] = ()) -> Material:
+    def moved(self, position: float, fixed: Collection[str] = ()) -> Material:
         """Return the material with its placeholders of limits at another place in their ranges.
 
         Parameters
         ----------
         position : float
             -1 for the worse end of each range, 0 for the value, 1 for the better end; linear between them.
-        held : collection of str
+        fixed : collection of str
             Names of values that stay, because the user gave what replaces their range.
 
         Returns
@@ -201,11 +211,16 @@ class Material(_OfLimits):  # type: ignore[misc, valid-type]
         """
         values: dict[str, Any] = {}
         for name, (worse, better) in self._ends().items():
-            if name in held:
+            if name in fixed:
                 continue
             value = self.records[name].value
-            values[name] = value + abs(position) * ((better if position > 0 else worse) - value)
-        return dataclasses.replace(self, **values) if position else self
+            end = worse
+            if position > 0:
+                end = better
+            values[name] = value + abs(position) * (end - value)
+        if position:
+            return dataclasses.replace(self, **values)
+        return self
 
     def at(self, temperature: float) -> Material:
         """Return the material with the values of its table at a temperature [degC]; NaN leaves them.

@@ -106,7 +106,9 @@ def check_number(prop: Parameter, value: Any, where: str, unit: str = "") -> flo
     InputError
         If the value is not a number or lies outside its bounds.
     """
-    remedy = f"Give {prop.name} in {prop.unit}." if prop.unit != "-" else "Correct the value."
+    remedy = "Correct the value."
+    if prop.unit != "-":
+        remedy = f"Give {prop.name} in {prop.unit}."
     if prop.name in ("woehler_exponent", "second_exponent") and isinstance(value, (int, float)) and -1.0 < value < 0.0:
         remedy = f"If Basquin's b is meant, the exponent is k = -1/b: write {-1.0 / value:.3g}."
     if prop.name in ("scatter_in_cycles", "scatter_in_stress"):

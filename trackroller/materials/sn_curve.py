@@ -175,7 +175,8 @@ def complete_curve(given: Mapping[str, Value], inherited: Mapping[str, Value], w
 
 def _take_limit(known: dict[str, Value], given: Mapping, inherited: Mapping, where: str) -> None:
     """Turn a fatigue limit in MPa into its ratio to the tensile strength."""
-    limit, strength = given.get("fatigue_limit"), given.get("tensile_strength", inherited.get("tensile_strength"))
+    limit = given.get("fatigue_limit")
+    strength = given.get("tensile_strength", inherited.get("tensile_strength"))
     if limit is None or strength is None:
         return
     ratio = limit.value / strength.value
@@ -191,7 +192,8 @@ def _take_limit(known: dict[str, Value], given: Mapping, inherited: Mapping, whe
 def _solve(known: dict[str, Value], where: str) -> None:
     """Add the one value of the curve that is missing."""
     missing = next(name for name in CURVE if name not in known)
-    ratio, low, high, k = (known[name].value if name in known else math.nan for name in CURVE)
+    values = dict.fromkeys(CURVE, math.nan) | {name: value.value for name, value in known.items()}
+    ratio, low, high, k = (values[name] for name in CURVE)
     try:
         value = {
             "fatigue_strength_ratio": lambda: (high / low) ** (-1.0 / k),
@@ -208,7 +210,10 @@ def _solve(known: dict[str, Value], where: str) -> None:
 
 def _check(known: Mapping[str, Value], where: str) -> None:
     ratio, low, high, k = (known[name].value for name in CURVE)
-    follows = float(curve_exponent(high / low, 1.0 / ratio)) if low < high else math.nan
+    if low < high:
+        follows = float(curve_exponent(high / low, 1.0 / ratio))
+    else:
+        follows = math.nan
     _refuse_apart("woehler_exponent", k, follows, where)
 
 

@@ -14,7 +14,11 @@ def material_rows(database: MaterialDatabase, search: str = "") -> list[dict[str
 
     With `search`, only the materials whose name, family or description holds its words.
     """
-    rows, names = [], database.search(search) if search else database.names()
+    rows = []
+    if search:
+        names = database.search(search)
+    else:
+        names = database.names()
     if not names:
         remedy = "`trackroller materials list` shows all materials."
         raise InputError("material", search, "words of the name or the description of a material", remedy)
@@ -22,7 +26,10 @@ def material_rows(database: MaterialDatabase, search: str = "") -> list[dict[str
         row = {"name": material.name, "family": material.family or "-"}
         for name in REQUIRED:
             prop = PROPERTIES[name]
-            heading = prop.symbol if prop.unit == "-" else f"{prop.symbol} [{prop.unit}]"
+            if prop.unit == "-":
+                heading = prop.symbol
+            else:
+                heading = f"{prop.symbol} [{prop.unit}]"
             row[heading] = f"{getattr(material, name):g}"
         row["placeholders"] = str(len(material.placeholders) + len(material.guesses_of_limits))
         row["origin"] = ", ".join(dict.fromkeys(r.origin for r in material.records.values())) or "inline"
@@ -41,11 +48,13 @@ def material_details(database: MaterialDatabase, name: str) -> list[dict[str, st
             continue
         record = material.records.get(prop.name, Value(value, prop.unit, "not given"))
         rows.append(_row(prop.name, prop.symbol, record))
-    of_limit, of_exponent = "R_m times sigma_D/R_m", "ln(N_k/N_Rm) / ln(R_m/sigma_D)"
+    of_limit = "R_m times sigma_D/R_m"
+    of_exponent = "ln(N_k/N_Rm) / ln(R_m/sigma_D)"
     if material.sn_points:
-        of_limit, of_exponent = "the last point of sn_points", "of the last two points of sn_points"
-        ratio = material.records.get("fatigue_strength_ratio")
-        record = Value(nan, "MPa, -", ratio.source if ratio else "not given", bool(ratio and ratio.placeholder))
+        of_limit = "the last point of sn_points"
+        of_exponent = "of the last two points of sn_points"
+        ratio = material.records.get("fatigue_strength_ratio", Value(nan, "-", "not given"))
+        record = Value(nan, "MPa, -", ratio.source, ratio.placeholder)
         shown = "; ".join(f"{stress:g}, {cycles:g}" for stress, cycles in material.sn_points)
         rows.append(_row("sn_points", "sigma_a, N", record) | {"value": shown})
     limit = Value(material.fatigue_limit, "MPa", of_limit, origin="derived")
@@ -64,7 +73,10 @@ def friction_rows(database: MaterialDatabase) -> list[dict[str, str]]:
     """Return one row for each pair and level of the friction table, and for each pair and body of the wear table."""
     rows = []
     for pair, levels in database.friction_table.items():
-        names = sorted(pair) if len(pair) == 2 else [*pair, *pair]
+        if len(pair) == 2:
+            names = sorted(pair)
+        else:
+            names = [*pair, *pair]
         for level, record in levels.items():
             head = {"pair": " - ".join(names), "level": level}
             rows.append(head | _row("friction_coefficient", "mu", record))

@@ -58,8 +58,10 @@ def share(hits: np.ndarray, member: np.ndarray, copies: int) -> tuple[float, flo
     Few events (or few non-events) scatter too little among replicates. The half width is therefore at least that of
     Clopper and Pearson for the effective number of samples, see `trackroller.methods.probability.probabilities`.
     """
-    total, size = np.bincount(member, hits, copies), np.bincount(member, minlength=copies)
-    count, value = len(hits), float(hits.mean())
+    total = np.bincount(member, hits, copies)
+    size = np.bincount(member, minlength=copies)
+    count = len(hits)
+    value = float(hits.mean())
     half = float(jackknife((total.sum() - total) / (size.sum() - size)))
     variance = (half / wide(copies)) ** 2
     gain = value * (1 - value) / max(count * variance, 1e-300)
@@ -91,7 +93,9 @@ def log_b10(lives: np.ndarray, scatter: np.ndarray, member: np.ndarray, copies: 
     .. [1] Woodruff (1952), J. Am. Stat. Assoc. 47, 635-646
     """
     good = ~np.isnan(lives)
-    lives, scatter, member = lives[good], scatter[good], member[good]
+    lives = lives[good]
+    scatter = scatter[good]
+    member = member[good]
     if len(np.unique(member)) < copies:
         return np.nan, np.inf
     with np.errstate(divide="ignore", invalid="ignore"):

@@ -74,7 +74,12 @@ def take_times(low: np.ndarray, high: np.ndarray, target: float) -> float:
     The half width falls as one over the root of the samples. A Sobol sequence does better, so the factor is
     conservative.
     """
-    times = (half_width(low, high) / target) ** 2 if target > 0 else math.nan
+    if target > 0:
+        times = (half_width(low, high) / target) ** 2
+    else:
+        times = math.nan
     if math.isnan(times):
         return math.nan
-    return 1.0 if times <= 1.0 else float(2 ** math.ceil(math.log2(times) - 1e-9))
+    if times <= 1.0:
+        return 1.0
+    return float(2 ** math.ceil(math.log2(times) - 1e-9))

@@ -136,4 +136,6 @@ def correlated_pairs(design: Design) -> list[tuple[str, str, float]]:
     table = np.atleast_2d(np.corrcoef(rankdata(design.unit, axis=0), rowvar=False))
     pairs = [(names[j], names[i], float(table[i, j])) for i in range(len(names)) for j in range(i)]
     strongest = max(pairs, key=lambda pair: abs(pair[2]))
-    return [strongest] if abs(strongest[2]) >= CORRELATED else []
+    if abs(strongest[2]) >= CORRELATED:
+        return [strongest]
+    return []

@@ -51,7 +51,8 @@ DISTRIBUTIONS = {
 UNBOUNDED = ("normal", "lognormal", "weibull")
 LISTS = ("values", "linspace", "logspace")
 KINDS = (*DISTRIBUTIONS, *LISTS, "expression")
-MOST_SPREAD, LEAST_SHAPE = 5.0, 0.2  # beyond, the values of one sample span 26 or 50 powers of ten
+MOST_SPREAD = 5.0  # beyond, the values of one sample span 26 powers of ten
+LEAST_SHAPE = 0.2  # below, they span 50
 TAIL = 0.01  # quantile at which an unbounded distribution is cut in designs that visit the ends of a range
 
 
@@ -145,7 +146,8 @@ class Factor:
             return np.asarray(triang.ppf(unit, (mode - low) / (high - low), low, high - low))
         if self.kind in UNBOUNDED:
             cut = max(tail, 1e-9)
-            unit, (first, second) = np.clip(unit, cut, 1 - cut), self.numbers
+            unit = np.clip(unit, cut, 1 - cut)
+            first, second = self.numbers
             if self.kind == "normal":
                 return np.asarray(norm.ppf(unit, first, second))
             if self.kind == "lognormal":
@@ -153,7 +155,8 @@ class Factor:
             return np.asarray(first * (-np.log1p(-unit)) ** (1.0 / second))
         mean, deviation, *ends = self.numbers
         low, high = ends
-        cut_low, cut_high = (low - mean) / deviation, (high - mean) / deviation
+        cut_low = (low - mean) / deviation
+        cut_high = (high - mean) / deviation
         return np.asarray(np.clip(truncnorm.ppf(unit, cut_low, cut_high, mean, deviation), low, high))
 
 
@@ -173,7 +176,9 @@ def column(values: list[Any], numeric: bool) -> np.ndarray:
         return np.array(values, dtype=float)
     out = np.empty(len(values), dtype=object)
     for i, value in enumerate(values):
-        out[i] = tuple(value) if isinstance(value, list) else value
+        out[i] = value
+        if isinstance(value, list):
+            out[i] = tuple(value)
     return out
 
 
@@ -190,7 +195,9 @@ def label(value: Any) -> str:
 
 def readable(values: np.ndarray) -> np.ndarray:
     """Return a column (n,) with its categories as texts, see `label`; a column of numbers stays as it is."""
-    return np.array([label(v) for v in values], dtype=object) if values.dtype.kind in "OSU" else values
+    if values.dtype.kind in "OSU":
+        return np.array([label(v) for v in values], dtype=object)
+    return values
 
 
 def parse(name: str, spec: Any) -> Factor:
@@ -212,7 +219,9 @@ def parse(name: str, spec: Any) -> Factor:
     field = f"factors.{name}"
     if not isinstance(spec, Mapping):
         allowed = f"a mapping with one of {', '.join(KINDS)}"
-        example = f"Write {{values: {spec}}}." if isinstance(spec, (list, tuple)) else ""
+        example = ""
+        if isinstance(spec, (list, tuple)):
+            example = f"Write {{values: {spec}}}."
         raise InputError(field, spec, allowed, example or "For example {uniform: [0.1, 0.3]} or {values: [1, 2]}.")
     scatter = spec.get("scatter")
     if not (scatter is None or isinstance(scatter, bool)):
@@ -222,7 +231,8 @@ def parse(name: str, spec: Any) -> Factor:
     if len(keys) != 1:
         raise InputError(field, dict(spec), f"exactly one of {', '.join(KINDS)}")
     kind = keys[0]
-    value, where = spec[kind], f"{field}.{kind}"
+    value = spec[kind]
+    where = f"{field}.{kind}"
     if "weights" in spec and kind not in LISTS:
         raise InputError(f"{field}.weights", spec["weights"], f"weights of the values of a list, not of {kind}")
     if kind == "expression":
@@ -233,7 +243,9 @@ def parse(name: str, spec: Any) -> Factor:
     if kind in DISTRIBUTIONS:
         return Factor(name, kind, _distribution(kind, value, where), scatter=scatter is not False)
     levels = _levels(kind, list(value), where)
-    weights = _weights(spec["weights"], levels, f"{field}.weights") if "weights" in spec else ()
+    weights: tuple[float, ...] = ()
+    if "weights" in spec:
+        weights = _weights(spec["weights"], levels, f"{field}.weights")
     return Factor(name, kind, levels=levels, scatter=bool(scatter), weights=weights)
 
 
@@ -254,10 +266,13 @@ def _is_number(value: Any) -> bool:
 def _numbers(values: Any, count: int, where: str) -> tuple[float, ...]:
     if len(values) != count or not all(_is_number(v) and math.isfinite(v) for v in values):
         texts = [v for v in values if isinstance(v, str)]
-        remedy = "Sample a fraction in [0, 1] and write the dependent range as an expression." if texts else ""
+        remedy = ""
+        if texts:
+            remedy = "Sample a fraction in [0, 1] and write the dependent range as an expression."
         if any(map(split_quantity, texts)):
             remedy = "Only parameters take units: write the numbers of a factor of your own without them."
-        remedy = "Write [first, last, number of values]." if where.endswith("space") else remedy
+        if where.endswith("space"):
+            remedy = "Write [first, last, number of values]."
         raise InputError(where, values, f"{count} finite numbers", remedy)
     return tuple(float(v) for v in values)
 
@@ -295,7 +310,9 @@ def _levels(kind: str, value: list[Any], where: str) -> tuple[Any, ...]:
             raise InputError(where, value, "[first, last, how many] with a whole number >= 1 as the third")
         if kind == "logspace" and first * last <= 0:
             raise InputError(where, value, "first and last of one sign, not 0")
-        space = np.linspace if kind == "linspace" else np.geomspace
+        space: Any = np.geomspace
+        if kind == "linspace":
+            space = np.linspace
         levels = written([float(v) for v in space(first, last, int(count))])
     if len({repr(v) for v in levels}) < len(levels):
         raise InputError(where, value, "each value once", "Remove the repeated value.")

@@ -28,9 +28,11 @@ class Grid(Method):
         "higher_share": Index("share of variance of interactions of three and more factors"),
         **GIVEN_DATA,
     }
-    headline, judged = "main_share", ()
+    headline = "main_share"
+    judged = ()
     needs = "a full grid, every level weighing the same"
-    unit, whole = "cells", "cases of the grid"
+    unit = "cells"
+    whole = "cases of the grid"
 
     def check(self, free: Factors) -> None:
         """Refuse distributions."""
@@ -97,7 +99,9 @@ def complete_part(y: np.ndarray) -> list[np.ndarray]:
     while True:
         bad = ~np.isfinite(y[np.ix_(*keep)])
         if not bad.any() or bad.all():
-            return keep if not bad.any() else [np.arange(0) for _ in keep]
+            if not bad.any():
+                return keep
+            return [np.arange(0) for _ in keep]
         shares = [bad.mean(axis=tuple(a for a in range(bad.ndim) if a != axis)) for axis in range(bad.ndim)]
         # drop the level richest in unusable cells; of equal levels the one that costs the fewest cells
         axis = max(range(bad.ndim), key=lambda a: (round(float(shares[a].max()), 12), bad.shape[a]))
@@ -124,8 +128,8 @@ def variance_share(part: np.ndarray, axes: tuple[int, ...]) -> float:
 def closed_shares(table: np.ndarray, groups: Sequence[tuple[int, ...]]) -> tuple[np.ndarray, np.ndarray, int]:
     """Return first-order and total indices of groups of a grid's axes, and the number of cells behind them."""
     part = table[np.ix_(*complete_part(table))]
-    rest = [tuple(j for j in range(table.ndim) if j not in group) for group in groups]
-    first, others = (np.array([variance_share(part, axes) for axes in which]) for which in (groups, rest))
+    complements = [tuple(j for j in range(table.ndim) if j not in group) for group in groups]
+    first, others = (np.array([variance_share(part, axes) for axes in which]) for which in (groups, complements))
     return first, 1 - others, part.size
 
 
@@ -149,11 +153,15 @@ def grid_shares(y: np.ndarray) -> Estimates:
     keep = complete_part(y)
     part = y[np.ix_(*keep)]
     out: Estimates = {"cells": np.array(y.size), "cells_used": np.array(part.size)}
-    main, pair = np.full(count, np.nan), np.full((count, count), np.nan)
+    main = np.full(count, np.nan)
+    pair = np.full((count, count), np.nan)
     if constant(part):
         return out | {"main_share": main, "interaction_share": pair, "higher_share": np.array(np.nan)}
     for i in range(count):
-        main[i] = variance_share(part, (i,)) if part.shape[i] > 1 else np.nan
+        if part.shape[i] > 1:
+            main[i] = variance_share(part, (i,))
+        else:
+            main[i] = np.nan
     for i in range(count):
         for j in range(i + 1, count):
             if part.shape[i] > 1 and part.shape[j] > 1:

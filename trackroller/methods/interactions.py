@@ -57,7 +57,8 @@ def pairs(y: np.ndarray, unit: np.ndarray, ordered: np.ndarray, seed: int = 0) -
     good = np.flatnonzero(np.isfinite(y))
     if len(good) > MAX_ROWS:
         good = good[np.linspace(0, len(good) - 1, MAX_ROWS).astype(int)]
-    y, unit = y[good], unit[good]
+    y = y[good]
+    unit = unit[good]
     if count < 2 or len(y) < 30 or constant(y):
         return out
     y = (y - y.mean()) / y.std()
@@ -136,14 +137,17 @@ def _columns(
     """Return the columns of the largest polynomial; None if a factor has too many categories."""
     rows, count = unit.shape
     alone, joint = degrees[0]
-    found = [orthonormal(unit[:, j], bool(ordered[j]), alone, ranked) for j in range(count)]
-    bases = [base for base in found if base is not None]
+    polynomials = [orthonormal(unit[:, j], bool(ordered[j]), alone, ranked) for j in range(count)]
+    bases = [base for base in polynomials if base is not None]
     if len(bases) < count:
         return None
-    degree = [np.arange(base.shape[1]) + 1 if ordered[j] else np.ones(base.shape[1]) for j, base in enumerate(bases)]
+    degree: list[np.ndarray] = [np.ones(base.shape[1]) for base in bases]
+    for place in np.flatnonzero(ordered):
+        degree[place] = np.arange(bases[place].shape[1]) + 1
     parts = [(np.ones((rows, 1)), np.zeros(1)), *zip(bases, degree, strict=True)]
+    highest = [joint if rising else None for rising in ordered]  # a category has no degrees
     for i, j in combinations(range(count), 2):
-        one, other = (slice(joint if ordered[place] else None) for place in (i, j))
+        one, other = slice(highest[i]), slice(highest[j])
         product = (bases[i][:, one, None] * bases[j][:, None, other]).reshape(rows, -1)
         parts.append((product, np.maximum.outer(degree[i][one], degree[j][other]).ravel()))
     term = np.repeat(np.arange(len(parts)) - 1, [len(own) for _, own in parts])
@@ -211,18 +215,26 @@ def _jackknife(y: np.ndarray, table: np.ndarray, term: np.ndarray, seed: int) ->
     The normal equations of all rows less those of a group are the normal equations without the group.
     """
     part = np.random.default_rng(seed).permutation(len(y)) % GROUPS
-    gram, moment = np.zeros((GROUPS, *[table.shape[1]] * 2)), np.zeros((GROUPS, table.shape[1]))
+    gram = np.zeros((GROUPS, *[table.shape[1]] * 2))
+    moment = np.zeros((GROUPS, table.shape[1]))
     for g in range(GROUPS):
         group = table[part == g]
-        gram[g], moment[g] = group.T @ group, group.T @ y[part == g]
-    square, rows = np.bincount(part, y**2, GROUPS), np.bincount(part, minlength=GROUPS)
+        gram[g] = group.T @ group
+        moment[g] = group.T @ y[part == g]
+    square = np.bincount(part, y**2, GROUPS)
+    rows = np.bincount(part, minlength=GROUPS)
     whole = gram.sum(axis=0), moment.sum(axis=0), square.sum(), rows.sum()
     share = _shares(*whole, term=term)
     sums = (gram, moment, square, rows)
-    left = np.array([_shares(*(a - b[g] for a, b in zip(whole, sums, strict=True)), term=term) for g in range(GROUPS)])
-    left = left[np.isfinite(left).all(axis=1)]
-    spread = ((left - left.mean(axis=0)) ** 2).sum(axis=0) if len(left) > 1 else np.full_like(share, np.nan)
-    return share, Z * np.sqrt((len(left) - 1) / max(1, len(left)) * spread)
+    without_one = np.array(
+        [_shares(*(a - b[g] for a, b in zip(whole, sums, strict=True)), term=term) for g in range(GROUPS)]
+    )
+    without_one = without_one[np.isfinite(without_one).all(axis=1)]
+    if len(without_one) > 1:
+        spread = ((without_one - without_one.mean(axis=0)) ** 2).sum(axis=0)
+    else:
+        spread = np.full_like(share, np.nan)
+    return share, Z * np.sqrt((len(without_one) - 1) / max(1, len(without_one)) * spread)
 
 
 def _shares(gram: np.ndarray, moment: np.ndarray, square: float, rows: int, *, term: np.ndarray) -> np.ndarray:

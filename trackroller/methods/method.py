@@ -80,7 +80,9 @@ class Design:
     @property
     def size(self) -> int:
         """Return the number of rows."""
-        return len(next(iter(self.columns.values()))) if self.columns else 0
+        if self.columns:
+            return len(next(iter(self.columns.values())))
+        return 0
 
     @property
     def samples(self) -> int:
@@ -230,8 +232,11 @@ class Method:
         -------
         Each index with _low and _high, shape (k,); NaN if too few rows are usable or the output is constant.
         """
-        copies, count, rows = int(design.meta["replicates"]), len(design.factors), len(y) // design.samples
-        y, unit = y[: samples * rows], design.places[: samples * rows]
+        copies = int(design.meta["replicates"])
+        count = len(design.factors)
+        rows = len(y) // design.samples
+        y = y[: samples * rows]
+        unit = design.places[: samples * rows]
         values, half = self.from_replicates(y, unit, design, np.arange(samples) % copies)
         out: Estimates = {}
         for i, name in enumerate(self.narrowed):
@@ -278,7 +283,11 @@ class Method:
     @property
     def defaults(self) -> dict[str, Any]:
         """Return the values of the settings that are not given."""
-        return {name: own.default if isinstance(own, Key) else own for name, own in self.takes.items()}
+        defaults = dict(self.takes)
+        for name, setting in self.takes.items():
+            if isinstance(setting, Key):
+                defaults[name] = setting.default
+        return defaults
 
     @property
     def follows(self) -> bool:
@@ -330,7 +339,9 @@ def register(method: M) -> M:
 
 def indices_of(method: Method | None) -> dict[str, Index]:
     """Return the indices that a method declares, or those of all methods, with those of groups and levels."""
-    methods = [method] if method is not None else METHODS.values()
+    methods = list(METHODS.values())
+    if method is not None:
+        methods = [method]
     return {name: index for one in methods for name, index in one.indices.items()} | GROUPED
 
 
@@ -348,7 +359,10 @@ def index_of(method: Method | None, name: str) -> Index:
     """
     known = indices_of(method)
     if name not in known:
-        of = "a design" if method is None else f"design {method.name}"
+        if method is None:
+            of = "a design"
+        else:
+            of = f"design {method.name}"
         remedy = f"Add '{name}': Index(words, ...) to `indices` of the class of the method."
         raise InputError(f"index of {of}", name, ", ".join(known), remedy, wrong="is not declared")
     return known[name]

@@ -18,17 +18,21 @@ class Morris(Method):
     name = "morris"
     takes = {"replicates": 1, "levels": Key(int, 4, "number of levels")}
     sampled = grows = effects = quick = True
-    tail, first_look = TAIL, 2
+    tail = TAIL
+    first_look = 2
     indices = {
         "mu_star": Index("mean absolute effect", sized=True, of_factor=True),
         "sigma": Index("spread of effects σ", sized=True, of_factor=True),
         "mu": Index("mean elementary effect", sized=True, signed=True),
         "effects_used": Index("elementary effects used"),
     }
-    headline, narrowed, judged = "mu_star", ("mu_star",), ("mu_star",)
+    headline = "mu_star"
+    narrowed = ("mu_star",)
+    judged = ("mu_star",)
     half_width = 0.15  # of mu*, relative to the largest mu*
     needs = "pairs of neighbouring rows of a trajectory"
-    unit, samples_unit = "elementary effects", "trajectories"
+    unit = "elementary effects"
+    samples_unit = "trajectories"
     uncorrelated = "Elementary effects change one factor at a time. Take design lhs: first and delta allow correlation."
     reference = (
         "Design and indices: elementary effects",
@@ -82,9 +86,11 @@ class Morris(Method):
     ) -> tuple[np.ndarray, np.ndarray]:
         """Return mu* of each factor."""
         if constant(y):
-            return (np.full(unit.shape[1], np.nan),) * 2
+            unknown = np.full(unit.shape[1], np.nan)
+            return unknown, unknown
         effect = np.abs(elementary_effects(y, unit, design.listed))
-        filled, good = np.nan_to_num(effect), np.isfinite(effect).astype(float)
+        filled = np.nan_to_num(effect)
+        good = np.isfinite(effect).astype(float)
         keep = left_out(member, int(design.meta["replicates"]))
         with np.errstate(invalid="ignore", divide="ignore"):
             return filled.sum(axis=0) / good.sum(axis=0), jackknife((keep @ filled) / (keep @ good))
@@ -121,7 +127,8 @@ def morris(y: np.ndarray, unit: np.ndarray, listed: np.ndarray, seed: int = 0, r
     """
     from scipy.special import ndtri, stdtrit  # heavy, and a process that only plans needs no interval
 
-    count, effect = unit.shape[1], elementary_effects(y, unit, listed)
+    count = unit.shape[1]
+    effect = elementary_effects(y, unit, listed)
     good = np.isfinite(effect)
     used = good.sum(axis=0)
     out: Estimates = {"effects_used": used}
@@ -130,12 +137,12 @@ def morris(y: np.ndarray, unit: np.ndarray, listed: np.ndarray, seed: int = 0, r
     picks = np.random.default_rng(seed).integers(0, len(effect), (resamples, len(effect)))
     with np.errstate(invalid="ignore", divide="ignore"):
         filled = np.nan_to_num(np.abs(effect))
-        drawn = filled[picks].sum(axis=1) / good[picks].sum(axis=1)
+        resampled = filled[picks].sum(axis=1) / good[picks].sum(axis=1)
         out["mu"] = np.nan_to_num(effect).sum(axis=0) / used
         out["mu_star"] = filled.sum(axis=0) / used
         spread = np.where(good, (effect - out["mu"]) ** 2, 0.0).sum(axis=0) / (used - 1)
     out["sigma"] = np.sqrt(np.where(used > 1, spread, np.nan))
-    low, high = percentile_bounds(drawn)
+    low, high = percentile_bounds(resampled)
     # resamples of a dozen effects spread less than their mean does: as a normal quantile to that of Student's t;
     # of two or three effects t is so wide that nothing would follow for the samples that are needed
     least = np.maximum(used, 4)

@@ -27,7 +27,8 @@ from trackroller.errors import InputError
 from trackroller.methods.grid import Grid
 from trackroller.methods.method import METHODS, Drawn, Factors, Method, Settings, crossed, in_order
 
-CROSSOVER, MUTATION = 5.0, 10.0  # distribution indices: larger ones keep children nearer to their parents
+CROSSOVER = 5.0  # distribution indices: larger ones keep children nearer to their parents
+MUTATION = 10.0
 CROSSED = 0.9  # share of the children that mix two parents
 ROUNDS = 30  # attempts to find children that are new
 
@@ -73,7 +74,10 @@ class Optimise(Method):
             genes = first_generation(genes_of(choices), settings["population"], seed)
         listed, drawn = ({name: f for name, f in inner.items() if f.discrete is discrete} for discrete in (True, False))
         plain = {"rank_correlations": (), "replicates": 1}
-        sample = METHODS["sobol"].draw(drawn, n, seed, plain)[0] if drawn else np.zeros((1, 0))
+        if drawn:
+            sample = METHODS["sobol"].draw(drawn, n, seed, plain)[0]
+        else:
+            sample = np.zeros((1, 0))
         conditions = crossed(Grid().draw(listed, 0, 0, {})[0], sample)
         unit = in_order(crossed(genes, conditions), [*choices, *listed, *drawn], free)
         meta = {"design_points": len(genes), "inner_samples": len(conditions)}
@@ -104,12 +108,15 @@ def nondominated_ranks(costs: np.ndarray, violation: np.ndarray, enough: int | N
     [0, 0, 1]
     """
     equal = violation[:, None] == violation[None]
-    no_worse, better = equal.copy(), np.zeros_like(equal)
+    no_worse = equal.copy()
+    better = np.zeros_like(equal)
     for values in np.where(np.isnan(costs), np.inf, costs).T:
         no_worse &= values[:, None] <= values[None]
         better |= values[:, None] < values[None]
     beats = (no_worse & better) | (violation[:, None] < violation[None])
-    beaten_by, ranks, front = beats.sum(axis=0), np.full(len(costs), -1), 0
+    beaten_by = beats.sum(axis=0)
+    ranks = np.full(len(costs), -1)
+    front = 0
     while (ranks < 0).any():
         first = (ranks < 0) & (beaten_by == 0)
         ranks[first] = front
@@ -128,16 +135,20 @@ def crowding(costs: np.ndarray) -> np.ndarray:
         if not finite.size:
             continue
         values = np.clip(np.nan_to_num(values, nan=finite.max()), finite.min(), finite.max())
-        order, spread = np.argsort(values, kind="stable"), np.ptp(values)
+        order = np.argsort(values, kind="stable")
+        spread = np.ptp(values)
         gaps = np.full(len(values), np.inf)
-        gaps[1:-1] = (values[order[2:]] - values[order[:-2]]) / spread if spread > 0 else 0.0
+        gaps[1:-1] = 0.0
+        if spread > 0:
+            gaps[1:-1] = (values[order[2:]] - values[order[:-2]]) / spread
         out[order] += gaps
     return out
 
 
 def survivors(costs: np.ndarray, violation: np.ndarray, count: int) -> np.ndarray:
     """Return the indices of the best designs by front, then by crowding, the best one first."""
-    ranks, space = nondominated_ranks(costs, violation, count), np.zeros(len(costs))
+    ranks = nondominated_ranks(costs, violation, count)
+    space = np.zeros(len(costs))
     for front in range(ranks.max(initial=-1) + 1):
         rows = np.flatnonzero(ranks == front)
         space[rows] = crowding(costs[rows])
@@ -199,10 +210,16 @@ def _mixed(mother: np.ndarray, father: np.ndarray, genes: Sequence[Gene], rng: n
     out = mother.copy()
     mixed = rng.random(len(out)) < CROSSED
     for j, gene in enumerate(genes):
-        u, swap, side = rng.random(len(out)), rng.random(len(out)) < 0.5, rng.random(len(out)) < 0.5
+        u = rng.random(len(out))
+        swap = rng.random(len(out)) < 0.5
+        side = rng.random(len(out)) < 0.5
         spread = np.where(u < 0.5, (2 * u) ** (1 / (CROSSOVER + 1)), (0.5 / (1 - u)) ** (1 / (CROSSOVER + 1)))
-        middle, half = (mother[:, j] + father[:, j]) / 2, np.abs(mother[:, j] - father[:, j]) / 2
-        child = middle + np.where(side, spread, -spread) * half if gene.ordered else father[:, j]
+        middle = (mother[:, j] + father[:, j]) / 2
+        half = np.abs(mother[:, j] - father[:, j]) / 2
+        if gene.ordered:
+            child = middle + np.where(side, spread, -spread) * half
+        else:
+            child = father[:, j]
         out[:, j] = np.where(mixed & swap, child, out[:, j])
     return out
 
@@ -210,7 +227,8 @@ def _mixed(mother: np.ndarray, father: np.ndarray, genes: Sequence[Gene], rng: n
 def _mutated(children: np.ndarray, genes: Sequence[Gene], rng: np.random.Generator) -> np.ndarray:
     """Change a gene of each child, on average."""
     for j, gene in enumerate(genes):
-        u, hit = rng.random(len(children)), rng.random(len(children)) < 1 / len(genes)
+        u = rng.random(len(children))
+        hit = rng.random(len(children)) < 1 / len(genes)
         step = np.where(u < 0.5, (2 * u) ** (1 / (MUTATION + 1)) - 1, 1 - (2 - 2 * u) ** (1 / (MUTATION + 1)))
         if not gene.ordered:
             moved = rng.integers(0, gene.levels, len(children)).astype(float)
@@ -225,9 +243,12 @@ def _mutated(children: np.ndarray, genes: Sequence[Gene], rng: np.random.Generat
 def _snapped(values: np.ndarray, genes: Sequence[Gene], whole: bool = True) -> np.ndarray:
     """Return genes inside their bounds; lists as whole numbers, rounded down (`whole`) or to the nearest one."""
     out = np.array(values, dtype=float)
+    shift = 0.5
+    if whole:
+        shift = 0.0
     for j, gene in enumerate(genes):
         if gene.levels:
-            out[:, j] = np.clip(np.floor(out[:, j] + (0.0 if whole else 0.5)), 0, gene.levels - 1)
+            out[:, j] = np.clip(np.floor(out[:, j] + shift), 0, gene.levels - 1)
         else:
             out[:, j] = np.clip(out[:, j], 0.0, 1.0)
     return out

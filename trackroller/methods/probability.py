@@ -43,7 +43,8 @@ def probabilities(
     .. [1] Korn & Graubard (1998), Survey Methodology 24, 193-201
     .. [2] Stein (1987), Technometrics 29, 143-151; Owen (1997), Ann. Statist. 25, 1541-1562
     """
-    n, p = len(hits), hits.mean(axis=0)
+    n = len(hits)
+    p = hits.mean(axis=0)
     missed = hits.var(axis=0)
     if unit is not None and ordered is not None:
         fitted = np.minimum(missed, _unexplained(hits, unit, ordered))

@@ -62,9 +62,12 @@ class Saltelli(Method):
         "S2": Index("second-order index"),
         **GIVEN_DATA,
     }
-    headline, narrowed, judged = "ST", ("S1", "ST"), ("ST", "S1")
+    headline = "ST"
+    narrowed = ("S1", "ST")
+    judged = ("ST", "S1")
     needs = "whole blocks of the Saltelli design and independent factors"
-    unit, samples_unit = "blocks", "base samples"
+    unit = "blocks"
+    samples_unit = "base samples"
     uncorrelated = "Sobol indices need independent factors. Take design lhs: first and delta allow correlation."
     reference = (
         "Design and indices: Sobol indices",
@@ -92,7 +95,8 @@ class Saltelli(Method):
         """Return Sobol indices with their course, and the measures of given data from the rows of A and B."""
         from trackroller.methods.given_data import given_data  # heavy: SALib and scipy.stats
 
-        groups, second = design.meta.get("groups"), bool(design.meta["second_order"])
+        groups = design.meta.get("groups")
+        second = bool(design.meta["second_order"])
         count = len(groups or design.factors)
         block = by_block(y, design)
         blocks = len(block)
@@ -109,21 +113,27 @@ class Saltelli(Method):
         def part(blocks: int) -> Estimates:
             return sobol(lean[:blocks].ravel(), count, False)
 
-        out |= convergence.course(part, at, part(blocks) if second else out, ("S1", "ST")) | given
+        whole = out
+        if second:
+            whole = part(blocks)
+        out |= convergence.course(part, at, whole, ("S1", "ST")) | given
         return Estimated(out, int(out.pop("blocks_used")), int(out.pop("blocks")), at)
 
     def from_replicates(
         self, y: np.ndarray, unit: np.ndarray, design: Design, member: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray]:
         """Return S1, then ST of each factor."""
-        count, copies = len(design.factors), int(design.meta["replicates"])
+        count = len(design.factors)
+        copies = int(design.meta["replicates"])
         block = y.reshape(len(member), -1)
         good = np.isfinite(block).all(axis=1)
         keep = left_out(member[good], copies)
-        whole, single = (1 << count) - 1, [1 << j for j in range(count)]
+        whole = (1 << count) - 1
+        single = [1 << j for j in range(count)]
         with np.errstate(invalid="ignore", divide="ignore"):
             weights = keep / keep.sum(axis=1, keepdims=True)
-        sets, second = [*single, *(whole ^ j for j in single)], bool(design.meta["second_order"])
+        sets = [*single, *(whole ^ j for j in single)]
+        second = bool(design.meta["second_order"])
         drawn = closed_indices(block[good], count, second, sets, weights=weights)
         drawn[:, count:] = 1 - drawn[:, count:]
         return drawn[0], jackknife(drawn[1:])
@@ -132,12 +142,15 @@ class Saltelli(Method):
         """Return the indices of the groups whose columns the design exchanges together."""
         second = bool(design.meta["second_order"])
         exchanged = design.meta["groups"]
-        columns, sets = len(exchanged), [1 << exchanged.index(name) for name in groups]
+        columns = len(exchanged)
+        # a set of columns is a number with a bit for each of them
+        sets = [1 << exchanged.index(name) for name in groups]
+        complements = [(1 << columns) - 1 - of_group for of_group in sets]
         block = by_block(y, design)
         block = block[np.isfinite(block).all(axis=1)]
-        whole = (1 << columns) - 1
-        drawn = closed_indices(block, columns, second, [*sets, *(whole ^ one for one in sets)])
-        return with_bounds("group_S1", drawn[:, : len(sets)]) | with_bounds("group_ST", 1 - drawn[:, len(sets) :])
+        closed = closed_indices(block, columns, second, [*sets, *complements])
+        first, of_complement = np.split(closed, 2, axis=1)
+        return with_bounds("group_S1", first) | with_bounds("group_ST", 1 - of_complement)
 
     def level_indices(self, y: np.ndarray, design: Design, place: int, inside: np.ndarray) -> Estimates:
         """Estimate from the blocks whose rows all lie at one level.
@@ -148,10 +161,12 @@ class Saltelli(Method):
         """
         count = len(design.factors)
         second = bool(design.meta["second_order"])
-        block, inside = by_block(y, design), by_block(inside, design)
+        block = by_block(y, design)
+        inside = by_block(inside, design)
         others = np.delete(np.arange(count), place)
         if second:
-            of_a, of_b = np.flatnonzero(inside[:, 0]), np.flatnonzero(inside[:, -1])
+            of_a = np.flatnonzero(inside[:, 0])
+            of_b = np.flatnonzero(inside[:, -1])
             rows = [
                 block[of_a][:, np.r_[0, 1 + others, 1 + count + place]],
                 block[of_b][:, np.r_[-1, 1 + count + others, 1 + place]],
@@ -162,8 +177,10 @@ class Saltelli(Method):
             rows = [block[cluster][:, np.r_[0, 1 + others, -1]]]
         part = np.concatenate(rows)
         good = np.isfinite(part).all(axis=1)
-        part, cluster = part[good], cluster[good]
-        whole, single = (1 << (count - 1)) - 1, [1 << j for j in range(count - 1)]
+        part = part[good]
+        cluster = cluster[good]
+        whole = (1 << (count - 1)) - 1
+        single = [1 << j for j in range(count - 1)]
         sets = [*single, *(whole ^ j for j in single)]
         drawn = closed_indices(part, count - 1, False, sets, cluster=cluster)
         first, rest = np.split(drawn, 2, axis=1)
@@ -202,10 +219,14 @@ def draw(blocks: int, groups: Sequence[int], second_order: bool, seed: int) -> n
     """
     from scipy.stats import qmc  # heavy, and a plan of a grid does not need it
 
-    k, exchanged = len(groups), max(groups) + 1
+    k = len(groups)
+    exchanged = max(groups) + 1
     base = qmc.Sobol(d=2 * k, seed=seed).random(blocks)  # `seed`, as SALib has it: `rng` scrambles in another way
     a, b = base[:, :k], base[:, k:]
-    rows = np.repeat(a[:, None], (2 * exchanged if second_order else exchanged) + 2, axis=1)
+    size = exchanged + 2
+    if second_order:
+        size = 2 * exchanged + 2
+    rows = np.repeat(a[:, None], size, axis=1)
     rows[:, 1 + exchanged :] = b[:, None]  # the rows BA_j and B
     for column, group in enumerate(groups):
         rows[:, 1 + group, column] = b[:, column]
@@ -229,7 +250,10 @@ def pairs_sharing(count: int, second_order: bool) -> dict[int, list[tuple[int, i
     """
     whole = (1 << count) - 1
     from_a = [whole, *(whole ^ (1 << j) for j in range(count))]
-    from_a += [*(1 << j for j in range(count)), 0] if second_order else [0]
+    if second_order:
+        from_a += [*(1 << j for j in range(count)), 0]
+    else:
+        from_a += [0]
     last = len(from_a) - 1
     sharing: dict[int, list[tuple[int, int]]] = {}
     for i, one in enumerate(from_a):
@@ -270,19 +294,25 @@ def sobol(y: np.ndarray, count: int, second_order: bool, seed: int = 0, resample
     mixtures belong together; the indices then describe the remaining rows (see `given_data`). The intervals treat
     the blocks as random. The blocks of a Sobol sequence have smaller errors, so the intervals are conservative.
     """
-    step = 2 * count + 2 if second_order else count + 2
+    # a set of factors is a number with a bit for each of them
+    single = [1 << j for j in range(count)]
+    complements = [(1 << count) - 1 - j for j in single]
+    pairs = []
+    step = count + 2
+    if second_order:
+        pairs = [one | other for one, other in combinations(single, 2)]
+        step = 2 * count + 2
     block = y[: y.size // step * step].reshape(-1, step)
     used = block[np.isfinite(block).all(axis=1)]
-    whole, single = (1 << count) - 1, [1 << j for j in range(count)]
-    double = [one | other for one, other in combinations(single, 2)] if second_order else []
-    drawn = closed_indices(used, count, second_order, [*single, *(whole ^ j for j in single), *double], seed, resamples)
-    first, rest, both = np.split(drawn, [count, 2 * count], axis=1)
+    sets = [*single, *complements, *pairs]
+    closed = closed_indices(used, count, second_order, sets, seed, resamples)
+    first, of_complement, of_pair = np.split(closed, [count, 2 * count], axis=1)
     out: Estimates = {"blocks": np.array(len(block)), "blocks_used": np.array(len(used))}
-    out |= with_bounds("S1", first) | with_bounds("ST", 1 - rest)
+    out |= with_bounds("S1", first) | with_bounds("ST", 1 - of_complement)
     if second_order:
         i, j = np.triu_indices(count, 1)
-        table = np.full((len(drawn), count, count), np.nan)
-        table[:, i, j] = both - first[:, i] - first[:, j]
+        table = np.full((len(closed), count, count), np.nan)
+        table[:, i, j] = of_pair - first[:, i] - first[:, j]
         out |= with_bounds("S2", table)
     return out
 
@@ -313,9 +343,13 @@ def closed_indices(
     Shape (1 + resamples, sets): the estimates, then the resamples. NaN if there are fewer than 8 clusters or the output
     is constant.
     """
-    clusters, cluster = np.unique(np.arange(len(block)) if cluster is None else cluster, return_inverse=True)
+    if cluster is None:
+        cluster = np.arange(len(block))
+    if weights is not None:
+        resamples = len(weights)
+    clusters, cluster = np.unique(cluster, return_inverse=True)
     if len(clusters) < MIN_BLOCKS or constant(block):
-        return np.full((1 + (resamples if weights is None else len(weights)), len(sets)), np.nan)
+        return np.full((1 + resamples, len(sets)), np.nan)
     pairs = pairs_sharing(count, second_order)
     terms = _pair_terms((block - block.mean()) / block.std(), [[(0, -1)], *(pairs[columns] for columns in sets)])
     beta = _control(*terms)
@@ -357,7 +391,8 @@ def _pair_terms(block: np.ndarray, sets: Sequence[Sequence[tuple[int, int]]]) ->
     """Return half sums, half sums of squares and products of rows, means over the pairs, shape (3, blocks, sets)."""
     out = np.empty((3, len(block), len(sets)))
     for place, pairs in enumerate(sets):
-        u, v = block[:, [i for i, _ in pairs]], block[:, [j for _, j in pairs]]
+        u = block[:, [i for i, _ in pairs]]
+        v = block[:, [j for _, j in pairs]]
         for part, values in zip(out, ((u + v) / 2, (u**2 + v**2) / 2, u * v), strict=True):
             part[:, place] = values.mean(axis=1)
     return out
@@ -365,7 +400,8 @@ def _pair_terms(block: np.ndarray, sets: Sequence[Sequence[tuple[int, int]]]) ->
 
 def _control(half: np.ndarray, square: np.ndarray, product: np.ndarray) -> np.ndarray:
     """Return the weight of the control variate for each set: regression of its influence on that of A with B."""
-    mean, spread = half.mean(axis=0), square.mean(axis=0) - half.mean(axis=0) ** 2
+    mean = half.mean(axis=0)
+    spread = square.mean(axis=0) - half.mean(axis=0) ** 2
     rho = (product.mean(axis=0) - mean**2) / spread
     influence = (product - rho * square - 2 * (1 - rho) * mean * half) / spread
     influence -= influence.mean(axis=0)

@@ -26,7 +26,8 @@ class Sobol(RandomSample):
 
     def draw(self, free: Factors, n: int, seed: int, settings: Settings) -> Drawn:
         """Return quantiles; a correlated row depends on no other row."""
-        entries, copies = tuple(settings[correlation.KEY]), settings["replicates"]
+        entries = tuple(settings[correlation.KEY])
+        copies = settings["replicates"]
         root = correlation.copula(entries, free)
 
         def one(seed: int) -> np.ndarray:

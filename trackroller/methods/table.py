@@ -15,7 +15,8 @@ class Table(Sample):
 
     name = "table"
     takes = {"table": None}
-    observed, subset = True, False
+    observed = True
+    subset = False
     needs = "independent factors (correlated columns share their influence); any usable rows"
     whole = "cases of the table"
     uncorrelated = "Remove the key: the rows of the table have their own correlation."
@@ -38,5 +39,8 @@ def of_columns(columns: Mapping[str, np.ndarray]) -> tuple[dict[str, Factor], np
     for j, (name, factor) in enumerate(free.items()):
         index = {level: i for i, level in enumerate(factor.levels)}
         values = columns[name]
-        unit[:, j] = values if factor.ordered else [index[value] for value in values.tolist()]
+        if factor.ordered:
+            unit[:, j] = values
+        else:
+            unit[:, j] = [index[value] for value in values.tolist()]
     return free, unit

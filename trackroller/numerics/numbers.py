@@ -86,18 +86,27 @@ def number_or_nan(value: Any, unit: str | None = None, field: str = "", differen
     InputError
         If the text has a unit that is unknown or measures something else.
     """
-    parts = None if unit is None else split_quantity(value)
+    parts = None
+    if unit is not None:
+        parts = split_quantity(value)
+    digits = value
+    if parts is not None:
+        digits = parts[0]
     try:
-        number = read_number(parts[0] if parts else value)
+        number = read_number(digits)
     except RangeError as exc:
         if not field:
             return math.nan
         allowed = "0, and numbers between 1e-307 and 1e308 in size"
-        remedy = "Write inf for infinity." if "large" in str(exc) else "Write 0 if it is meant."
+        remedy = "Write 0 if it is meant."
+        if "large" in str(exc):
+            remedy = "Write inf for infinity."
         raise InputError(field, value, allowed, remedy, str(exc)) from None
     except ValueError:
         return math.nan
-    return number if unit is None or parts is None else in_unit(number, parts[1], unit, field, difference)
+    if unit is None or parts is None:
+        return number
+    return in_unit(number, parts[1], unit, field, difference)
 
 
 def finite_number(value: Any, unit: str | None = None, field: str = "") -> float:
@@ -145,8 +154,10 @@ def number_in(
     """
     number = number_or_nan(value, unit, field)
     if not lower <= number <= upper:
-        plain = plain_quantity(value) if isinstance(value, str) else ""
-        raise InputError(field, value, allowed, f"Write {plain}." if plain else "")
+        remedy = ""
+        if isinstance(value, str) and plain_quantity(value):
+            remedy = f"Write {plain_quantity(value)}."
+        raise InputError(field, value, allowed, remedy)
     return number
 
 
@@ -221,11 +232,12 @@ def written(values: list[float]) -> list[float]:
         error = 2 * n * math.ulp(max(map(abs, values)))
         ends = [Fraction(repr(_written(end, error))) for end in (values[0], values[-1])]
         below = ends[0].denominator * ends[1].denominator * (n - 1)
-        first, step = int(ends[0] * below), int((ends[1] - ends[0]) * (below // (n - 1)))
+        first = int(ends[0] * below)
+        step = int((ends[1] - ends[0]) * (below // (n - 1)))
         even = [(first + i * step) / below for i in range(n)]
         if all(abs(one - value) <= error for one, value in zip(even, values, strict=True)):
             return even
-    return [_written(value, 16 * math.ulp(value)) if math.isfinite(value) else value for value in values]
+    return [_written(value, 16 * math.ulp(value)) for value in values]
 
 
 def _written(value: float, error: float) -> float:

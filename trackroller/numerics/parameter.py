@@ -71,17 +71,29 @@ class Parameter:
 
     def allowed(self) -> str:
         """Return what is allowed, in words."""
-        unit = "" if self.unit == "-" else f" {self.unit}"
+        unit = f" {self.unit}"
+        above, below = ">=", "<="
+        last = "finite"
+        if self.unit == "-":
+            unit = ""
+        if self.open_lower:
+            above = ">"
+        if self.open_upper:
+            below = "<"
+        if self.allow_infinite:
+            last = "finite or inf"
         parts = []
         if math.isfinite(self.lower):
-            parts.append(f"{'>' if self.open_lower else '>='} {self.lower:g}{unit}")
+            parts.append(f"{above} {self.lower:g}{unit}")
         if math.isfinite(self.upper):
-            parts.append(f"{'<' if self.open_upper else '<='} {self.upper:g}{unit}")
+            parts.append(f"{below} {self.upper:g}{unit}")
         if self.nonzero:
             parts.append(f"not 0 (at least {SMALLEST:g}{unit} in size)")
-        parts.append("finite or inf" if self.allow_infinite else "finite")
+        parts.append(last)
         number = f"a number for the {self.long_name} [{self.unit}], " + ", ".join(parts)
-        return f"{number}; or {', '.join(self.words[:-1])} or {self.words[-1]}" if self.words else number
+        if self.words:
+            return f"{number}; or {', '.join(self.words[:-1])} or {self.words[-1]}"
+        return number
 
     def remedy(self, value: float, written: object = None) -> str:
         """Return what to write instead of a value that is not allowed.
@@ -104,8 +116,13 @@ class Parameter:
             plain = plain_quantity(written)
             if plain:
                 return f"Write {plain}."
-        example = "" if math.isnan(self.default) else f", such as {self.default:g}"
-        left_out = "" if not self.allow_missing else ", or leave it out"
+        if math.isnan(self.default):
+            example = ""
+        else:
+            example = f", such as {self.default:g}"
+        left_out = ", or leave it out"
+        if not self.allow_missing:
+            left_out = ""
         return f"Write a number that is allowed{example}{left_out}."
 
     def accepts(self, value: np.ndarray | float) -> Any:
@@ -117,7 +134,10 @@ class Parameter:
 
     def _allows(self, v: Any, missing: Any, bounded: Any) -> Any:
         """Return whether a number, or which of an array of numbers, is allowed; see `accepts`."""
-        good = (v > self.lower) if self.open_lower else (v >= self.lower)
+        if self.open_lower:
+            good = v > self.lower
+        else:
+            good = v >= self.lower
         good = good & ((v < self.upper) if self.open_upper else (v <= self.upper))
         if self.nonzero:
             good = good & (abs(v) >= SMALLEST)

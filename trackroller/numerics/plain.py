@@ -17,6 +17,20 @@ _PLAIN = (float, int, bool, type(None))
 MOST_LEVELS = 40  # of lists in lists
 
 
+def _mapping(value: Mapping[Any, Any], field: str, level: int) -> dict[Any, Any]:
+    """Return a mapping as `plain` does; the coordinates of a data set are values as well."""
+    names = value
+    if hasattr(value, "data_vars"):
+        names = getattr(value, "variables", value)
+    entries = {}
+    for name in names:
+        inside = str(name)
+        if field:
+            inside = f"{field}.{name}"
+        entries[plain(name, field)] = plain(value[name], inside, level)
+    return entries
+
+
 def plain(value: Any, field: str = "value", level: int = 0) -> Any:
     """Return a value as a file could say it.
 
@@ -56,13 +70,7 @@ def plain(value: Any, field: str = "value", level: int = 0) -> Any:
         raise InputError(field, type(value).__name__, f"at most {MOST_LEVELS} lists or mappings in each other")
     value = _row(value)
     if isinstance(value, Mapping):
-        # the coordinates of a data set are values as well
-        names = getattr(value, "variables", value) if hasattr(value, "data_vars") else value
-        entries = {name: value[name] for name in names}
-        return {
-            plain(key, field): plain(one, f"{field}.{key}" if field else str(key), level + 1)
-            for key, one in entries.items()
-        }
+        return _mapping(value, field, level + 1)
     if hasattr(value, "columns") and hasattr(value, "to_dict"):
         return [plain(row, field, level + 1) for row in rows_of(value, field)]
     if isinstance(value, np.ma.MaskedArray) and np.ma.is_masked(value):
@@ -74,15 +82,21 @@ def plain(value: Any, field: str = "value", level: int = 0) -> Any:
         return [plain(one, field, level + 1) for one in value]
     of_arrays = (hasattr(value, "tolist") or hasattr(value, "dims")) and not hasattr(value, "magnitude")
     other = _array(value) if of_arrays else _scalar(value)
-    return value if type(other) is type(value) or other is value else plain(other, field, level + 1)
+    if type(other) is type(value) or other is value:
+        return value
+    return plain(other, field, level + 1)
 
 
 def _array(value: Any) -> Any:
     """Return an array, a column or a scalar of NumPy as a list or a number; what cannot be one as it is."""
-    unit = stated_unit(value.attrs) if hasattr(value, "attrs") else ""
+    unit = ""
+    if hasattr(value, "attrs"):
+        unit = stated_unit(value.attrs)
     if hasattr(value, "dims") or unit:  # xarray, or a column of pandas
         own = np.asarray(value.values)
-        return _with_unit(own, unit) if unit and own.dtype.kind in "fiu" else own
+        if unit and own.dtype.kind in "fiu":
+            return _with_unit(own, unit)
+        return own
     if isinstance(value, np.ma.MaskedArray):
         return value.filled()
     if isinstance(value, np.ndarray) and value.dtype.names:
@@ -93,7 +107,9 @@ def _array(value: Any) -> Any:
 
 
 def _with_unit(numbers: np.ndarray, unit: str) -> Any:
-    return [_with_unit(one, unit) for one in numbers] if numbers.ndim else f"{numbers.item()!r} {unit}"
+    if numbers.ndim:
+        return [_with_unit(one, unit) for one in numbers]
+    return f"{numbers.item()!r} {unit}"
 
 
 def _scalar(value: Any) -> Any:
@@ -102,7 +118,9 @@ def _scalar(value: Any) -> Any:
         return os.fspath(value)
     if hasattr(value, "magnitude") and hasattr(value, "units"):  # pint
         unit = f"{value.units:~C}".replace("**", "^")
-        return _with_unit(np.asarray(value.magnitude), unit) if unit else value.magnitude
+        if unit:
+            return _with_unit(np.asarray(value.magnitude), unit)
+        return value.magnitude
     if isinstance(value, (Decimal, Fraction)):
         try:
             return int(value) if value % 1 == 0 else float(value)
@@ -129,7 +147,9 @@ def rows_of(frame: Any, field: str) -> list[dict[Any, Any]]:
     doubled = next((head for head in heads if heads.count(head) > 1), None)
     if doubled:
         raise InputError(field, str(doubled), "each column once; it stands twice", "Rename or drop one of the two.")
-    return frame.to_dicts() if hasattr(frame, "to_dicts") else frame.to_dict("records")
+    if hasattr(frame, "to_dicts"):
+        return frame.to_dicts()
+    return frame.to_dict("records")
 
 
 def _row(value: Any) -> Any:
@@ -142,7 +162,9 @@ def _row(value: Any) -> Any:
 def mapping_of(value: Any) -> Any:
     """Return a mapping of plain values; a row of a data frame is one, too. Any other object is returned as it is."""
     value = _row(value)
-    return plain(value, "") if isinstance(value, Mapping) else value
+    if isinstance(value, Mapping):
+        return plain(value, "")
+    return value
 
 
 def how_to_write(value: Any) -> str:

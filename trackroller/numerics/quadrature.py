@@ -24,5 +24,6 @@ def clustered_rule(n: int) -> tuple[np.ndarray, np.ndarray]:
         Nodes and weights.
     """
     v, w = np.polynomial.legendre.leggauss(n)
-    v, w = (v + 1) / 2, w / 2
+    v = (v + 1) / 2
+    w = w / 2
     return v * v * (3 - 2 * v), w * 6 * v * (1 - v)

@@ -75,7 +75,9 @@ class _Parts(NamedTuple):
 
 def stated_separator(line: str) -> str:
     """Return the separator that a line such as `sep=;` states, which Excel understands; '' for another line."""
-    stated = _STATED.fullmatch(line) if "=" in line else None
+    stated = None
+    if "=" in line:
+        stated = _STATED.fullmatch(line)
     return stated[1] if stated else ""
 
 
@@ -144,7 +146,8 @@ def plain_cell(cell: str, signs: Collection[str]) -> str:
             remedy = f"Write {sign}{whole}{decimals} or {clear}; one number such as {clear} decides for the whole file."
             raise AmbiguousNumber(why, remedy)
         if mark not in signs:
-            whole, decimals = whole + decimals, ""
+            whole = whole + decimals
+            decimals = ""
     number = f"{whole}.{decimals}" if decimals else whole
     return f"{sign.strip('+')}{number}{rest}"
 
@@ -161,7 +164,9 @@ def plain_quantity(text: str) -> str:
         plain = plain_cell(text, decimal_signs([text]))
     except AmbiguousNumber:
         return ""
-    return plain if plain != text and (is_number(plain) or split_quantity(plain)) else ""
+    if plain != text and (is_number(plain) or split_quantity(plain)):
+        return plain
+    return ""
 
 
 def plain_column(cells: Sequence[str], signs: Collection[str]) -> Sequence[str]:
@@ -171,7 +176,9 @@ def plain_column(cells: Sequence[str], signs: Collection[str]) -> Sequence[str]:
     """
     if _are_plain(cells, signs):
         return cells
-    with_points = _with_points(cells) if set(signs) == {","} else ()
+    with_points: Sequence[str] = ()
+    if set(signs) == {","}:
+        with_points = _with_points(cells)
     if with_points:
         return with_points
     return [_plain_or_refused(cell, signs) for cell in cells]
@@ -183,7 +190,9 @@ def _with_points(cells: Sequence[str]) -> Sequence[str]:
     if "." in text or re.search(r",(?!\d)", text):
         return ()
     with_points = text.replace(",", ".").split("\n")
-    return with_points if len(with_points) == len(cells) and _are_plain(with_points, ".") else ()
+    if len(with_points) == len(cells) and _are_plain(with_points, "."):
+        return with_points
+    return ()
 
 
 def _are_plain(cells: Sequence[str], signs: Collection[str]) -> bool:
@@ -204,7 +213,10 @@ def _plain_or_refused(cell: str, signs: Collection[str]) -> str:
 
 def is_number(cell: str) -> bool:
     """Return whether a cell holds a number without unit."""
-    parts = None if isinstance(cell, Refused) else _parts(_tidy(cell))
+    if isinstance(cell, Refused):
+        parts = None
+    else:
+        parts = _parts(_tidy(cell))
     return parts is not None and re.fullmatch(r"(?:e[-+]?\d+)?", parts.rest) is not None
 
 
@@ -276,7 +288,9 @@ def split_head(head: str) -> tuple[str, str]:
 def unbracketed(unit: str) -> str:
     """Return a unit without the brackets around it."""
     unit = unit.strip()
-    return unit[1:-1].strip() if unit[:1] + unit[-1:] in ("[]", "()") else unit
+    if unit[:1] + unit[-1:] in ("[]", "()"):
+        return unit[1:-1].strip()
+    return unit
 
 
 def _tidy(cell: str) -> str:
@@ -287,11 +301,13 @@ def _tidy(cell: str) -> str:
 
 def _parts(text: str) -> _Parts | None:
     """Return the parts of a cell with a number; None for any other cell."""
-    found = _NUMBER.fullmatch(text)
-    if found is None:
+    parts = _NUMBER.fullmatch(text)
+    if parts is None:
         return None
-    sign, mantissa, rest = found[1], found[2].rstrip(" "), found[3]
-    blank = " " if len(found[2]) > len(mantissa) else ""
+    sign = parts[1]
+    mantissa = parts[2].rstrip(" ")
+    rest = parts[3]
+    blank = " " if len(parts[2]) > len(mantissa) else ""
     exponent = None if blank else _EXPONENT.match(rest)
     if not exponent and not blank and ("." in mantissa or "," in mantissa):  # Fortran's 1.5D3; 5d3 is no number
         exponent = re.match(r"[dD](\d+)()", rest, re.ASCII)
@@ -304,8 +320,12 @@ def _parts(text: str) -> _Parts | None:
         return _Parts(sign, mantissa, "", "", True, rest)
     grouped = _GROUPED.fullmatch(mantissa)
     if grouped:
-        mark, decimal, decimals = grouped[1], grouped[2], grouped[3]
-        digits = mantissa[: grouped.start(2)] if decimal else mantissa
+        mark = grouped[1]
+        decimal = grouped[2]
+        decimals = grouped[3]
+        digits = mantissa
+        if decimal:
+            digits = mantissa[: grouped.start(2)]
         if mark in ".," and not decimal and digits.count(mark) == 1:  # thousands or three decimals
             whole, _, end = digits.partition(mark)
             return _Parts(sign, whole, end, mark, bool(exponent), rest)

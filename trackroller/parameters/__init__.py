@@ -39,7 +39,9 @@ __all__ = [
 ]
 
 OUTPUT_GROUPS = words_of("outputs")
-SPIN_MODELS, ACCURACIES, LIFE_RULES = words_of("spin_model"), words_of("accuracy"), words_of("life_rule")
+SPIN_MODELS = words_of("spin_model")
+ACCURACIES = words_of("accuracy")
+LIFE_RULES = words_of("life_rule")
 DEFAULT_OUTPUTS: tuple[str, ...] = OPTIONS["outputs"].default
 REGIME_LABELS = ("rolling", "full slip", "lift-off", "failed")  # the same in prose
 MATERIAL_FIELDS = ("roller_material", "guide_material")

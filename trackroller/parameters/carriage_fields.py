@@ -28,9 +28,9 @@ LABELS = {"mass": "mass of the carriage"} | {  # where the name says too little
 }
 
 
-def _field(name: str, unit: str, meaning: str, role: str = "choice", **more: object) -> Parameter:
+def _field(name: str, unit: str, meaning: str, role: str = "choice", **further: object) -> Parameter:
     label = LABELS.get(name, name.replace("_", " "))
-    return Parameter(PREFIX + name, "", unit, math.nan, meaning, label=label, role=role, **more)  # type: ignore[arg-type]
+    return Parameter(PREFIX + name, "", unit, math.nan, meaning, label=label, role=role, **further)  # type: ignore[arg-type]
 
 
 OF_LOAD_CASE = {  # fields of each load case
@@ -93,8 +93,10 @@ def split_field(name: str) -> tuple[str, str] | None:
 
 def field_of(name: str) -> Parameter | None:
     """Return the declaration of a field of a carriage, None for any other name."""
-    found = split_field(name)
-    return None if found is None else (OF_WHOLE | OF_LOAD_CASE | OF_ROLLER)[found[0]]
+    parts = split_field(name)
+    if parts is None:
+        return None
+    return (OF_WHOLE | OF_LOAD_CASE | OF_ROLLER)[parts[0]]
 
 
 def parameter_of(name: str) -> Parameter | None:
@@ -104,7 +106,10 @@ def parameter_of(name: str) -> Parameter | None:
 
 def long_name_of(name: str) -> str:
     """Return the name of a factor for figures and reports, in which a load case or roller is named."""
-    known, place = parameter_of(name), (split_field(name) or ("", ""))[1]
+    known = parameter_of(name)
+    place = (split_field(name) or ("", ""))[1]
     if known is None:
         return name.replace("_", " ")
-    return f"{known.long_name}, {place}" if place else known.long_name
+    if place:
+        return f"{known.long_name}, {place}"
+    return known.long_name

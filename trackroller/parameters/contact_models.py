@@ -93,7 +93,9 @@ class Cost:
         tolerance = min(max(tolerance, known[0]), known[-1])
         high = next(i for i, own in enumerate(known) if tolerance <= own)
         low = max(high - 1, 0)
-        part = math.log(tolerance / known[low]) / math.log(known[high] / known[low]) if high > low else 1.0
+        part = 1.0
+        if high > low:
+            part = math.log(tolerance / known[low]) / math.log(known[high] / known[low])
         return [a + part * (b - a) for a, b in zip(shares[known[low]], shares[known[high]], strict=True)]
 
 
@@ -156,7 +158,10 @@ class ModelDeclaration:
 
     def check(self, option: str, value: str) -> None:
         """Refuse a word of `normal` or `slip_terms` that the model does not serve."""
-        allowed = self.normals if option == "normal" else self.slip_terms
+        if option == "normal":
+            allowed = self.normals
+        else:
+            allowed = self.slip_terms
         if value not in allowed:
             words = ", ".join(allowed) or "no word"
             raise InputError(option, value, f"{words} only, with contact_model: {self.name}", self.remedy)

@@ -39,12 +39,17 @@ def not_given(named: Iterable[str]) -> dict[str, Any]:
         Parameters that the file names; `material_pair` stands for both materials.
     """
     named = set(named)
-    both = set(_PAIR) if "material_pair" in named else set()
-    return {
-        name: str(value) if isinstance(value, str) else float(value)
-        for name, value in EXAMPLE.items()
-        if name not in named | both
-    }
+    if "material_pair" in named:
+        named |= set(_PAIR)
+    values: dict[str, Any] = {}
+    for name, value in EXAMPLE.items():
+        if name in named:
+            continue
+        if isinstance(value, str):
+            values[name] = str(value)
+        else:
+            values[name] = float(value)
+    return values
 
 
 def used_of(values: Mapping[str, Any], names: Iterable[str]) -> dict[str, Any]:
@@ -58,15 +63,25 @@ def used_of(values: Mapping[str, Any], names: Iterable[str]) -> dict[str, Any]:
         Parameters that were not given.
     """
     profile = values.get("roller_profile")
-    levels = profile.get("values", [profile]) if isinstance(profile, Mapping) else getattr(profile, "levels", [profile])
-    drawn = {"roller_profile_radius"} if all(levels) else set()
-    return {name: values[name] for name in names if name not in drawn}
+    if isinstance(profile, Mapping):
+        levels = profile.get("values", [profile])
+    else:
+        levels = getattr(profile, "levels", [profile])
+    replaced = ""
+    if all(levels):
+        replaced = "roller_profile_radius"
+    return {name: values[name] for name in names if name != replaced}
 
 
 def with_unit(name: str, value: Any) -> str:
     """Return a parameter with its value and unit, such as 'motor_force -30 N'."""
-    unit = PARAMETERS[name].unit if name in PARAMETERS else "-"
-    shown = f"{value:g}" if isinstance(value, (int, float)) else str(value)
+    unit = "-"
+    if name in PARAMETERS:
+        unit = PARAMETERS[name].unit
+    if isinstance(value, (int, float)):
+        shown = f"{value:g}"
+    else:
+        shown = str(value)
     return f"{name} {shown}" + ("" if unit == "-" else f" {unit}")
 
 

@@ -16,7 +16,7 @@ import ast
 import math
 import re
 import warnings
-from collections.abc import Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from functools import lru_cache, reduce
 from typing import Any
@@ -199,14 +199,17 @@ def comparisons(text: str, field: str) -> tuple[Comparison, ...]:
         If the text is not such a condition.
     """
     tree = _parse(text, field)
-    parts = tree.values if isinstance(tree, ast.BoolOp) and isinstance(tree.op, ast.Or) else [tree]
+    if isinstance(tree, ast.BoolOp) and isinstance(tree.op, ast.Or):
+        parts = tree.values
+    else:
+        parts = [tree]
     compared = []
     for part in parts:
         if not isinstance(part, ast.Compare) or len(part.ops) != 1 or type(part.ops[0]) not in _COMPARE:
             allowed = "comparisons (> >= < <= == !=) joined by 'or'"
             raise InputError(field, text, allowed, "For example: slip > 0.1 or max_pressure > 1500.")
-        left = ast.unparse(part.left)
-        compared.append(Comparison(left, _COMPARE[type(part.ops[0])][0], ast.unparse(part.comparators[0])))
+        value = ast.unparse(part.left)
+        compared.append(Comparison(value, _COMPARE[type(part.ops[0])][0], ast.unparse(part.comparators[0])))
     return tuple(compared)
 
 
@@ -236,10 +239,13 @@ def _tree(text: str, field: str) -> ast.expr:
 
 
 def _names(node: ast.AST) -> set[str]:
+    """Return the names below a node; those of functions and constants do not count."""
     if isinstance(node, ast.Name):
         return {node.id} - set(CONSTANTS)
-    children = node.args if isinstance(node, ast.Call) else ast.iter_child_nodes(node)
-    return set().union(*map(_names, children))
+    parts: Iterable[ast.AST] = ast.iter_child_nodes(node)
+    if isinstance(node, ast.Call):
+        parts = node.args
+    return set().union(*map(_names, parts))
 
 
 def _number(value: Any) -> np.ndarray | None:
@@ -267,7 +273,9 @@ def _truth(value: Any) -> _Truth | None:
     if isinstance(value, _Truth):
         return value
     array = np.asarray(value)
-    return _Truth(array, np.ones(array.shape, dtype=bool)) if array.dtype == bool else None
+    if array.dtype == bool:
+        return _Truth(array, np.ones(array.shape, dtype=bool))
+    return None
 
 
 @dataclass(frozen=True)
@@ -295,11 +303,17 @@ class _Evaluation:
             case ast.UnaryOp(op=ast.UAdd(), operand=operand):
                 return self.applied(np.positive, [operand], node)
             case ast.Call(func=ast.Name(id=name), args=args, keywords=[]) if name in FUNCTIONS:
-                function, arity = FUNCTIONS[name]
-                if len(args) != arity or any(isinstance(arg, ast.Starred) for arg in args):
-                    raise self.refused(node, f"{name} with {len(args)} arguments (it takes {arity})")
-                return self.applied(function, args, node) if function else self.chosen(args, node)
+                return self.called(name, args, node)
         return self.logic(node)
+
+    def called(self, name: str, args: list[ast.expr], node: ast.AST) -> Any:
+        """Return the value of a function of `FUNCTIONS`."""
+        function, arity = FUNCTIONS[name]
+        if len(args) != arity or any(isinstance(arg, ast.Starred) for arg in args):
+            raise self.refused(node, f"{name} with {len(args)} arguments (it takes {arity})")
+        if function:
+            return self.applied(function, args, node)
+        return self.chosen(args, node)
 
     def constant(self, node: ast.Constant) -> float:
         """Return a number of the text as a float: powers of whole numbers could fill the memory."""
@@ -320,12 +334,14 @@ class _Evaluation:
                 truth = self.truth(operand)
                 return _Truth(~truth.holds, truth.known)
             case ast.BoolOp(op=op, values=parts):
-                join = np.logical_and if isinstance(op, ast.And) else np.logical_or
+                join: Callable[..., Any] = np.logical_or
+                if isinstance(op, ast.And):
+                    join = np.logical_and
                 return self.joined(join, [self.truth(part) for part in parts])
-            case ast.Compare(left=left, ops=ops, comparators=rest) if all(type(op) in _COMPARE for op in ops):
-                sides = [self.value(part) for part in (left, *rest)]
-                held = [self.compared(*part, node) for part in zip(ops, sides, sides[1:], strict=False)]
-                return self.joined(np.logical_and, held)  # a part of constants has another shape
+            case ast.Compare(left=left, ops=ops, comparators=further) if all(type(op) in _COMPARE for op in ops):
+                sides = [self.value(part) for part in (left, *further)]
+                truths = [self.compared(*part, node) for part in zip(ops, sides, sides[1:], strict=False)]
+                return self.joined(np.logical_and, truths)  # a part of constants has another shape
             case ast.Call():
                 error = unknown_function(node, FUNCTIONS, self.field)
                 if error:
@@ -356,7 +372,8 @@ class _Evaluation:
     def chosen(self, parts: list[ast.expr], node: ast.AST) -> np.ndarray:
         """Return ``where(condition, one, other)``: numbers, NaN where the condition is undecided, or texts."""
         decider, *both = (self.value(part) for part in parts)
-        truth, (numbers, texts) = _truth(decider), _parted(both)
+        truth = _truth(decider)
+        numbers, texts = _parted(both)
         if truth is None:
             number = _number(decider)
             if number is None:
@@ -366,16 +383,24 @@ class _Evaluation:
             raise self.refused(node, "where with a text beside a number")
         one, other = numbers or [np.asarray(text, dtype=object) for text in texts]
         chosen = np.where(truth.holds, one, other)
-        chosen[~np.broadcast_to(truth.known, chosen.shape)] = np.nan if numbers else None
+        if numbers:
+            chosen[~np.broadcast_to(truth.known, chosen.shape)] = np.nan
+        else:
+            chosen[~np.broadcast_to(truth.known, chosen.shape)] = None
         return chosen
 
     def compared(self, op: ast.cmpop, one: Any, other: Any, node: ast.AST) -> _Truth:
-        compare, (numbers, texts) = _COMPARE[type(op)][1], _parted([one, other])
+        compare = _COMPARE[type(op)][1]
+        numbers, texts = _parted([one, other])
         if texts and (numbers or not isinstance(op, (ast.Eq, ast.NotEq))):
             raise self.refused(node, "ordering a text, or comparing it with a number,")
-        sides = numbers or [np.asarray(text, dtype=object) for text in texts]
-        given = [~np.isnan(side) if numbers else np.asarray(side != np.array(None), dtype=bool) for side in sides]
-        return _Truth(np.asarray(compare(*sides), dtype=bool), np.asarray(given[0] & given[1]))
+        if numbers:
+            one, other = numbers
+            known = ~np.isnan(one) & ~np.isnan(other)
+        else:
+            one, other = (np.asarray(text, dtype=object) for text in texts)
+            known = np.asarray(one != np.array(None), dtype=bool) & np.asarray(other != np.array(None), dtype=bool)
+        return _Truth(np.asarray(compare(one, other), dtype=bool), np.asarray(known))
 
     def truth(self, node: ast.AST) -> _Truth:
         truth = _truth(self.value(node))
@@ -386,12 +411,14 @@ class _Evaluation:
     def with_text(self, node: ast.AST, value: Any) -> InputError:
         """Return the error for arithmetic with a text; it names the text."""
         word = next((one for one in np.asarray(value, dtype=object).flat if isinstance(one, str)), None)
-        told = "" if word is None else f" ('{word}')"
-        units = "Only parameters take units: write the numbers of a factor of your own without them."
-        return self.refused(node, f"arithmetic with a text{told}", units if split_quantity(word) else "")
+        if word is None:
+            return self.refused(node, "arithmetic with a text")
+        remedy = ""
+        if split_quantity(word):
+            remedy = "Only parameters take units: write the numbers of a factor of your own without them."
+        return self.refused(node, f"arithmetic with a text ('{word}')", remedy)
 
-    def refused(self, node: ast.AST, what: str, remedy: str = "") -> InputError:
+    def refused(self, node: ast.AST, element: str, remedy: str = "") -> InputError:
         at = getattr(node, "col_offset", 0) + 1
-        return InputError(
-            self.field, self.text, "", remedy or _REMEDY, f"holds {what} at character {at}, which is not allowed"
-        )
+        wrong = f"holds {element} at character {at}, which is not allowed"
+        return InputError(self.field, self.text, "", remedy or _REMEDY, wrong)

@@ -71,7 +71,8 @@ class Option:
 
     def allowed(self) -> str:
         """Return what is allowed, in words."""
-        words, number = ", ".join(self.values), f"in ({self.bounds[0]:g}, {self.bounds[1]:g})"
+        words = ", ".join(self.values)
+        number = f"in ({self.bounds[0]:g}, {self.bounds[1]:g})"
         return {
             "word": f"one of {words}",
             "words": f"a list of {words}" + (", at least one" if self.required else ", which may be empty"),
@@ -98,15 +99,13 @@ class Option:
         """
         where = where or self.name
         if self.kind == "words":
-            if not isinstance(value, (str, list, tuple, set, frozenset)) or (self.required and not value):
-                raise InputError(where, value, self.allowed())
-            words = [self._word(word, where) for word in ([value] if isinstance(value, str) else value)]
-            return tuple(dict.fromkeys(words)) if self.required else tuple(w for w in self.values if w in words)
+            return self._words(value, where)
         if self.kind in ("accuracy", "number") and isinstance(value, str) and value not in self.values:
             from trackroller.numerics.numbers import number_or_nan  # noqa: PLC0415 - numpy, which --help does not need
 
             number = number_or_nan(value, "-", where)  # a text such as 10 %
-            value = value if math.isnan(number) else number
+            if not math.isnan(number):
+                value = number
         if self.kind == "word" or (self.kind == "accuracy" and isinstance(value, str)):
             return self._word(value, where)
         if self.kind == "condition" and not isinstance(value, (str, type(None))):
@@ -116,13 +115,30 @@ class Option:
         if self.kind == "accuracy" and isinstance(value, Mapping):
             return self._by_quantity(value, where)
         if self.kind in ("accuracy", "number"):
-            number = isinstance(value, (int, float)) and not isinstance(value, bool)
-            if not number or not self.bounds[0] < value < self.bounds[1]:
-                percent = number and self.bounds == (0.0, 1.0) and 1.0 < value < 100.0
-                remedy = f"Give {value / 100.0:g} for {value:g} %." if percent else ""
-                raise InputError(where, value, self.allowed(), remedy)
-            return float(value)
+            return self._number(value, where)
         return value
+
+    def _words(self, value: Any, where: str) -> tuple[str, ...]:
+        """Return a list of words; those of an option that may be empty are put in the order of its declaration."""
+        if not isinstance(value, (str, list, tuple, set, frozenset)) or (self.required and not value):
+            raise InputError(where, value, self.allowed())
+        listed = value
+        if isinstance(value, str):
+            listed = [value]
+        words = [self._word(word, where) for word in listed]
+        if self.required:
+            return tuple(dict.fromkeys(words))
+        return tuple(w for w in self.values if w in words)
+
+    def _number(self, value: Any, where: str) -> float:
+        """Return a number inside the bounds."""
+        is_number = isinstance(value, (int, float)) and not isinstance(value, bool)
+        if is_number and self.bounds[0] < value < self.bounds[1]:
+            return float(value)
+        remedy = ""
+        if is_number and self.bounds == (0.0, 1.0) and 1.0 < value < 100.0:
+            remedy = f"Give {value / 100.0:g} for {value:g} %."
+        raise InputError(where, value, self.allowed(), remedy)
 
     def _by_quantity(self, value: Mapping[str, Any], where: str) -> dict[str, float]:
         """Return tolerances by quantity in the order of QUANTITIES."""
@@ -137,11 +153,15 @@ class Option:
 
     def _word(self, value: Any, where: str) -> str:
         if not isinstance(value, str) or value not in self.values:
-            remedy = hint(value) if self.name == "outputs" else ""
+            remedy = ""
+            if self.name == "outputs":
+                remedy = hint(value)
             if remedy:
                 raise InputError(where, value, self.allowed(), remedy)
-            number = ("a relative tolerance such as 0.01",) * (self.kind == "accuracy")
-            raise unknown_name(where, value, (*self.values, *number))
+            allowed = tuple(self.values)
+            if self.kind == "accuracy":
+                allowed = (*self.values, "a relative tolerance such as 0.01")
+            raise unknown_name(where, value, allowed)
         return value
 
     def attribute(self, value: Any, contact_model: str) -> Any:
@@ -157,7 +177,9 @@ class Option:
         if isinstance(value, Mapping):
             return ", ".join(f"{name} {number:g}" for name, number in value.items())
         if self.kind in ("accuracy", "number"):
-            return value.name if hasattr(value, "name") else str(value)
+            if hasattr(value, "name"):
+                return value.name
+            return str(value)
         return value if self.applies(contact_model) else None
 
 
@@ -323,6 +345,9 @@ def options_text() -> str:
     for option in OPTIONS.values():
         kinds = {"number": "{:g}..{:g}".format(*option.bounds), "condition": "CONDITION", "switch": "true|false"}
         values = " | ".join(option.values) or kinds[option.kind]
-        default = ",".join(option.default) or "none" if isinstance(option.default, tuple) else option.default
+        if isinstance(option.default, tuple):
+            default = ",".join(option.default) or "none"
+        else:
+            default = option.default
         entries.append(f"{option.name}={values} ({default})")
     return ", ".join(entries)

@@ -52,8 +52,8 @@ def syntax_remedy(text: str) -> str:
     """Return what to write in a text that is no expression; '' if nothing is known."""
     if text.count("(") != text.count(")"):
         return "Close each bracket once."
-    found = (remedy for pattern, remedy in _SYNTAX.items() if re.search(pattern, text))
-    return next(found, "")
+    remedies = (remedy for pattern, remedy in _SYNTAX.items() if re.search(pattern, text))
+    return next(remedies, "")
 
 
 def not_allowed(node: ast.AST) -> tuple[str, str]:
@@ -71,8 +71,11 @@ def unknown_function(node: ast.Call, functions: Collection[str], field: str) -> 
     if (name in functions and isinstance(node.func, ast.Name)) or not isinstance(node.func, (ast.Name, ast.Attribute)):
         return None
     error = unknown_name(f"{field} (character {node.col_offset + 1})", name, functions)
-    instead = f"Write {name}(...) without a name before it." if name in functions else ""
-    instead = f"Write {_OTHER_NAMES[name]}." if _OTHER_NAMES.get(name) else instead
+    instead = ""
+    if name in functions:
+        instead = f"Write {name}(...) without a name before it."
+    if _OTHER_NAMES.get(name):
+        instead = f"Write {_OTHER_NAMES[name]}."
     return InputError(
         error.field,
         ast.unparse(node.func),
@@ -104,7 +107,9 @@ def check_tree(tree: ast.expr, text: str, field: str) -> None:
         raise InputError(field, text[:40] + "...", f"an expression of at most {MAX_DEPTH} levels", "Shorten it.")
     for call in ast.walk(tree):
         if isinstance(call, ast.Call) and isinstance(call.func, ast.Name) and call.func.id in TRIGONOMETRIC:
-            degrees = _unconverted(call.args[0]) if call.args else None
+            degrees = None
+            if call.args:
+                degrees = _unconverted(call.args[0])
             if degrees:
                 allowed = f"an angle in radians in {call.func.id}(); {degrees} is in degrees"
                 raise InputError(field, text, allowed, f"Write {call.func.id}(radians({degrees})).")

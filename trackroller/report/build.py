@@ -17,7 +17,8 @@ from trackroller.results.results import Results
 from trackroller.results.stored_study import open_as_reported, open_study
 from trackroller.study.store.crate import write_crate
 from trackroller.study.store.folder import StudyFolder, reporting
-from trackroller.study.store.manifest import REPORT, Manifest, put, replacing
+from trackroller.study.store.manifest import REPORT, Manifest
+from trackroller.study.store.put import put, replacing
 
 log = logging.getLogger("trackroller")
 UNFINISHED = "unfinished"  # folder for the pages of solved cases

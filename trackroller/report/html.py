@@ -18,7 +18,7 @@ import jinja2
 from markupsafe import Markup, escape
 
 from trackroller.errors import InputError, WorkError
-from trackroller.study.store.manifest import put, put_text
+from trackroller.study.store.put import put, put_text
 
 _KINDS = {".svg": "image/svg+xml", ".png": "image/png"}
 _BROWSERS = ("chromium", "chromium-browser", "google-chrome", "chrome", "msedge")

@@ -34,7 +34,7 @@ from trackroller.roller.dataset import FLAGS
 from trackroller.roller.duty import duty_of
 from trackroller.roller.output_names import PARTS
 from trackroller.study.outputs import flat, parts_in
-from trackroller.study.store.manifest import put, put_text
+from trackroller.study.store.put import put, put_text
 
 
 def export(tables: Sequence[Table], folder: Path) -> list[Path]:

@@ -63,7 +63,8 @@ def flags_of(ds: xr.Dataset) -> list[Flag]:
     bits, flags = int(ds["validity"]), []
     by_body = dict(zip(ds["body"].values, ds["validity_body"].values, strict=True)) if "validity_body" in ds else {}
     for name, flag in VALIDITY.items():
-        if bits & validity_bit(name):
+        lifeless = name == "deep_life" and int(ds["regime"]) != _ROLLING  # there is no life to extrapolate
+        if bits & validity_bit(name) and not lifeless:
             own = [body for body, mask in by_body.items() if flag.of_body and mask & validity_bit(name)]
             words = f"{flag.words} {of_body(name, ' and the '.join(own))}".rstrip()
             flags.append(Flag(name, f"{words[0].upper()}{words[1:]}.", flag.remedy))

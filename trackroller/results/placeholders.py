@@ -12,7 +12,6 @@ import xarray as xr
 
 from trackroller.damage import LIMITS
 from trackroller.errors import listing
-from trackroller.materials.properties import PROPERTIES
 from trackroller.results.answer import Caution, Column, Part
 from trackroller.roller.limit_notes import placeholders_of
 
@@ -23,6 +22,7 @@ COLUMNS = (
     Column("limit", "Limit", "", "limit that rests on it", "text"),
     Column("low", "Expected", "", "range in which the value is expected", until="high"),
     Column("units", "Unit", "", "unit of the range", "text"),
+    Column("guessed", "Guess", "", "whether the value has no source", "text"),
     Column("note", "Note", "", "what the database says of the value", "text"),
 )
 
@@ -36,7 +36,7 @@ def placeholders_part(ds: xr.Dataset) -> Part:
         Result of one case, of a spectrum, or of a roller that wears.
     """
     rows = [
-        _row(one.material, one.name, LIMITS[one.limit].word, one.low, one.high, one.units, one.note)
+        _row(one.material, one.name, "yes", one.note, LIMITS[one.limit].word, one.low, one.high, one.units)
         for one in placeholders_of(ds)
     ]
     stored = json.loads(str(ds.attrs.get("materials", "{}")))
@@ -45,7 +45,16 @@ def placeholders_part(ds: xr.Dataset) -> Part:
     return Part("placeholders", "Values that nobody has measured", table.drop_duplicates(ignore_index=True), COLUMNS)
 
 
-def _row(material: str, value: str, limit: str, low: float, high: float, units: str, note: str) -> dict[str, Any]:
+def _row(
+    material: str,
+    value: str,
+    guessed: str,
+    note: str,
+    limit: str = "",
+    low: float = np.nan,
+    high: float = np.nan,
+    units: str = "",
+) -> dict[str, Any]:
     return {
         "material": material,
         "value": value,
@@ -53,32 +62,39 @@ def _row(material: str, value: str, limit: str, low: float, high: float, units: 
         "low": low,
         "high": high,
         "units": units,
+        "guessed": guessed,
         "note": note,
     }
 
 
 def _notes(values: dict[str, Any]) -> Iterator[dict[str, Any]]:
-    """Yield what the database says against the values of one material, and what polymers need."""
+    """Yield what the database says against the values of one material, a row each, and what polymers need."""
     name = str(values.get("name", ""))
-    by_note: dict[str, list[str]] = {}
-    for key, note in values.get("notes", {}).items():
-        by_note.setdefault(note, []).append(PROPERTIES[key].symbol)
-    for note, symbols in by_note.items():
-        yield _row(name, listing(symbols), "", np.nan, np.nan, "", note)
-    for guess in values.get("guesses", ()):
-        yield _row(name, str(guess), "", np.nan, np.nan, "", "a guess without a source")
-    modulus = values.get("youngs_modulus")
-    if modulus is not None and float(modulus) < POLYMER:
+    notes, guesses = values.get("notes", {}), [str(one) for one in values.get("guesses", ())]
+    for key in dict.fromkeys((*notes, *guesses)):
+        yield _row(name, key, "yes" if key in guesses else "", notes.get(key, ""))
+    if _is_polymer(values):
         note = "values of a polymer depend on temperature and moisture: give those in use"
-        yield _row(name, "stiffness, strength, friction", "", np.nan, np.nan, "", note)
+        yield _row(name, "stiffness, strength, friction", "", note)
+
+
+def _is_polymer(values: dict[str, Any]) -> bool:
+    modulus = values.get("youngs_modulus")
+    return modulus is not None and float(modulus) < POLYMER
 
 
 def guess_cautions(part: Part, what: str = "") -> Iterator[Caution]:
-    """Yield one warning for each material with values that nobody has measured."""
+    """Yield one warning for each material in the table: how many guesses it has, limits on them, and whether notes."""
     for material, rows in part.table.groupby("material", sort=False):
-        limits = listing(list(dict.fromkeys(limit for limit in rows["limit"] if limit)))
-        by_note: dict[str, list[str]] = {}
-        for row in rows[rows["limit"] == ""].to_dict("records"):
-            by_note.setdefault(row["note"], []).append(row["value"].replace("_", " "))
-        notes = "; ".join(f"{listing(values)}: {note}" for note, values in by_note.items())
-        yield Caution("guessed", 1, 1, f"{material}: {'; '.join(text for text in (limits, notes) if text)}", what)
+        guesses = rows[rows["guessed"] == "yes"]
+        texts = []
+        number = guesses["value"].nunique()
+        if number:
+            texts.append("1 value" if number == 1 else f"{number} values")
+        limits = list(dict.fromkeys(limit for limit in guesses["limit"] if limit))
+        if limits:
+            verb = "rests" if len(limits) == 1 else "rest"
+            texts.append(f"{listing(limits)} {verb} on {'it' if number == 1 else 'them'}")
+        if len(guesses) < len(rows):
+            texts.append("see its notes")
+        yield Caution("guessed", 1, 1, f"{material}: {'; '.join(texts)}", what)

@@ -3,21 +3,22 @@
 Keys of `Answer.headline`: `low`, `high` (life to the first limit [h]), `ends` (words of the limits that may come
 first), `body`, `extrapolated`, `guessed`, `unknown` (body whose hours are not known), `exceeded` and `broken` (lists of
 {limit, body, use [1], hours}, the worst one first), `open` (list of {limit, body}), `axial_low`, `axial_high`,
-`motor_low`, `motor_high` (forces between which the roller rolls [N]), `not_judged` (reasons), `state` (of the required
-life: `met`, `open`, `missed` or '').
+`motor_low`, `motor_high` (forces between which the roller rolls [N]), `not_judged` (reasons), `unrated` (bodies whose
+life by fatigue is not known at the failure probability, because their materials have no scatter), `states` (of each
+requirement: `met`, `open` or `missed`), `state` (of all of them; '' without a requirement).
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
 import pandas as pd
 import xarray as xr
 
-from trackroller.damage import judged, limit_word
+from trackroller.damage import LIMITS, judged, limit_word, wear
 from trackroller.damage.limit import OF_GUIDE
 from trackroller.damage.verdict import STATES
 from trackroller.damage.wear import KM_PER_HOUR
@@ -116,7 +117,7 @@ def answer_of_roller(ds: xr.Dataset, ranges: Limits | None = None) -> Answer:
     return Answer(
         question="roller",
         kind=_kind(ds, own, first),
-        headline=_headline(ds, own, first, ranges, required),
+        headline=_headline(ds, own, first, ranges) | _states(ds, first, required),
         output=(FIRST_LIMIT[0], "life to the limit", "h"),
         table=_table(ds, own, required),
         columns=_columns(ds, own),
@@ -186,13 +187,13 @@ def _kind(ds: xr.Dataset, own: Sequence[Margin], first: First | None) -> str:
     return "no_life" if first is None else "lasts"
 
 
-def _headline(
-    ds: xr.Dataset, own: Sequence[Margin], first: First | None, ranges: Limits, required: Sequence[Required]
-) -> dict[str, Any]:
+def _headline(ds: xr.Dataset, own: Sequence[Margin], first: First | None, ranges: Limits) -> dict[str, Any]:
     """Return the numbers and names of the headline."""
     regime = REGIMES[int(ds["regime"])]
     skipped = {"full_slip": ("full_slip",), "lift_off": ("lift_off", "lift_off_friction")}.get(regime, ())
-    over = [one for one in own if one.state == "exceeded" and not one.breaks and one.name not in skipped]
+    # the use of wear is a required travel over its life, which is a requirement
+    checks = [one for one in own if one.name not in (*skipped, wear.LIMIT.name) and not one.breaks]
+    over = [one for one in checks if one.state == "exceeded"]
     over.sort(key=lambda one: 0.0 if math.isnan(one.used) else -one.used)
     unknown = any(m.timed and not m.beside and math.isnan(m.hours) and m.body == "guide" for m in own)
     head: dict[str, Any] = {
@@ -203,27 +204,52 @@ def _headline(
         "extrapolated": False,
         "guessed": False,
         "unknown": "guide" if unknown else "",
+        "unrated": _unrated(ds),
         "broken": [_use(one) for one in own if one.breaks],
         "exceeded": [_use(one) for one in over],
-        "open": [{"limit": one.word, "body": one.body} for one in own if one.state == "open" and not one.beside],
+        "open": [{"limit": one.word, "body": one.body} for one in checks if one.state == "open" and not one.beside],
         "axial_low": ranges.axial_force[0],
         "axial_high": ranges.axial_force[1],
         "motor_low": ranges.motor_force[0],
         "motor_high": ranges.motor_force[1],
         "not_judged": not_judged(ds),
-        "state": "",
     }
     if first is None:
         return head
-    least = max([one.least for one in required if one.output in OF_PAIR], default=-math.inf)
     head |= {"low": first.low, "high": first.high, "ends": list(first.words), "body": first.body}
-    head |= {"extrapolated": first.beyond, "guessed": any(margin.guessed for margin in first.margins)}
-    if math.isfinite(least):
-        head["state"] = _state(first.low, first.high, least)
-    return head
+    return head | {"extrapolated": first.beyond, "guessed": any(margin.guessed for margin in first.margins)}
 
 
-def _state(low: float, high: float, least: float) -> str:
+def _unrated(ds: xr.Dataset) -> list[str]:
+    """Return the bodies without a life by fatigue at the failure probability, because the scatter is not known."""
+    if "limit_state" not in ds or REGIMES[int(ds["regime"])] in STOPPED:
+        return []
+    lacks = [one.material for one in lacks_of(ds) if (one.limit, one.name) == ("fatigue", "scatter_in_cycles")]
+    return [body for body in BODIES if material_name(ds, body) in lacks]
+
+
+def _states(ds: xr.Dataset, first: First | None, required: Sequence[Required]) -> dict[str, Any]:
+    """Return whether each requirement is met, and whether all are."""
+    states = [_state_of(ds, first, one) for one in required]
+    worst = [state for state in ("missed", "open", "met") if state in states]
+    return {"states": states, "state": worst[0] if worst else ""}
+
+
+def _state_of(ds: xr.Dataset, first: First | None, required: Required) -> str:
+    """Return whether a requirement is met; that of the pair counts its life to the first limit."""
+    if required.output not in OF_PAIR:
+        state = str(_required_row(ds, required)["state"])
+        return {"kept": "met", "exceeded": "missed"}.get(state, "open")
+    if first is None:
+        return "open"
+    state = state_of_life(first.low, first.high, required.least)
+    if math.isfinite(required.most) and state != "missed":
+        shorter = state_of_life(-first.high, -first.low, -required.most)
+        state = shorter if state == "met" else {"missed": "missed"}.get(shorter, "open")
+    return "open" if state == "met" and _unrated(ds) else state
+
+
+def state_of_life(low: float, high: float, least: float) -> str:
     """Return whether a life within a range reaches what is required."""
     if low >= least:
         return "met"
@@ -282,7 +308,7 @@ def _row(margin: Margin, least: float) -> dict[str, Any]:
     high = 0.0 if margin.breaks else margin.high
     state = margin.state
     if margin.ends and state != "exceeded" and math.isfinite(least):
-        state = {"met": state, "open": "open", "missed": "missed"}[_state(low, high, least)]
+        state = {"met": state, "open": "open", "missed": "missed"}[state_of_life(low, high, least)]
     if margin.lifeless:
         state = "none"
     elif state == "kept" and margin.used > 1.0:
@@ -404,12 +430,15 @@ def quantity_words(name: str) -> str:
     return f"{words} {symbol}" if symbol.replace("_", "").isalnum() else words
 
 
-def checks_left_out(ds: xr.Dataset) -> dict[str, tuple[str, ...]]:
-    """Return the limits that were not checked for each body, each with what it lacks in brackets."""
+def checks_left_out(ds: xr.Dataset, known: Collection[str] = ()) -> dict[str, tuple[str, ...]]:
+    """Return the limits that were not checked for each body, each with what it lacks in brackets.
+
+    Limits in `known` are checked by other values than those of the result.
+    """
     if ds["regime"].ndim == 0 and REGIMES[int(ds["regime"])] == "failed":
         return {}
     found: dict[str, list[str]] = {body: [] for body in BODIES}
-    for limit in judged():
+    for limit in (one for one in judged() if one.name not in known):
         for body in limit.bodies:
             why = ", ".join(_missing(ds, limit.name, body))
             if not _is_known(ds, limit.name, body):
@@ -433,8 +462,9 @@ def _is_known(ds: xr.Dataset, name: str, body: str) -> bool:
 
 
 def _lacks_hours(ds: xr.Dataset, name: str, body: str) -> bool:
-    """Return whether a limit has a use, and no hours."""
-    return "life_hours_by_limit" in ds and bool(ds["life_hours_by_limit"].sel(limit=name, body=body).isnull())
+    """Return whether a limit that has hours has a use alone."""
+    lives = any(variable.units in ("h", "km") for variable in LIMITS[name].results)
+    return lives and "life_hours_by_limit" in ds and bool(ds["life_hours_by_limit"].sel(limit=name, body=body).isnull())
 
 
 def _missing(ds: xr.Dataset, name: str, body: str) -> list[str]:
@@ -514,10 +544,23 @@ def _caution(code: str, where: str) -> Caution:
 def _second_models(own: Sequence[Margin], first: First | None) -> Iterable[Caution]:
     """Yield the second models that are exceeded, or reached before the first limit."""
     for margin in own:
-        sooner = first is not None and not math.isnan(margin.hours) and margin.high < first.low
+        sooner = not math.isnan(margin.hours) and (first is None or margin.high < first.low)
         if margin.beside and (margin.state == "exceeded" or sooner):
-            hours = f", {margin.low:.3g} to {margin.high:.3g} h" if not math.isnan(margin.hours) else ""
-            yield _caution("second_model", f"{margin.word} of the {margin.body}: {100 * margin.used:.3g} % used{hours}")
+            used = f"{margin.word} of the {margin.body}: {100 * margin.used:.3g} % used"
+            yield _caution("second_model", f"{used}{_hours_text(margin)}")
+
+
+def _hours_text(margin: Margin) -> str:
+    """Return the hours to a limit with both ends of their range; an empty text where they are not known."""
+    if math.isnan(margin.hours):
+        return ""
+    ends = dict.fromkeys((rounded_text(margin.low), rounded_text(margin.high)))
+    return f", {' to '.join(ends)} h"
+
+
+def rounded_text(value: float) -> str:
+    """Return a number with three figures, as a warning states it."""
+    return f"{float(f'{value:.3g}'):,g}"
 
 
 def beyond_tests(ds: xr.Dataset) -> list[str]:

@@ -53,13 +53,17 @@ def overridden(values: Mapping[str, Any], given: Mapping[str, Any]) -> dict[str,
         if name in values:
             radius(name, values[name])
     instead = {*given, *(RADII if "axis_distance" in given else ())}
-    instead |= {"axis_distance"} if set(RADII) & set(given) else set()
+    if set(RADII) & set(given):
+        instead |= {"axis_distance"}
+    else:
+        instead |= set()
     return renamed({name: value for name, value in values.items() if ALIASES.get(name, name) not in instead}) | given
 
 
 def radius(name: str, value: Any, where: str = "") -> float:
     """Return an outer radius or the depth of a groove [mm]."""
-    field, allowed = f"{where}{name}", f"a length > 0 in mm, the {name.replace('_', ' ')} of the roller"
+    field = f"{where}{name}"
+    allowed = f"a length > 0 in mm, the {name.replace('_', ' ')} of the roller"
     return number_in(value, field, allowed, math.nextafter(0.0, 1.0), PARAMETERS["axis_distance"].upper, "mm")
 
 
@@ -95,10 +99,14 @@ def with_axis_distance(values: Mapping[str, Any], number: Any) -> dict[str, Any]
     """
     if not check_radii(values):
         return dict(values)
-    known, wrong = {}, Collector()
+    known = {}
+    wrong = Collector()
     for name in (*RADII, "guide_profile_radius", "roller_profile_radius", "contact_angle"):
         with wrong.part():
-            known[name] = radius(name, values[name]) if name in RADII else number(name, values.get(name, EXAMPLE[name]))
+            if name in RADII:
+                known[name] = radius(name, values[name])
+            else:
+                known[name] = number(name, values.get(name, EXAMPLE[name]))
     wrong.check()
     axis = float(expressions.evaluate(AXIS_DISTANCE, known))
     if not math.isfinite(axis):
@@ -117,24 +125,28 @@ def study_with_radii(data: Mapping[str, Any], wrong: Collector) -> dict[str, Any
     The two become factors of the study, also if they stand in `base`, and the expression `AXIS_DISTANCE` uses them.
     `wrong` collects the errors; aliases and radii that are wrong are left out.
     """
-    parts: list[Any] = [{} if data.get(key) is None else data[key] for key in ("base", "factors")]
-    base, factors = (dict(part) if isinstance(part, Mapping) else part for part in parts)
-    if not isinstance(base, dict) or not isinstance(factors, dict):
+    sections: dict[str, Any] = {"base": {}, "factors": {}}
+    sections |= {key: data[key] for key in sections if data.get(key) is not None}
+    if not all(isinstance(part, Mapping) for part in sections.values()):
         return dict(data)
-    sections = {"base": base, "factors": factors}
     for section, part in sections.items():
         sections[section] = {name: value for name, value in part.items() if name not in ALIASES}
         with wrong.part(section):
             sections[section] = renamed(part)
     base, factors = sections.values()
     derived = {"expression": AXIS_DISTANCE}
-    own = {name: value for name, value in factors.items() if name != "axis_distance" or value != derived}
+    of_user = {name: value for name, value in factors.items() if name != "axis_distance" or value != derived}
     before = len(wrong.errors)
     with wrong.part():
-        if check_radii({**base, **own}):
+        if check_radii({**base, **of_user}):
             given = {name: {"values": [radius(name, base[name], "base.")]} for name in RADII if name in base}
             factors = given | factors | {"axis_distance": derived}
             base = {name: value for name, value in base.items() if name not in RADII}
     if len(wrong.errors) > before:
         base, factors = ({name: part[name] for name in part if name not in RADII} for part in (base, factors))
-    return {**data, **({"base": base} if base else {}), **({"factors": factors} if factors else {})}
+    out = dict(data)
+    if base:
+        out["base"] = base
+    if factors:
+        out["factors"] = factors
+    return out

@@ -87,14 +87,18 @@ def doubts(values: Mapping[str, Any], materials: Iterable[Material] = ()) -> lis
     for name, usual in USUAL.items():
         given = np.ravel(values.get(name, math.nan)).tolist()  # a friction coefficient may be a word
         numbers = [float(v) for v in given if isinstance(v, (int, float)) and math.isfinite(v) and v != 0.0]
-        places = (max, *(() if name in FROM_ZERO else (min,)))
-        ends = {place(numbers, key=abs) for place in places} if numbers else ()
+        ends = set()
+        if numbers:
+            ends.add(max(numbers, key=abs))
+        if numbers and name not in FROM_ZERO:
+            ends.add(min(numbers, key=abs))
         sentences += [text for number in ends if (text := _unusual(name, number, PARAMETERS[name].unit, usual, ""))]
     for material in {m.name: m for m in materials}.values():
         for name, usual in OF_FAMILY.get(material.family, {}).items():
             number = getattr(material, name)
             kind = f" for the family {material.family} (material '{material.name}')"
-            sentences += [_unusual(name, number, PROPERTIES[name].unit, usual, kind)] if number is not None else []
+            if number is not None:
+                sentences += [_unusual(name, number, PROPERTIES[name].unit, usual, kind)]
         sentences += [_exponent(material, name) for name in ("woehler_exponent", "second_exponent")]
     sentences += ratings(values)
     guide_radii = _numbers(values.get("guide_profile_radius", EXAMPLE["guide_profile_radius"]))
@@ -115,13 +119,19 @@ def doubts_of_case(case: Case, database: MaterialDatabase) -> list[str]:
 def _unusual(name: str, number: float, unit: str, usual: tuple[float, float], kind: str) -> str:
     """Return the sentence about an unusual number, '' for a usual one."""
     low, high = usual
-    size, shown = abs(number), "" if unit == "-" else f" {unit}"
+    size = abs(number)
+    shown = "" if unit == "-" else f" {unit}"
     if low <= size <= high:
         return ""
-    off = f"{low / size:.3g} times below" if size < low else f"{size / high:.3g} times above"
+    if size < low:
+        off = f"{low / size:.3g} times below"
+    else:
+        off = f"{size / high:.3g} times above"
     meant = [(in_unit(number, other, unit, name), other) for other in OTHER_UNITS.get(unit, ())]
     likely = [f"write '{number:g} {other}' or {value:g}" for value, other in meant if low <= abs(value) <= high]
-    ask = f"; if {likely[0].split(chr(39))[1]} is meant, {likely[0]}" if likely else ""
+    ask = ""
+    if likely:
+        ask = f"; if {likely[0].split(chr(39))[1]} is meant, {likely[0]}"
     return f"{name} = {number:g}{shown} is {off} the usual {low:g} to {high:g}{shown}{kind}{ask}."
 
 
@@ -130,8 +140,13 @@ def _exponent(material: Material, name: str) -> str:
     k = getattr(material, name)
     if not isinstance(k, (int, float)) or EXPONENT[0] <= k <= EXPONENT[1] or math.isinf(k):
         return ""
-    off = f"below the usual {EXPONENT[0]:g}" if k < EXPONENT[0] else f"above the usual {EXPONENT[1]:g}"
-    ask = f"; if b is meant, k = 1/b: write {1.0 / k:.3g}" if k < EXPONENT[0] else ""
+    if k < EXPONENT[0]:
+        off = f"below the usual {EXPONENT[0]:g}"
+    else:
+        off = f"above the usual {EXPONENT[1]:g}"
+    ask = ""
+    if k < EXPONENT[0]:
+        ask = f"; if b is meant, k = 1/b: write {1.0 / k:.3g}"
     return f"{name} = {k:.4g} of the material '{material.name}' is {off}{ask}."
 
 
@@ -167,8 +182,10 @@ def _of_points(name: str, profile: Mapping[str, Any], guide_radius: float) -> li
         return []
     points = np.asarray(profile["points"], dtype=float)
     order = in_order(points)
-    found, steps = examined(*points[order].T), np.sign(np.diff(points[:, 0]))
-    sentences, width = [], float(np.ptp(points[:, 0]))
+    findings = examined(*points[order].T)
+    steps = np.sign(np.diff(points[:, 0]))
+    sentences = []
+    width = float(np.ptp(points[:, 0]))
     low, high = (size * guide_radius for size in MEASURED_WIDTH)
     if width < low or width > high:
         sentences.append(
@@ -179,48 +196,64 @@ def _of_points(name: str, profile: Mapping[str, Any], guide_radius: float) -> li
         sentences.append(
             f"{name}: {len(points) - len(order)} of its {len(points)} points stand twice; each counts once."
         )
-    if np.any(steps < 0):
-        way = "run from large to small x" if np.all(steps <= 0) else "do not run in one direction"
-        sentences.append(f"{name}: its points {way}; they were sorted by x.")
-    sentences += [f"{name}: {text}" for text in _gaps_and_waves(points[order], found)]
-    for run in found.at_ends:
+    if np.all(steps <= 0) and np.any(steps < 0):
+        sentences.append(f"{name}: its points run from large to small x; they were sorted by x.")
+    elif np.any(steps < 0):
+        sentences.append(f"{name}: its points do not run in one direction; they were sorted by x.")
+    sentences += [f"{name}: {text}" for text in _gaps_and_waves(points[order], findings)]
+    for run in findings.at_ends:
         ends = " to ".join(f"({px:.4g}, {pz:.4g})" for px, pz in points[order][[run.first, run.last]])
         sentences.append(
             f"{name}: its outermost points {ends} lie {1e3 * run.off:.2g} µm off the curve of the points beside them; "
             "if they are a speck, leave them out."
         )
     if profile.get("smooth"):
-        if found.error_if_smoothed >= UNSURE:
-            sentences.append(
-                f"{name}: its points scatter by {1e3 * found.scatter:.2g} µm at distances of {found.spacing:.2g} mm; "
-                f"after smoothing, the pressure is wrong by about {100 * found.error_if_smoothed:.0f} %. Measure with "
-                "less noise, or describe the shape by its radii (arc, arcs)."
-            )
-        return sentences
-    if found.runs or found.jumps:
+        return sentences + _error_of_smoothing(name, findings)
+    return sentences + _scatter_as_shape(name, findings, "smooth" in profile)
+
+
+def _error_of_smoothing(name: str, findings: Findings) -> list[str]:
+    """Return a sentence about points that scatter too much to be smoothed."""
+    if findings.error_if_smoothed < UNSURE:
+        return []
+    return [
+        f"{name}: its points scatter by {1e3 * findings.scatter:.2g} µm at distances of {findings.spacing:.2g} mm; "
+        f"after smoothing, the pressure is wrong by about {100 * findings.error_if_smoothed:.0f} %. Measure with "
+        "less noise, or describe the shape by its radii (arc, arcs)."
+    ]
+
+
+def _scatter_as_shape(name: str, findings: Findings, meant: bool) -> list[str]:
+    """Return sentences about scatter that counts as shape; `meant` says that the profile has `smooth: 0`."""
+    sentences = []
+    if findings.runs or findings.jumps:
         sentences.append(f"{name}: points lie off their neighbours, and smooth: 0 takes them as shape.")
-    meant = "smooth" in profile  # kept only where it matters
-    if found.roughness >= (MISLEADING if meant else TOLD):
-        noise = f"{1e3 * found.scatter:.2g}"
+    least = TOLD
+    remedy = "add smooth: auto, or smooth: 0 if it is meant"
+    if meant:
+        least = MISLEADING
+        remedy = "add smooth: auto"
+    if findings.roughness >= least:
+        noise = f"{1e3 * findings.scatter:.2g}"
         sentences.append(
             f"{name}: its points scatter by {noise} µm (noise or rounding) and are not smoothed, so that the scatter "
-            f"counts as shape and can raise the pressure by {found.pressure_rise}; add smooth: "
-            f"auto{'' if meant else ', or smooth: 0 if it is meant'}."
+            f"counts as shape and can raise the pressure by {findings.pressure_rise}; {remedy}."
         )
     return sentences
 
 
-def _gaps_and_waves(points: np.ndarray, found: Findings) -> list[str]:
+def _gaps_and_waves(points: np.ndarray, findings: Findings) -> list[str]:
     """Return sentences about a length without points, and about waves that count as shape."""
-    sentences, (x, z) = [], points.T
+    sentences = []
+    x, z = points.T
     place = gap(x)
     if place is not None:
         sentences.append(
             f"no points lie between x = {x[place]:.4g} and {x[place + 1]:.4g} mm, and their usual distance is "
-            f"{found.spacing:.2g} mm; the curve there is only guessed. Measure this part if the bodies touch there."
+            f"{findings.spacing:.2g} mm; the curve there is only guessed. Measure this part if the bodies touch there."
         )
-    wave = waves(x, z, found.scatter)
-    if wave is not None and not found.runs:
+    wave = waves(x, z, findings.scatter)
+    if wave is not None and not findings.runs:
         height = f"{1e3 * wave.height:.2g}"
         sentences.append(
             f"its curvature goes to and fro {wave.turns} times, as waves of ± {height} µm and {wave.length:.2g} mm "
@@ -234,7 +267,10 @@ def _axles_in_the_rail(values: Mapping[str, Any]) -> list[str]:
     axes = _numbers(values.get("axis_distance", EXAMPLE["axis_distance"]))
     radii = _numbers(values.get("guide_profile_radius", EXAMPLE["guide_profile_radius"]))
     same = len(axes) == len(radii)  # a study has a row for each case
-    pairs = zip(axes, radii, strict=True) if same else ((axis, radius) for axis in axes for radius in radii)
+    if same:
+        pairs = list(zip(axes, radii, strict=True))
+    else:
+        pairs = [(axis, radius) for axis in axes for radius in radii]
     inside = [(axis, radius) for axis, radius in pairs if axis <= radius]
     return [
         f"axis_distance = {axis:.4g} mm does not exceed guide_profile_radius = {radius:.4g} mm: the axle lies inside "
@@ -254,12 +290,17 @@ def _touching_elsewhere(values: Mapping[str, Any]) -> list[str]:
     for profile in _mappings(values.get("roller_profile")):
         if "points" not in profile:
             continue
-        texts = [json.dumps(one) if one else "" for one in (guides[0], {"frame": "section", **profile})]
-        found = touching_place(texts[0], texts[1], radii[0])
-        if found is None or abs(found[1] - angles[0]) <= TURNED:
+        guide = ""
+        if guides[0]:
+            guide = json.dumps(guides[0])
+        touching = touching_place(guide, json.dumps({"frame": "section", **profile}), radii[0])
+        if touching is None or abs(touching[1] - angles[0]) <= TURNED:
             continue
-        place, angle = found
-        where = "in the middle" if place == 0.0 else f"{place:.3g} mm from the middle, at {angle:.3g} deg"
+        place, angle = touching
+        if place == 0.0:
+            where = "in the middle"
+        else:
+            where = f"{place:.3g} mm from the middle, at {angle:.3g} deg"
         sentences.append(
             f"roller_profile: as drawn, groove and guide touch {where}, and not at the contact_angle of "
             f"{angles[0]:g} deg, where they are solved. A groove with two contacts has two arcs: draw it so, correct "
@@ -275,23 +316,31 @@ def _convex_rollers(values: Mapping[str, Any]) -> list[str]:
     if not guides:
         return []
     same = len(guides) == len(rollers)  # a study has a row for each case
-    pairs = zip(guides, rollers, strict=True) if same else ((one, other) for one in guides[:1] for other in rollers)
+    pairs = [(guides[0], roller) for roller in rollers]
+    if same:
+        pairs = list(zip(guides, rollers, strict=True))
     like = {other: other / one for one, other in pairs if one < other <= LIKE_A_GROOVE * one}
-    found = [("roller_profile_radius", radius, ratio, f"write -{radius:g}") for radius, ratio in like.items()]
+    radii = [("roller_profile_radius", radius, ratio, f"write -{radius:g}") for radius, ratio in like.items()]
     for profile in _mappings(values.get("roller_profile")):
         radius, remedy = _convex_radius(profile)
         if guides[0] < radius <= LIKE_A_GROOVE * guides[0]:
-            found.append(("roller_profile", radius, radius / guides[0], remedy))
+            radii.append(("roller_profile", radius, radius / guides[0], remedy))
     return [
         f"{name}: a radius of {radius:.4g} mm is that of a convex roller, and {ratio:.3g} times that of the guide, as "
         f"grooves have; if a groove is meant, {remedy}."
-        for name, radius, ratio, remedy in found[:1]
+        for name, radius, ratio, remedy in radii[:1]
     ]
 
 
 def _numbers(given: Any) -> list[float]:
     """Return the finite numbers of a value of `doubts`; other values become NaN."""
-    return [float(v) if isinstance(v, (int, float)) else math.nan for v in np.ravel(given).tolist()]
+    numbers = []
+    for value in np.ravel(given).tolist():
+        if isinstance(value, (int, float)):
+            numbers.append(float(value))
+        else:
+            numbers.append(math.nan)
+    return numbers
 
 
 def _convex_radius(profile: Mapping[str, Any]) -> tuple[float, str]:

@@ -58,7 +58,8 @@ def checked_duty(value: Any) -> dict[str, float]:
     if not any(key in value for key in STROKES):
         return FIELD.canonical(every_day)
     if "hours_per_day" in value:
-        allowed, wrong = "either hours_per_day, or strokes_per_day and stroke", "stands beside strokes, which give it"
+        allowed = "either hours_per_day, or strokes_per_day and stroke"
+        wrong = "stands beside strokes, which give it"
         remedy = "Remove hours_per_day, or the strokes."
         raise InputError("duty.hours_per_day", value["hours_per_day"], allowed, remedy, wrong)
     duty = OF_STROKES.canonical(every_day)
@@ -175,9 +176,13 @@ def years(hours: Any, duty: Mapping[str, float]) -> Any:
 
 def with_duty(ds: xr.Dataset, duty: Mapping[str, float] | None) -> xr.Dataset:
     """Return the result of one case or spectrum with its duty as attribute; without a duty as it is."""
-    return ds if duty is None else ds.assign_attrs({ATTRIBUTE: json.dumps(duty)})
+    if duty is None:
+        return ds
+    return ds.assign_attrs({ATTRIBUTE: json.dumps(duty)})
 
 
 def duty_of(ds: xr.Dataset) -> dict[str, float] | None:
     """Return the duty that the result of one case or spectrum was solved with, None if it has none."""
-    return json.loads(ds.attrs[ATTRIBUTE]) if ATTRIBUTE in ds.attrs else None
+    if ATTRIBUTE in ds.attrs:
+        return json.loads(ds.attrs[ATTRIBUTE])
+    return None

@@ -55,7 +55,9 @@ def mapping_text(name: str, value: Any) -> str:
         try:
             value = json.loads(value)
         except ValueError:
-            remedy = f"Write {name}: {{file: {value}}} for a file of points." if name.endswith("_profile") else ""
+            remedy = ""
+            if name.endswith("_profile"):
+                remedy = f"Write {name}: {{file: {value}}} for a file of points."
             raise InputError(name, value, "a mapping, or one written as JSON", remedy) from None
     if not isinstance(value, Mapping):
         raise InputError(name, value, "a mapping, or not given")
@@ -65,7 +67,9 @@ def mapping_text(name: str, value: Any) -> str:
         mapping = _with_name(name, value)
     else:
         mapping = profiles.canonical(value, name, read_points)
-    return json.dumps(mapping, sort_keys=True) if mapping else ""
+    if mapping:
+        return json.dumps(mapping, sort_keys=True)
+    return ""
 
 
 def _with_name(field: str, value: Mapping[str, Any]) -> dict[str, Any]:
@@ -108,8 +112,12 @@ def number(name: str, value: Any) -> float:
 
 def own_friction(law: Any) -> float:
     """Return the friction at rest of a case without friction coefficient: that of its law's table, or the default."""
-    own = friction_laws.at_rest(law) if isinstance(law, (str, Mapping)) and law else None
-    return EXAMPLE["friction_coefficient"] if own is None else own
+    own = None
+    if isinstance(law, (str, Mapping)) and law:
+        own = friction_laws.at_rest(law)
+    if own is None:
+        return EXAMPLE["friction_coefficient"]
+    return own
 
 
 def own_frictions(laws: np.ndarray) -> np.ndarray:

@@ -83,7 +83,10 @@ def checked_log(value: Any) -> dict[str, Any]:
 
 def _cells(value: Any) -> list[str]:
     """Return the cells that stand for no value as texts."""
-    cells = value if isinstance(value, Sequence) and not isinstance(value, str) else [value]
+    if isinstance(value, Sequence) and not isinstance(value, str):
+        cells = value
+    else:
+        cells = [value]
     if any(isinstance(cell, bool) or not isinstance(cell, (str, int, float)) for cell in cells):
         raise InputError("log.missing", value, "a list of numbers and texts", "Write log: {missing: [-9999, NaN]}.")
     return [str(cell).strip() for cell in cells]

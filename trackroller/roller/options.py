@@ -58,7 +58,10 @@ class Options(_Fields):  # type: ignore[misc, valid-type]
         """Return the discretisation of each stage; stages outside the walk of a tolerance take that of the default."""
         if isinstance(self.accuracy, Accuracy):
             return self.accuracy
-        rung = OPTIONS["accuracy"].default if self.tolerance is not None else self.accuracy
+        if self.tolerance is not None:
+            rung = OPTIONS["accuracy"].default
+        else:
+            rung = self.accuracy
         return settings_of(rung, DECLARED[self.contact_model].rough_peaks)
 
     @property
@@ -201,4 +204,6 @@ def model_in_use(options: Options, friction_law: str) -> str:
         return own.name
     other = DECLARED[own.cheaper]
     serves = options.normal in other.normals and set(options.slip_terms) <= set(other.slip_terms)
-    return other.name if serves and (other.friction_laws or law_of(friction_law).is_constant) else own.name
+    if serves and (other.friction_laws or law_of(friction_law).is_constant):
+        return other.name
+    return own.name

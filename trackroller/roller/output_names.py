@@ -54,12 +54,17 @@ class Part:
         words = self.variable.label or self.variable.long_name
         body, contact, limit = (self.at.get(dim, "") for dim in PLACES)
         if body:
-            words = words.replace("the body", f"the {body}") if "the body" in words else f"{words} of the {body}"
+            if "the body" in words:
+                words = words.replace("the body", f"the {body}")
+            else:
+                words = f"{words} of the {body}"
         if contact:
             words += f" in contact {contact}"
         elif self.variable.joined == "sum":
             words += " of both contacts"
-        return f"{words}: {LIMITS[limit].title}" if limit in LIMITS else words
+        if limit in LIMITS:
+            return f"{words}: {LIMITS[limit].title}"
+        return words
 
     @property
     def of(self) -> str:
@@ -74,7 +79,9 @@ class Part:
         KeyError
             If the data set lacks the variable, or the contact, body or limit.
         """
-        place: dict[str, Any] = {dim: int(key) if dim == "contact" else key for dim, key in self.at.items()}
+        place: dict[str, Any] = dict(self.at)
+        if "contact" in place:
+            place["contact"] = int(place["contact"])
         part = ds[self.variable.name].sel(place, drop=True)
         if "contact" not in part.dims:
             return part
@@ -96,7 +103,9 @@ def parts_of(variable: Variable, limits: Iterable[Limit] = tuple(LIMITS.values()
         return
     contacts: tuple[str, ...] = ("",)
     if "contact" in variable.dims:
-        contacts = ("", *CONTACTS) if variable.joined else CONTACTS
+        contacts = CONTACTS
+        if variable.joined:
+            contacts = ("", *CONTACTS)
     bodies = BODIES if "body" in variable.dims else ("",)
     places = itertools.product(bodies, contacts)
     for body, contact in sorted(places, key=lambda place: bool(place[1])):
@@ -118,9 +127,11 @@ def declared(name: str) -> Variable:
     """
     if name in PARTS:
         return PARTS[name].variable
-    life = "life" in name
-    unknown = Variable(name, "", (), "1", "", name, scale="log10" if life else "natural", life=life)
-    return VARIABLES.get(name, unknown)
+    if name in VARIABLES:
+        return VARIABLES[name]
+    if "life" in name:
+        return Variable(name, "", (), "1", "", name, scale="log10", life=True)
+    return Variable(name, "", (), "1", "", name, scale="natural", life=False)
 
 
 def is_life(name: str) -> bool:
@@ -130,15 +141,19 @@ def is_life(name: str) -> bool:
 
 def body_of(name: str) -> str:
     """Return `roller` or `guide`, whose value a result is; an empty text for any other result."""
-    of = PARTS[name].of if name in PARTS else declared(name).of
+    if name in PARTS:
+        of = PARTS[name].of
+    else:
+        of = declared(name).of
     return of if of in BODIES else ""
 
 
 def pair_first(lives: Iterable[str]) -> list[str]:
     """Return lives, those of the pair first, then those of the roller."""
-    order = ("pair", "roller")
-    of = {name: PARTS[name].of if name in PARTS else "" for name in lives}
-    return sorted(of, key=lambda name: order.index(of[name]) if of[name] in order else len(order))
+    ranks = dict.fromkeys(lives, 2)
+    for name in ranks.keys() & PARTS.keys():
+        ranks[name] = {"pair": 0, "roller": 1}.get(PARTS[name].of, 2)
+    return sorted(ranks, key=ranks.__getitem__)
 
 
 def unit_of(name: str) -> str | None:
@@ -147,4 +162,6 @@ def unit_of(name: str) -> str | None:
         return PARTS[name].variable.units
     if name in VARIABLES:
         return VARIABLES[name].units
-    return PARAMETERS[name].unit if name in PARAMETERS else None
+    if name in PARAMETERS:
+        return PARAMETERS[name].unit
+    return None

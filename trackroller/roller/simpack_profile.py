@@ -137,7 +137,9 @@ class _Profile:
         if per_metre > 0.0:
             return 1000.0 / per_metre
         line = self.stated.get("units.len.f")
-        wrong = "ends a profile without unit" if line is None else "is no positive number"
+        wrong = "is no positive number"
+        if line is None:
+            wrong = "ends a profile without unit"
         allowed = "a setting units.len.f, the units in a metre"
         raise self._refused(line or self.last, wrong, allowed, "Write units.len.f = 1000 for mm.")
 

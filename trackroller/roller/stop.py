@@ -36,12 +36,16 @@ LEFT = (*_RESULTS, *(name for name, part in PARTS.items() if part.variable.name 
 
 def compared(comparison: Comparison) -> str:
     """Return the variable on the left side of a comparison."""
-    return PARTS[comparison.name].variable.name if comparison.name in PARTS else comparison.name
+    if comparison.name in PARTS:
+        return PARTS[comparison.name].variable.name
+    return comparison.name
 
 
 def stops_at(text: str | None) -> set[str]:
     """Return the variables that a condition compares; none without a condition."""
-    return set() if text is None else {compared(part) for part in parse_condition(text)}
+    if text is None:
+        return set()
+    return {compared(part) for part in parse_condition(text)}
 
 
 @lru_cache(maxsize=64)
@@ -74,8 +78,10 @@ def parse_condition(text: str) -> tuple[Comparison, ...]:
         if compared(part) == PEAK and part.symbol not in (">", ">="):
             allowed = "peak_stress > or >= a limit, because a lower bound of the peak decides"
             raise InputError("stop_if", text, allowed, "For example: peak_stress > R_m.")
-        known = (*REGIMES,) if part.name == "regime" else (*PARAMETERS, *STRENGTHS)
-        check_names("stop_if: right side", names(part.limit, "stop_if"), known)
+        allowed_names: tuple[str, ...] = (*PARAMETERS, *STRENGTHS)
+        if part.name == "regime":
+            allowed_names = REGIMES
+        check_names("stop_if: right side", names(part.limit, "stop_if"), allowed_names)
     return parts
 
 
@@ -107,7 +113,10 @@ def holds(comparison: Comparison, value: np.ndarray, table: Any) -> np.ndarray:
     full = value.reshape(n, *value.shape[1:], *(1,) * (3 - value.ndim)).astype(float)
     full = np.where(np.isfinite(full), full, np.nan)
     met = np.broadcast_to(condition(comparison.text, {**known, comparison.name: full}, "stop_if"), (n, 2, 2))
-    at = PARTS[comparison.name].at if comparison.name in PARTS else {}
-    contact = CONTACTS.index(at["contact"]) if "contact" in at else slice(None)
-    body = BODIES.index(at["body"]) if "body" in at else slice(None)
-    return np.logical_or.reduce(met[:, contact, body].reshape(n, -1), axis=1)
+    if comparison.name in PARTS:
+        at = PARTS[comparison.name].at
+        if "contact" in at:
+            met = met[:, [CONTACTS.index(at["contact"])]]
+        if "body" in at:
+            met = met[:, :, [BODIES.index(at["body"])]]
+    return np.logical_or.reduce(met.reshape(n, -1), axis=1)

@@ -17,9 +17,11 @@ from trackroller.study.design.entries import OPTION_FACTORS
 if TYPE_CHECKING:
     from trackroller.study.file.study import Study
 
-_TRACTIONS, _SUBSURFACE = 1e-3, 0.1
+_TRACTIONS = 1e-3
+_SUBSURFACE = 0.1
 START = 3.0  # seconds of one core: to import, plan and load the compiled solver
-PAGES_OF_ARRAY, PAGES_OF_SAMPLE = 3.0, 5.0  # seconds: figures and page; a random sample has given-data measures
+PAGES_OF_ARRAY = 3.0  # seconds: figures and page
+PAGES_OF_SAMPLE = 5.0  # a random sample has given-data measures
 PAGES_A_CASE = 3.5e-4  # seconds: gathering, analysis, figures and page of a large study
 _BYTES = {
     "forces": 200,
@@ -36,16 +38,26 @@ _PATCH_LIMITS = {"shakedown": 0.012, "heat": 0.004, "multiaxial": 0.06}  # s; th
 
 def rate(options: Mapping[str, Any], friction_law: Any = None) -> float:
     """Return the expected cases a second on one core for keyword arguments of `solve` and a friction law of a case."""
-    accuracy, groups = options.get("accuracy", "standard"), set(options.get("outputs", ("forces",)))
+    accuracy = options.get("accuracy", "standard")
+    groups = set(options.get("outputs", ("forces",)))
     model = options.get("contact_model", OPTIONS["contact_model"].default)
-    peaks, tolerance = bool(groups & PEAK_OUTPUTS), tolerance_of(accuracy, groups)
-    cost = DECLARED[model].cost if law_of(friction_law).is_constant else DECLARED[model].falling or DECLARED[model].cost
+    peaks = bool(groups & PEAK_OUTPUTS)
+    tolerance = tolerance_of(accuracy, groups)
+    if law_of(friction_law).is_constant:
+        cost = DECLARED[model].cost
+    else:
+        cost = DECLARED[model].falling or DECLARED[model].cost
     if options.get("normal") == "halfspace":
         cost = SOLVED_PATCHES
-    seconds, searched = cost.at(accuracy if tolerance is None else tolerance.by_quantity)
+    if tolerance is not None:
+        accuracy = tolerance.by_quantity
+    seconds, searched = cost.at(accuracy)
     if peaks:  # one search serves all
         seconds += searched
-    seconds += _TRACTIONS * ("tractions" in groups) + _SUBSURFACE * ("subsurface" in groups)
+    if "tractions" in groups:
+        seconds += _TRACTIONS
+    if "subsurface" in groups:
+        seconds += _SUBSURFACE
     if verdict.GROUP in groups and "shakedown" not in options.get("not_checked", ()):
         # the materials of the database have what it needs; heat needs fields that few cases give
         groups.add("shakedown")

@@ -82,8 +82,8 @@ def flat(ds: xr.Dataset, name: str, dims: tuple[str, ...]) -> np.ndarray:
     missing = [d for d in dims if d not in var.dims]
     if missing:
         var = var.expand_dims({d: ds.sizes[d] for d in missing})
-    rest = [d for d in var.dims if d not in dims]
-    values = var.transpose(*dims, *rest).values
+    inner = [d for d in var.dims if d not in dims]
+    values = var.transpose(*dims, *inner).values
     return values.reshape(int(np.prod([ds.sizes[d] for d in dims])), *values.shape[len(dims) :])
 
 
@@ -102,7 +102,7 @@ def available(ds: xr.Dataset, factors: Iterable[str], dims: tuple[str, ...]) -> 
 
 def parts_in(ds: xr.Dataset, names: Iterable[str], dims: tuple[str, ...]) -> dict[str, Part]:
     """Return the parts with one number a case of variables; a variable that is not declared takes its attributes."""
-    found: dict[str, Part] = {}
+    parts: dict[str, Part] = {}
     for name in names:
         var = ds[name]
         inner = tuple(str(dim) for dim in var.dims if dim not in dims)
@@ -110,10 +110,12 @@ def parts_in(ds: xr.Dataset, names: Iterable[str], dims: tuple[str, ...]) -> dic
         own = declared(name)
         if name not in VARIABLES:  # of another solver
             own = replace(own, units=str(var.attrs.get("units", "1")), long_name=words)
-        asked = set(map(str, ds["limit"].values)) if "limit" in inner else set()
-        limits = [LIMITS[limit] for limit in LIMITS if limit in asked]
-        found |= {part.name: part for part in parts_of(replace(own, dims=inner), limits)}
-    return found
+        limits = []
+        if "limit" in inner:
+            names_of_limits = set(map(str, ds["limit"].values))
+            limits = [limit for name, limit in LIMITS.items() if name in names_of_limits]
+        parts |= {part.name: part for part in parts_of(replace(own, dims=inner), limits)}
+    return parts
 
 
 def every_name(ds: xr.Dataset, factors: Iterable[str], dims: tuple[str, ...]) -> list[str]:
@@ -162,7 +164,9 @@ def _usable(
     """Return True for converged, allowed rows of the regimes to keep, and the number of other rows by reason."""
     usable = np.isin(regime, [REGIMES.index(name) for name in keep])
     lost = {REGIME_LABELS[i]: int((regime == i).sum()) for i, name in enumerate(REGIMES) if name not in keep}
-    converged = flat(ds, "converged", dims) != 0 if "converged" in ds else None
+    converged = None
+    if "converged" in ds:
+        converged = flat(ds, "converged", dims) != 0
     for why, good in (("not converged", converged), ("outside the constraints", allowed)):
         if good is not None:
             lost[why] = int((usable & ~good).sum())
@@ -234,7 +238,10 @@ def outputs(
     keep = tuple(keep)
     regime = regimes(ds, dims)
     usable, lost = _usable(ds, dims, regime, keep, allowed)
-    stopped = flat(ds, "stopped", dims) == 1 if "stopped" in ds else np.zeros(len(regime), dtype=bool)
+    if "stopped" in ds:
+        stopped = flat(ds, "stopped", dims) == 1
+    else:
+        stopped = np.zeros(len(regime), dtype=bool)
     free = available(ds, factors, dims)
     known = parts_in(ds, free, dims)
     columns = []

@@ -41,7 +41,8 @@ class Bar:
         if bar.total is not None and bar.completed > bar.total:
             self.shown.update(self.task, total=bar.completed)
         self.failed += failed
-        self.shown.update(self.task, failed=f"{self.failed} failed" if self.failed else "")
+        if self.failed:
+            self.shown.update(self.task, failed=f"{self.failed} failed")
         self.shown.update(self.task, rate=f"{self.shown.tasks[0].speed or 0:.0f}")
 
     def tell(self, line: str) -> None:
@@ -85,7 +86,8 @@ def shown_steps() -> Iterator[Callable[[str], None]]:
     callable
         Prints a line on standard error, also without a terminal.
     """
-    console, log = Console(file=sys.stderr, soft_wrap=True), logging.getLogger("trackroller")
+    console = Console(file=sys.stderr, soft_wrap=True)
+    log = logging.getLogger("trackroller")
     level = log.level
     with console.status("") as shown:
         handler = _Last(shown)

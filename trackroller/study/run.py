@@ -18,11 +18,11 @@ from trackroller.files import interrupts_wait_for_files, locked
 from trackroller.study.cluster import workers
 from trackroller.study.solve_chunk import Executor, Solver, solve_chunk, solve_here
 from trackroller.study.store import chunks
+from trackroller.study.store.fingerprint import StudyCases
 from trackroller.study.store.folder import Count, StudyFolder, Tell, unheard
 from trackroller.study.store.gather import gather
-from trackroller.study.store.identity import Cases
-from trackroller.study.store.labels import labelled
 from trackroller.study.store.ledger import Ledger, study_folder, working_ledger
+from trackroller.study.store.solved_dataset import labelled
 
 if TYPE_CHECKING:
     from trackroller.study.file.study import Study
@@ -71,17 +71,19 @@ class Runner:
         """Return what solves a list of cases; workers start with the first list."""
         if self.scheduler is None:
             return functools.partial(solve_here, solver=self.solver)
-        return self._until_end.enter_context(workers(self.scheduler))
+        return self._until_end.enter_context(workers(self.scheduler, self.tell))
 
     @contextlib.contextmanager
     def solved(self, study: Study, rerun_failed: bool = False) -> Iterator[Ledger]:
         """Plan a study, solve its missing cases, and keep its ledger as it is until the context ends."""
         with working_ledger(study, self.results, tell=self.tell, rerun_failed=rerun_failed) as ledger:
-            left, tell, progress = ledger.open, self.tell, self.progress
-            self.started(ledger.distinct, ledger.distinct - sum(ledger.chunks[name] for name in left))
-            for name in left:
-                how: dict[str, Any] = {"executor": self.executor, "tell": tell, "progress": progress}
-                tell(solve_chunk(ledger.folder, name, study.materials, inputs=study.inputs, **how))
+            missing = ledger.open
+            tell = self.tell
+            progress = self.progress
+            self.started(ledger.distinct, ledger.distinct - sum(ledger.chunks[name] for name in missing))
+            for name in missing:
+                settings: dict[str, Any] = {"executor": self.executor, "tell": tell, "progress": progress}
+                tell(solve_chunk(ledger.folder, name, study.materials, inputs=study.inputs, **settings))
             yield ledger.anew()
 
     @contextlib.contextmanager
@@ -90,7 +92,7 @@ class Runner:
         folder = study_folder(study.name, self.results).create()
         with locked(folder.lock.with_name(".search"), tell=self.tell):
             if self.rerun_failed:
-                Ledger(Cases(study), folder).forget_failed()
+                Ledger(StudyCases(study), folder).forget_failed()
             yield folder
 
 
@@ -139,13 +141,14 @@ def solve_study(study: Study, started: Count = unheard, progress: Count = unhear
     xarray.Dataset
         The same data set that `run_study` writes to `study.nc`.
     """
-    known = Cases(study)
-    design, (options, group) = known.design, known.options
+    identified = StudyCases(study)
+    design = identified.design
+    options, group = identified.options
     cases = design.drop_vars(list(design.coords)).drop_attrs().assign_coords(case=np.arange(len(group)))
     started(len(group), 0)
     blocks = []
-    for number, one in enumerate(options):
-        part = cases.isel(case=np.flatnonzero(group == number)).assign_attrs(options=json.dumps(one))
+    for number, settings in enumerate(options):
+        part = cases.isel(case=np.flatnonzero(group == number)).assign_attrs(options=json.dumps(settings))
         for block in solve_here(part, study.materials):
             blocks.append(block)
             progress(*chunks.counts(block))

@@ -15,13 +15,14 @@ from trackroller.errors import InputError, ShapeError, WorkError
 from trackroller.files import Reads, locked
 from trackroller.materials import MaterialDatabase, load_database
 from trackroller.study.store import chunks
+from trackroller.study.store.fingerprint import solver_and_materials
 from trackroller.study.store.folder import Count, StudyFolder, Tell, unheard
-from trackroller.study.store.identity import solver_and_materials
-from trackroller.study.store.inputs import check_inputs
+from trackroller.study.store.input_files import check_inputs
 
 log = logging.getLogger("trackroller")
 BLOCK_SECONDS = 3.0  # between two steps of the progress bar
-SMALLEST_BLOCK, LARGEST_BLOCK = 16, 8192
+SMALLEST_BLOCK = 16
+LARGEST_BLOCK = 8192
 Solver = Callable[..., Any]
 Executor = Callable[[xr.Dataset, Any], Iterator[xr.Dataset]]  # solves the cases of a list, block by block
 
@@ -29,7 +30,14 @@ Executor = Callable[[xr.Dataset, Any], Iterator[xr.Dataset]]  # solves the cases
 def load_cases(folder: StudyFolder, name: str) -> xr.Dataset:
     """Return the cases of a chunk with all fields along `case`; raise `chunks.CorruptFile` if the list is damaged."""
     cases = chunks.read(folder.case_list(name))
-    return cases.map(lambda column: column if column.dims else column.broadcast_like(cases["case"]))
+    number = cases["case"]
+
+    def along_case(column: xr.DataArray) -> xr.DataArray:
+        if column.dims:
+            return column
+        return column.broadcast_like(number)
+
+    return cases.map(along_case)  # a new data set, which dask can send: that of the file holds its handle
 
 
 def solve_cases(cases: xr.Dataset, database: MaterialDatabase | None, solver: Solver | None = None) -> xr.Dataset:
@@ -87,15 +95,20 @@ def solve_cases(cases: xr.Dataset, database: MaterialDatabase | None, solver: So
 
 
 def _reason(exc: Exception) -> str:
-    text = str(exc).splitlines()[0] if str(exc) else "no message"
-    return text[:300] if isinstance(exc, ShapeError) else f"{type(exc).__name__}: {text}"[:200]
+    text = "no message"
+    if str(exc):
+        text = str(exc).splitlines()[0]
+    if isinstance(exc, ShapeError):
+        return text[:300]
+    return f"{type(exc).__name__}: {text}"[:200]
 
 
 def solve_here(
     cases: xr.Dataset, database: MaterialDatabase | None, solver: Solver | None = None
 ) -> Iterator[xr.Dataset]:
     """Solve cases in this process, in blocks of about `BLOCK_SECONDS`."""
-    start, size = 0, 64
+    start = 0
+    size = 64
     while start < cases.sizes["case"]:
         begun = time.perf_counter()
         yield solve_cases(cases.isel(case=slice(start, start + size)), database, solver)
@@ -170,13 +183,18 @@ def solve_chunk(
 
 def _summary(chunk: xr.Dataset, words: str, spent: float) -> str:
     count, failed = chunks.counts(chunk)
-    solved = f"{count} case" if count == 1 else f"{count} cases"
+    if count == 1:
+        solved = f"{count} case"
+    else:
+        solved = f"{count} cases"
     return f"{words}: {solved} solved in {spent:.1f} s, {count / max(spent, 1e-3):.0f} cases/s, {failed} failed"
 
 
 def _check_unchanged(folder: StudyFolder, cases: xr.Dataset, database: MaterialDatabase | None) -> None:
     """Raise `WorkError` unless the materials and the solver are those of the plan."""
-    if cases.attrs["identity"] != solver_and_materials(load_database() if database is None else database):
+    if database is None:
+        database = load_database()
+    if cases.attrs["identity"] != solver_and_materials(database):
         raise WorkError(
             f"{folder.root}: the materials or the solver changed after the study was planned. Start the run again: it "
             "plans anew, and the cases that did not change are kept."

@@ -18,9 +18,9 @@ from trackroller.study.design.growth import as_planned
 from trackroller.study.design.levels import in_words
 from trackroller.study.file.load import load_study
 from trackroller.study.store.chunks import FAILED, CorruptFile, read
+from trackroller.study.store.fingerprint import StudyCases
 from trackroller.study.store.folder import StudyFolder, check_folder
-from trackroller.study.store.identity import Cases
-from trackroller.study.store.inputs import study_of_folder
+from trackroller.study.store.input_files import study_of_folder
 from trackroller.study.store.ledger import Ledger, chunk_size, study_folder, unused_cases
 from trackroller.study.store.manifest import why_altered
 
@@ -106,7 +106,10 @@ def find_study(study: str, results: Path | str = "results") -> tuple[Study, Stud
         known = sorted(p.parent.name for p in Path(results).glob("*/plan.json"))
         close = nearest(study, known)
         allowed = f"a study file, or a study in {results}/: {', '.join(known) or 'none yet'}"
-        raise InputError("study", study, allowed, f"Did you mean '{close}'?" if close else "", "is not there")
+        remedy = ""
+        if close:
+            remedy = f"Did you mean '{close}'?"
+        raise InputError("study", study, allowed, remedy, "is not there")
     return study_of_folder(folder), folder
 
 
@@ -138,18 +141,23 @@ def status_of(study: Study, folder: StudyFolder) -> Status:
     """
     check_folder(folder.root)
     study = as_planned(study, folder.record())
-    ledger = Ledger(Cases(study), folder)
-    solved = np.flatnonzero(ledger.place >= 0)
-    states = ledger.states.isel(case=ledger.place[solved])
+    ledger = Ledger(StudyCases(study), folder)
+    solved = np.flatnonzero(ledger.state_number >= 0)
+    states = ledger.states.isel(case=ledger.state_number[solved])
     bad = states["regime"].values == FAILED
-    failed, seconds = solved[bad], ledger.states.attrs["seconds"]
+    failed = solved[bad]
+    seconds = ledger.states.attrs["seconds"]
+    if seconds > 0:
+        speed = ledger.states.sizes["case"] / seconds
+    else:
+        speed = study_rate(study)
     status = Status(
-        total=len(ledger.place),
+        total=len(ledger.state_number),
         done=len(solved),
         failed=len(failed),
         regimes={name: int((states["regime"] == code).sum()) for code, name in enumerate(REGIMES)},
         by_reason=dict(Counter(states["reason"].values[bad].tolist()).most_common()),
-        speed=ledger.states.sizes["case"] / seconds if seconds > 0 else study_rate(study),
+        speed=speed,
         measured=seconds > 0,
         gathered=folder.gathered.is_file(),
         outdated=folder.of_another_solver,
@@ -179,32 +187,50 @@ def plan_rows(study: Study, status: Status) -> list[tuple[str, str]]:
         Its state, see `status_of`.
     """
     chunk = chunk_size(study, status.missing)
-    parts, size = -(-status.missing // chunk), "1 case" if chunk == 1 else f"up to {chunk} cases"
+    parts = -(-status.missing // chunk)
+    if chunk == 1:
+        size = "1 case"
+    else:
+        size = f"up to {chunk} cases"
     seconds = status.seconds_left + START
     source = "measured" if status.measured else "estimated"
     times = f"{duration(seconds)} on one core, {duration(seconds / 2)} on two"
     pages = seconds_of_report(study.config.design, status.total)
     grows = study.config.until is not None or study.config.method.proposes
     small = bool(parts) and not grows and seconds / 2 < SHORT
-    most = study.config.budget.designs
-    generations = f"these are the first generation; it goes on to {most} design{'s' * (most != 1)}, and checks the best"
-    until, where = study.config.until, " at unsure design points" if study.config.method.points else ""
     rows = [
         ("study", f"{study.name} ({study.config.design})"),
         ("cases", f"{status.total}, {status.done} of them solved already"),
-        (
-            "until",
-            f"the sample doubles{where} until its intervals are narrow, up to {until.at_most} cases" if until else "",
-        ),
-        ("search", generations if study.config.method.proposes else ""),
-        ("unused", status.unused),
-        ("chunks", f"{parts} of {size}; each is saved once it is solved" if parts else ""),
-        ("time", f"{times} ({source} cases/s: {status.speed:.3g})"),
-        ("cluster", f"not needed: {duration(seconds / 2)} on two cores" if small else ""),
-        ("report", f"{duration(pages)} more on one core, for analysis, figures and page"),
-        ("disk", f"about {decimal(status.total * bytes_a_case(study.config.outputs))}"),
+        *_growth_rows(study),
     ]
-    return [(name, text) for name, text in rows if text]
+    if status.unused:
+        rows.append(("unused", status.unused))
+    if parts:
+        rows.append(("chunks", f"{parts} of {size}; each is saved once it is solved"))
+    rows.append(("time", f"{times} ({source} cases/s: {status.speed:.3g})"))
+    if small:
+        rows.append(("cluster", f"not needed: {duration(seconds / 2)} on two cores"))
+    rows.append(("report", f"{duration(pages)} more on one core, for analysis, figures and page"))
+    rows.append(("disk", f"about {decimal(status.total * bytes_a_case(study.config.outputs))}"))
+    return rows
+
+
+def _growth_rows(study: Study) -> list[tuple[str, str]]:
+    """Return how far a study grows whose results decide which cases follow."""
+    rows = []
+    until = study.config.until
+    where = ""
+    if study.config.method.points:
+        where = " at unsure design points"
+    if until:
+        text = f"the sample doubles{where} until its intervals are narrow, up to {until.at_most} cases"
+        rows.append(("until", text))
+    if study.config.method.proposes:
+        designs = f"{study.config.budget.designs} designs"
+        if study.config.budget.designs == 1:
+            designs = "1 design"
+        rows.append(("search", f"these are the first generation; it goes on to {designs}, and checks the best"))
+    return rows
 
 
 def _upcoming(folder: StudyFolder) -> str:
@@ -218,4 +244,6 @@ def _upcoming(folder: StudyFolder) -> str:
 
 def _level(name: str, level: Any) -> str:
     """Return a level with all its digits, so that neighbouring levels remain distinct."""
-    return f"{level:.10g}" if isinstance(level, float) else in_words(name, level)
+    if isinstance(level, float):
+        return f"{level:.10g}"
+    return in_words(name, level)

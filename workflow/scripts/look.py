@@ -7,7 +7,7 @@ from pathlib import Path
 from trackroller.cli.workflow import log_to
 from trackroller.results.growing import next_step
 from trackroller.study.file.load import load_study
-from trackroller.study.store.manifest import put_text
+from trackroller.study.store.put import put_text
 
 log_to(snakemake.log[0], "look at the intervals")
 config = snakemake.params.config

@@ -28,7 +28,9 @@ def check(read: dict[str, list], made: random_tables.RandomTable, seed: int) -> 
     text = f"seed {seed}, {made.path.name}, {made.quirks}\n{read}\n{made.values}"
     assert made.values, f"read, but nobody can know the values: {text}"
     for name, true in made.values.items():
-        found = read.get(name, read.get(next((n for n in read if n.startswith(f"{name} ")), ""), []))
+        key = name.replace(" ", "_")
+        with_unit = next((n for n in read if n.startswith(f"{key}_")), "")
+        found = read.get(key, read.get(with_unit, []))
         assert len(found) == len(true) and all(map(same, found, true)), f"{name} is read wrong: {text}"
 
 

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import pytest
+import xarray as xr
 
 import trackroller as tr
+from trackroller.errors import InputError
 from trackroller.study.design.read_table import table
 from trackroller.study.spectrum.file import load_spectrum
 
@@ -177,7 +179,7 @@ def test_other_formats_are_refused_by_their_ending(ending, tmp_path):
 
 def test_a_unit_at_the_head_of_a_further_column_is_kept_or_refused(tmp_path):
     text = "load [kN];radial_force\n2;-100\n3;-200\n"
-    assert cases(text, tmp_path)["load [kN]"] == [2.0, 3.0]
+    assert cases(text, tmp_path)["load_[kN]"] == [2.0, 3.0]
     with pytest.raises(tr.InputError, match=r"line 1: column = 'load \[kN\]'.*an expression uses load"):
         cases(text, tmp_path, used=["load"])
     with pytest.raises(tr.InputError, match=r"line 2: load = '2 kN'.*a plain number"):
@@ -251,7 +253,9 @@ def test_numbers_under_a_head_that_speaks_of_a_parameter_are_not_left_out(head, 
 
 @pytest.mark.parametrize("head", ["roller_id", "share [%]", "lot size", "width [mm]", "note"])
 def test_other_columns_of_numbers_are_kept(head, tmp_path):
-    assert next(iter(cases(f"{head};contact_angle\n3;30\n5;20\n", tmp_path))).startswith(head.partition(" [")[0])
+    assert next(iter(cases(f"{head};contact_angle\n3;30\n5;20\n", tmp_path))).startswith(
+        head.partition(" [")[0].replace(" ", "_")
+    )
 
 
 @pytest.mark.parametrize(
@@ -319,3 +323,28 @@ def test_a_line_below_the_units_is_named_before_the_table_counts_as_empty(tmp_pa
 
 def test_a_separator_behind_the_only_name_counts(tmp_path):
     assert cases('velocity\t\n"43,2"\t\n7,5\t\n', tmp_path) == {"velocity": [43.2, 7.5]}
+
+
+def test_a_column_with_a_blank_in_its_name_is_a_coordinate_of_the_results(tmp_path, recwarn):
+    (tmp_path / "cases.csv").write_text(
+        "load case,width [mm],axial_force,friction_coefficient\nstart,1,0,0.1\nstop,2,20,0.2\n"
+    )
+    (tmp_path / "study.yaml").write_text(
+        "name: blanks\ntable: cases.csv\ndesign: table\ncontact_model: sliding\naccuracy: preview\noutputs: [forces]\n"
+    )
+    results = tr.run(tmp_path / "study.yaml", results=tmp_path / "results", progress=False)
+    with xr.open_dataset(tmp_path / "results" / "blanks" / "study.nc") as stored:
+        assert {"load_case", "width_[mm]"} <= set(stored.coords)
+    assert results.labels == ("load_case", "width_[mm]")
+    assert results.table["load_case"].tolist() == ["start", "stop"]
+    assert not [w for w in recwarn if "space in its name" in str(w.message)]
+
+
+def test_two_columns_that_differ_by_a_blank_are_refused(tmp_path):
+    path = tmp_path / "cases.csv"
+    path.write_text("load case,load_case,axial_force\nstart,a,0\nstop,b,20\n")
+    with pytest.raises(InputError, match=r"line 1: .*one column for load_case") as refused:
+        table(path)
+    path.write_text(path.read_text().replace("load_case", "load_case_2"))  # what the message advises
+    assert "load_case_2" in str(refused.value)
+    assert list(table(path)) == ["load_case", "load_case_2", "axial_force"]

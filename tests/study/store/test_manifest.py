@@ -27,10 +27,12 @@ from trackroller.files import sha256
 from trackroller.report.build import build_report
 from trackroller.study.file.load import load_study
 from trackroller.study.run import run_study
-from trackroller.study.store import manifest
+from trackroller.study.store import manifest, mark, put
+from trackroller.study.store.digests import digest_of_text
 from trackroller.study.store.folder import StudyFolder, check_for_workflow, delete_study
 from trackroller.study.store.ledger import working_ledger
-from trackroller.study.store.manifest import CHANGING, OUTDATED, Manifest, digest_of_text, put_text
+from trackroller.study.store.manifest import CHANGING, OUTDATED, Manifest
+from trackroller.study.store.put import put_text
 from trackroller.yaml_file import parse_mapping
 
 ROOT = Path("results/edited")
@@ -311,7 +313,7 @@ def test_only_the_scratch_folder_is_swept(tmp_path, monkeypatch):
     other = ROOT / ".mine.nc.99-0123456789abcdef.tmp"
     for path in (ours, other, folder.gathered):
         plant(path)
-    manifest.sweep(ROOT)
+    put.sweep(ROOT)
     assert not ours.exists() and other.read_bytes() == folder.gathered.read_bytes() == FOREIGN
 
 
@@ -331,7 +333,7 @@ def test_what_a_killed_process_left_is_ours_and_can_be_deleted(tmp_path, monkeyp
     folder.create()
     Manifest(ROOT).note({"study.nc": "0"})
     assert Manifest(ROOT).contents() == {"plan/files.jsonl": [CHANGING], "study.nc": ["0"]}
-    assert manifest.is_study(ROOT)
+    assert mark.is_study(ROOT)
     plant(Manifest(ROOT).scratch(ROOT / "figures") / "one.svg")
     delete_study(ROOT)
     assert not ROOT.exists()
@@ -572,14 +574,14 @@ def test_results_that_grow_leave_an_outdated_report_which_is_still_ours(finished
 def test_a_log_is_ours_by_its_name_once_it_is_listed(finished):
     log = ROOT / "logs" / "gather.log"
     log.parent.mkdir()
-    assert manifest.claim(log) == log and Manifest(ROOT).contents()["logs/gather.log"] == [CHANGING]
+    assert put.claim(log) == log and Manifest(ROOT).contents()["logs/gather.log"] == [CHANGING]
     for text in ("one line\n", "another\n"):
         log.write_text(text)
-        manifest.claim(log)
+        put.claim(log)
         check_for_workflow(ROOT)
     plant(ROOT / "logs" / "report.log")
     with pytest.raises(InputError, match=r"report\.log.*was not written by trackroller"):
-        manifest.claim(ROOT / "logs" / "report.log")
+        put.claim(ROOT / "logs" / "report.log")
     with pytest.raises(InputError, match=r"report\.log.*was not written by trackroller"):
         check_for_workflow(ROOT)
 
@@ -588,7 +590,7 @@ def test_a_log_is_ours_by_its_name_once_it_is_listed(finished):
 
 
 def other_format(record: dict) -> dict:
-    return record | {"store_format": manifest.STORE_FORMAT + 1}
+    return record | {"store_format": mark.STORE_FORMAT + 1}
 
 
 def without_manifest(record: dict) -> dict:
@@ -602,7 +604,7 @@ def test_a_folder_of_another_version_is_read_and_not_written(finished, solved, c
     record = json.loads((ROOT / "plan.json").read_text())
     record.pop("digest")
     record = change(record)
-    (ROOT / "plan.json").write_text(json.dumps(record | {"digest": manifest._digest_of(record)}))
+    (ROOT / "plan.json").write_text(json.dumps(record | {"digest": mark._digest_of(record)}))
     before = snapshot(Path("results"))
     for words in (("verify", "results/edited"), ("best", "results/edited"), ("report", "edited", "-o", "cases.csv")):
         code, out, err = command(words)

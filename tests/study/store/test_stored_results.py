@@ -19,11 +19,12 @@ from trackroller.study.file.load import load_study
 from trackroller.study.run import run_study
 from trackroller.study.store import chunks, manifest
 from trackroller.study.store.crate import damaged_files, read_crate, write_crate
+from trackroller.study.store.fingerprint import StudyCases, chunk_name
 from trackroller.study.store.folder import StudyFolder
-from trackroller.study.store.identity import Cases, chunk_name
 from trackroller.study.store.ledger import Ledger
-from trackroller.study.store.manifest import put_text, replacing, why_altered
+from trackroller.study.store.manifest import why_altered
 from trackroller.study.store.netcdf import read_result
+from trackroller.study.store.put import put_text, replacing
 
 MATERIALS = "materials:\n  own steel: {like: 42CrMo4, tensile_strength: {value: 1500, unit: MPa, source: sheet}}\n"
 TABLE = "axial_force,friction_coefficient\n" + "".join(f"{20 + i},0.1\n" for i in range(12))
@@ -218,7 +219,7 @@ def test_a_ledger_passes_over_a_file_that_another_process_has_just_replaced(tmp_
     listed = folder.solved_files()
     monkeypatch.setattr(StudyFolder, "solved_files", lambda self: listed)
     folder.chunk(chunk_name(gone)).unlink()
-    found = Ledger(Cases(load_study({"name": "one", "factors": {"axial_force": {"values": [0]}}})), folder)
+    found = Ledger(StudyCases(load_study({"name": "one", "factors": {"axial_force": {"values": [0]}}})), folder)
     assert found.states["case"].values.tolist() == kept.tolist() and not found.corrupt
 
 

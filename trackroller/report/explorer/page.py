@@ -22,7 +22,7 @@ from trackroller.report.numbers import count, lives_in_years
 from trackroller.results.pareto import pareto
 from trackroller.results.results import Results
 from trackroller.study.outputs import flat
-from trackroller.study.store.manifest import put_text
+from trackroller.study.store.put import put_text
 
 MODEL = "contact_model"  # a Pareto set compares designs solved with one model
 POLICY = "@content-security-policy@"  # stands in the templates where the policy is filled in

@@ -24,7 +24,7 @@ from trackroller.report.figures import style
 from trackroller.report.figures.contact_outline import Patch, case_text, outline, patches_of
 from trackroller.report.figures.contact_sections import sections
 from trackroller.report.numbers import number, rounded
-from trackroller.study.store.manifest import replacing
+from trackroller.study.store.put import replacing
 
 ARROWS = (17, 11)  # along the long and the short axis of the patch
 SLENDER = 4.0  # ratio of the axes above which a patch is not drawn to scale

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import tempfile
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
@@ -19,8 +20,10 @@ from trackroller.results.answer import Answer
 from trackroller.roller import stored_inputs as record
 from trackroller.roller.dataset import solved_by
 from trackroller.roller.duty import duty_of
+from trackroller.roller.requirement import KEY
 from trackroller.study.store.provenance import versions
 
+DECISIVE = ("contact_model", "spin_model", "accuracy", "normal", "life_rule")  # a command always states them
 FIELDS: dict[str, Any] = {  # of the template; a page states those that it has
     "signed": (),
     "drawing": "",
@@ -105,13 +108,21 @@ def body_materials(materials: Mapping[str, Mapping[str, Any]]) -> list[tuple[str
 
 def command_of(ds: xr.Dataset, words: tuple[str, ...] = ("solve",)) -> str:
     """Return the command that solves the case of a result again, or that `words` name."""
-    given = {name: value for name, value in record.inputs_of(ds).items() if not record.is_default(name, value)}
+    left_out = record.not_given_of(ds)
+    given = {name: value for name, value in record.inputs_of(ds).items() if name not in left_out}
     plain_values = {
         n: v if v is None or isinstance(v, Mapping) else str(v).removesuffix(".0") for n, v in given.items()
     }
-    named = ("contact_model", "spin_model", "accuracy", "normal", "life_rule")
-    plain_values |= {name: ds.attrs.get(name) for name in named}
-    plain_values |= {
-        n: ds.attrs.get(n) for n in ("wear_law", "life_criterion") if ds.attrs.get(n) != OPTIONS[n].default
-    }
-    return record.solve_command(plain_values | {"duty": duty_of(ds)}, words)
+    beside = {"duty": duty_of(ds), KEY: json.loads(ds.attrs.get(KEY, "{}")) or None}
+    return record.solve_command(plain_values | _options_of(ds) | beside, words)
+
+
+def _options_of(ds: xr.Dataset) -> dict[str, str]:
+    """Return the options of a result: those that decide most, and all that are not the default."""
+    model = str(ds.attrs["contact_model"])
+    found = {}
+    for name, option in OPTIONS.items():
+        text = ds.attrs.get(name)
+        if text and (name in DECISIVE or text != option.attribute(option.default, model)):
+            found[name] = str(text)
+    return found

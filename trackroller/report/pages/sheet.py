@@ -123,7 +123,7 @@ def sheet_inputs(ds: xr.Dataset) -> list[Row]:
         hours, days = (number(duty[one.name]) for one in DUTY.numbers)
         rows.append(Row("duty", f"{hours} h a day, {days} days a year"))
     from_database = ["friction_coefficient"] if friction_records(ds.attrs) else []
-    return [*rows, *input_rows(inputs_of(ds), [*record.not_given_of(ds), *from_database])]
+    return [*rows, *input_rows(inputs_of(ds), record.not_given_of(ds), from_database)]
 
 
 def _less_stressed(ds: xr.Dataset) -> str:
@@ -139,7 +139,7 @@ def print_facts(ds: xr.Dataset) -> None:
     print_text(headline_of(answer).text)
     converged = "converged" if answer.facts["converged"] else "NOT converged"
     print_text(f"regime: {REGIME_LABELS[int(ds['regime'])]}, {converged}")
-    rows = [[row.words, row.value, row.unit, "example" if row.default else "given"] for row in sheet_inputs(ds)]
+    rows = [[row.words, row.value, row.unit, row.origin] for row in sheet_inputs(ds)]
     print_table(["input", "value", "unit", "from"], rows, (1,))
     if any(row[3] == "example" for row in rows):
         print_text("Values from 'example' were not given: the paper's example has them. Give yours.")

@@ -27,7 +27,7 @@ from trackroller.results.results import Results, shown_answer
 from trackroller.roller.dataset import solved_by
 from trackroller.roller.doubts import doubts
 from trackroller.roller.stored_inputs import NOT_GIVEN, as_material
-from trackroller.study.store.manifest import put_text, replacing
+from trackroller.study.store.put import put_text, replacing
 
 OPTIONS = tuple(option.name for option in parameters.OPTIONS.values() if option.recorded)
 _ELSEWHERE = (

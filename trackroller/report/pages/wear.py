@@ -18,7 +18,7 @@ from trackroller.report.pages.record import (
 )
 from trackroller.report.tables.inputs import input_rows
 from trackroller.results.wear_answer import answer_of_wear
-from trackroller.roller.stored_inputs import inputs_of, materials_of
+from trackroller.roller.stored_inputs import inputs_of, materials_of, not_given_of
 
 KIND = "wear over the travel"
 
@@ -48,6 +48,6 @@ def write_wear(ds: xr.Dataset, path: Path | str) -> Path:
         first_figures=list(drawn.values()),
         materials=body_materials(materials_of(ds)),
         options=options_text(ds),
-        **inputs_apart(input_rows(inputs_of(ds))),
+        **inputs_apart(input_rows(inputs_of(ds), not_given_of(ds))),
     )
     return html.write_page(Path(path), text)

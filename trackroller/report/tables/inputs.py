@@ -28,20 +28,31 @@ SHOWN = (  # values of a material on a sheet
 
 @dataclass(frozen=True)
 class Row:
-    """A quantity in words with its value, its unit, and whether it is the default of an input."""
+    """A quantity in words with its value, its unit, and whether it is the default of an input or of the database."""
 
     words: str
     value: str
     unit: str = ""
     default: bool = False
+    database: bool = False
+
+    @property
+    def origin(self) -> str:
+        """Return where the value comes from, in a word."""
+        if self.database:
+            return "database"
+        return "example" if self.default else "given"
 
 
-def input_rows(inputs: Mapping[str, Any], not_given: Collection[str] | None = None) -> list[Row]:
+def input_rows(
+    inputs: Mapping[str, Any], not_given: Collection[str] | None = None, database: Collection[str] = ()
+) -> list[Row]:
     """Return the inputs that stand on a sheet: mappings, the guide and fields of limits only if they are given.
 
     A drawn profile of the roller takes the place of the example's radius.
 
-    With `not_given`, the values of these names are marked as defaults, otherwise those that equal their default.
+    With `not_given`, the values of these names are marked as defaults, otherwise those that equal their default. Values
+    of the names in `database` are those of the database.
     """
     rows = []
     for name, value in inputs.items():
@@ -49,7 +60,9 @@ def input_rows(inputs: Mapping[str, Any], not_given: Collection[str] | None = No
         optional = name in (*MAPPING_FIELDS, "guide_overrollings_per_hour") and value is None
         if not (drawn or optional or (name in OF_LIMITS and is_default(name, value))):
             row = input_row(name, value)
-            rows.append(row if not_given is None else replace(row, default=name in not_given))
+            if not_given is not None:
+                row = replace(row, default=name in not_given or name in database, database=name in database)
+            rows.append(row)
     return rows
 
 

@@ -84,7 +84,9 @@ def balance_again(loads: RollerLoads, law: ContactLaw, rows: np.ndarray, balance
     )
     found = merged(balance, rows[good], again, np.flatnonzero(good))
     lost = rows[~good]
-    return merged(found, lost, solve_some(loads, law, lost), np.arange(lost.size)) if lost.size else found
+    if lost.size:
+        return merged(found, lost, solve_some(loads, law, lost), np.arange(lost.size))
+    return found
 
 
 def solve_some(loads: RollerLoads, law: ContactLaw, rows: np.ndarray) -> Equilibrium:

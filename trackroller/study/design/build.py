@@ -120,7 +120,8 @@ def dataset_of(
     places : further coordinates
     attrs : attributes
     """
-    data, n = {}, len(columns["radial_force"])
+    data = {}
+    n = len(columns["radial_force"])
     for name, parameter in PARAMETERS.items():
         meta = {"units": parameter.units, "long_name": parameter.long_name, "symbol": parameter.symbol}
         data[name] = ("case", columns.pop(name), meta)
@@ -151,20 +152,22 @@ def columns_of(
     base = {name: parameter.default for name, parameter in PARAMETERS.items()}
     base |= EXAMPLE | dict(given)
     base.pop("material_pair", None)
-    if pair := given.get("material_pair"):
+    pair = given.get("material_pair")
+    if pair:
         base |= dict(zip(MATERIAL_FIELDS, pair, strict=True))
     columns: dict[str, np.ndarray] = {}
     for name, value in base.items():
-        one = np.array(value, dtype=object if isinstance(value, str) or value is None else float)
-        columns[name] = np.broadcast_to(one, n)  # a value that all cases share takes no memory
+        kind: type = float
+        if isinstance(value, str) or value is None:
+            kind = object
+        columns[name] = np.broadcast_to(np.array(value, dtype=kind), n)  # a shared value takes no memory
     columns |= varying
     if "material_pair" in columns:
         pairs = columns.pop("material_pair")
         for i, name in enumerate(MATERIAL_FIELDS):
             columns[name] = np.array([pair[i] for pair in pairs], dtype=object)
-    if "friction_coefficient" not in {*given, *varying}:
-        if "friction_law" in columns:
-            columns["friction_coefficient"] = own_frictions(columns["friction_law"])
+    if "friction_law" in columns and "friction_coefficient" not in {*given, *varying}:
+        columns["friction_coefficient"] = own_frictions(columns["friction_law"])
     columns["friction_coefficient"], friction = _friction(materials, columns)
     for name in PARAMETERS:
         if columns[name].dtype != float:
@@ -194,12 +197,19 @@ def _friction(materials: MaterialDatabase, columns: dict[str, np.ndarray]) -> tu
     records = []
 
     @functools.cache
-    def known(value: Any, roller: str, guide: str) -> float:
+    def coefficient(value: Any, roller: str, guide: str) -> float:
+        """Return the coefficient of a case; one from the database is recorded."""
         if isinstance(value, (int, float)) and not math.isnan(value):
             return float(value)
-        level = value if isinstance(value, str) and value in FRICTION_LEVELS else None
-        records.append(materials.friction_record(roller, guide, level))
-        return float(records[-1]["value"])
+        level = None
+        if isinstance(value, str) and value in FRICTION_LEVELS:
+            level = value
+        record = materials.friction_record(roller, guide, level)
+        records.append(record)
+        return float(record["value"])
 
-    coefficients = _mapped(known, float, values, *(_mapped(str, object, columns[name]) for name in MATERIAL_FIELDS))
-    return coefficients, {FRICTION: json.dumps(records)} if records else {}
+    names = [_mapped(str, object, columns[name]) for name in MATERIAL_FIELDS]
+    coefficients = _mapped(coefficient, float, values, *names)
+    if not records:
+        return coefficients, {}
+    return coefficients, {FRICTION: json.dumps(records)}

@@ -16,7 +16,7 @@ import numpy as np
 import xarray as xr
 
 from trackroller.carriage.fields import changed
-from trackroller.carriage.file import OF_LOADS
+from trackroller.carriage.file import OF_LOADS, MountedRoller
 from trackroller.carriage.lives import Lives, hours_per_km
 from trackroller.carriage.solve import forces_of
 from trackroller.carriage.strokes import passes_per_km
@@ -34,7 +34,11 @@ if TYPE_CHECKING:
     from trackroller.methods import Design
     from trackroller.study.file.config import StudyFile
 
-ROW, ROLLER, LOAD_CASE, SHARE, HOURS = "design_row", "carriage_roller", "load_case", "share", "hours_per_km"
+ROW = "design_row"
+ROLLER = "carriage_roller"
+LOAD_CASE = "load_case"
+SHARE = "share"
+HOURS = "hours_per_km"
 REASONS = "carriage_reasons"  # attribute: JSON, why the rollers do not hold the carriage, by the number of its row
 STIFF = (*GEOMETRY, *MATERIAL_FIELDS)  # on these parameters the stiffness of the contacts depends
 DIGITS = 8  # of a force: the last digits depend on the processor, and a case is known by its numbers
@@ -44,7 +48,9 @@ def given_by(whole: Carriage) -> tuple[str, ...]:
     """Return the parameters of a roller that a carriage gives, so that no study may."""
     if np.isfinite(whole.stroke):
         return (*OF_LOADS, OVERROLLINGS)
-    return OF_LOADS if any(case.speed is not None for case in whole.cases) else LOADS
+    if any(case.speed is not None for case in whole.cases):
+        return OF_LOADS
+    return LOADS
 
 
 def common_values(whole: Carriage) -> dict[str, Any]:
@@ -78,7 +84,9 @@ def expanded(config: StudyFile, design: Design, materials: MaterialDatabase, who
     places, reasons = _loads(design, whole)
     number = places["roller"]
     shares = np.array([case.share for case in whole.cases])
-    parts, order, hours = [], [], []
+    parts = []
+    order = []
+    hours = []
     for j, roller in enumerate(whole.rollers):
         own = np.flatnonzero(number == j)
         if not len(own) or roller.case is None:
@@ -89,7 +97,8 @@ def expanded(config: StudyFile, design: Design, materials: MaterialDatabase, who
         columns, friction = columns_of(base, given, len(own), materials)
         for name in LOADS:
             columns[name] = places[name][own]
-        velocity, speed = columns["velocity"].astype(float), places["speed"][own]
+        velocity = columns["velocity"].astype(float)
+        speed = places["speed"][own]
         hours.append(hours_per_km(shares, places["speeds"][own], velocity))
         columns["velocity"] = np.where(np.isnan(speed), velocity, 60 * speed)
         if np.isfinite(whole.stroke):
@@ -127,20 +136,20 @@ def _loads(design: Design, whole: Carriage) -> tuple[dict[str, np.ndarray], dict
     """Return row, load case, roller, forces and speeds of each case, and why rows have none."""
     fields = [name for name in design.columns if field_of(name)]
     stiff = [name for name in design.columns if name in (*STIFF, "material_pair")]
-    found: dict[tuple[Any, ...], Any] = {}
+    loads: dict[tuple[Any, ...], Any] = {}
     columns: dict[str, list[np.ndarray]] = {}
     reasons: dict[int, str] = {}
     for row in range(design.size):
         key = tuple(design.columns[name][row] for name in (*fields, *stiff))
-        if key not in found:
+        if key not in loads:
             given = dict(zip((*fields, *stiff), key, strict=True))
-            found[key] = _statics(whole, *({name: given[name] for name in names} for names in (fields, stiff)))
-        if isinstance(found[key], str):
-            reasons[row] = found[key]
+            loads[key] = _statics(whole, *({name: given[name] for name in names} for names in (fields, stiff)))
+        if isinstance(loads[key], str):
+            reasons[row] = loads[key]
             continue
-        for name, values in found[key].items():
+        for name, values in loads[key].items():
             columns.setdefault(name, []).append(values)
-        columns.setdefault("row", []).append(np.full(len(found[key]["roller"]), row))
+        columns.setdefault("row", []).append(np.full(len(loads[key]["roller"]), row))
     return {name: np.concatenate(values) for name, values in columns.items()} or {"roller": np.empty(0, int)}, reasons
 
 
@@ -149,11 +158,13 @@ def _statics(whole: Carriage, fields: Mapping[str, float], stiff: Mapping[str, A
     given = {name: value for name, value in stiff.items() if name != "material_pair"}
     given |= dict(zip(MATERIAL_FIELDS, stiff.get("material_pair", ()), strict=False))
     try:
-        rollers = tuple(r if r.case is None else replace(r, case=replace(r.case, **given)) for r in whole.rollers)
+        rollers = tuple(_with_values(roller, given) for roller in whole.rollers)
         own = changed(replace(whole, rollers=rollers), fields)
         ds = forces_of(own)
     except InputError as error:
-        return f"{error.field} {error.value}: {error.wrong}" if error.wrong else str(error)
+        if error.wrong:
+            return f"{error.field} {error.value}: {error.wrong}"
+        return str(error)
     unsettled = ds["load_case"].values[~ds["converged"].values]
     if unsettled.size:
         return f"case {', '.join(unsettled)}: no forces of the rollers fulfil all conditions of an equilibrium"
@@ -163,11 +174,18 @@ def _statics(whole: Carriage, fields: Mapping[str, float], stiff: Mapping[str, A
     return {"load_case": i, "roller": j, "speed": speeds[i], "speeds": np.tile(speeds, (len(i), 1)), **forces}
 
 
+def _with_values(roller: MountedRoller, values: Mapping[str, Any]) -> MountedRoller:
+    """Return a roller of the carriage with other values of its case."""
+    if roller.case is None:
+        return roller
+    return replace(roller, case=replace(roller.case, **values))
+
+
 def _rounded(values: np.ndarray) -> np.ndarray:
     """Return numbers with `DIGITS` digits, forces that are rounding beside the largest one as 0."""
     largest = np.abs(values).max(initial=0.0)
-    kept = np.where(np.abs(values) < 1e-9 * largest, 0.0, values)
-    return np.array([float(f"{value:.{DIGITS - 1}e}") for value in kept.tolist()])
+    without_rounding = np.where(np.abs(values) < 1e-9 * largest, 0.0, values)
+    return np.array([float(f"{value:.{DIGITS - 1}e}") for value in without_rounding.tolist()])
 
 
 def of_worst_rollers(
@@ -194,39 +212,47 @@ def of_worst_rollers(
         its `reason` says why.
     """
     names, rollers = np.unique(cases[ROLLER].values.astype(str), return_inverse=True)
-    group, kmh = cases[ROW].values * len(names) + rollers, 0.06 * cases["velocity"].values
+    group = cases[ROW].values * len(names) + rollers
+    kmh = 0.06 * cases["velocity"].values
     lives = Lives(group, cases[SHARE].values, kmh, cases[HOURS].values, solved)
     row = cases[ROW].values[lives.first]
     order = np.lexsort((lives.rank, row))
     worst = order[np.unique(row[order], return_index=True)[1]]  # the first one of each row
     place = np.full(design.size, -1)
     place[row[worst]] = lives.ruling[worst]
-    held = place >= 0
+    has_worst = place >= 0
     shown = solved.isel(case=np.maximum(place, 0)).copy(deep=True)
     for name, values in lives.summed.items():
         full = shown[name].values
         full[row[worst]] = values[worst]
         shown[name].values = full
     reasons = {int(i): text for i, text in json.loads(cases.attrs.get(REASONS, "{}")).items()}
-    _without_results(shown, ~held, [reasons.get(i, "") for i in range(design.size)])
+    _without_results(shown, ~has_worst, [reasons.get(i, "") for i in range(design.size)])
     plain = build(config, design, materials)
     for name in (*PARAMETERS, *MATERIAL_FIELDS):
         if name in cases and not np.array_equal(cases[name].values, plain[name].values):
             values = cases[name].values[np.maximum(place, 0)]
-            missing = np.nan if values.dtype.kind == "f" else plain[name].values
-            plain[name] = ("case", np.where(held, values, missing), plain[name].attrs)
+            missing: Any = plain[name].values
+            if values.dtype.kind == "f":
+                missing = np.nan
+            plain[name] = ("case", np.where(has_worst, values, missing), plain[name].attrs)
     for name, label in ((ROLLER, "worst roller"), (LOAD_CASE, "load case that uses most of its life")):
-        values = np.where(held, cases[name].values[np.maximum(place, 0)], "")
+        values = np.where(has_worst, cases[name].values[np.maximum(place, 0)], "")
         plain = plain.assign_coords({f"worst_{name.removeprefix('carriage_')}": ("case", values, {"long_name": label})})
     return plain.assign_coords(case=place), shown.assign_coords(case=place)
 
 
-def _without_results(shown: xr.Dataset, gone: np.ndarray, reasons: list[str]) -> None:
+def _without_results(shown: xr.Dataset, rows: np.ndarray, reasons: list[str]) -> None:
     """Make the rows without a case rows of a lift-off without results, each with its reason."""
     for variable in shown.data_vars.values():
         values = variable.values
-        values[gone] = np.nan if values.dtype.kind == "f" else "" if values.dtype.kind in "OUT" else 0
+        if values.dtype.kind == "f":
+            values[rows] = np.nan
+        elif values.dtype.kind in "OUT":
+            values[rows] = ""
+        else:
+            values[rows] = 0
         variable.values = values
-    shown["regime"][gone] = REGIMES.index("lift_off")
+    shown["regime"][rows] = REGIMES.index("lift_off")
     if "reason" in shown:
-        shown["reason"].values = np.where(gone, np.array(reasons, dtype=object), shown["reason"].values)
+        shown["reason"].values = np.where(rows, np.array(reasons, dtype=object), shown["reason"].values)

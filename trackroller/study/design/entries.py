@@ -71,7 +71,10 @@ def check_own_name(name: str, where: str) -> None:
             f"a name that results can have: at most {MAX_NAME} bytes, without '/' and line breaks, and a letter, "
             "a figure or '_' at its beginning"
         )
-        raise InputError(where, name if len(name) < MAX_NAME else f"{name[:40]}...", allowed, "Rename it.")
+        shown = name
+        if len(name) >= MAX_NAME:
+            shown = f"{name[:40]}..."
+        raise InputError(where, shown, allowed, "Rename it.")
 
 
 def choice(value: Any, where: str, options: Collection[str]) -> str:
@@ -132,7 +135,9 @@ def field_value(key: str, value: Any, where: str) -> Any:
         return choice(value, where, OPTION_FACTORS[key])
     if key in MATERIAL_FIELDS:
         return _material_name(value, where)
-    return _mapping(key, value, where) if key in MAPPING_FIELDS else _number(PARAMETERS[key], value, where)
+    if key in MAPPING_FIELDS:
+        return _mapping(key, value, where)
+    return _number(PARAMETERS[key], value, where)
 
 
 def _material_name(value: Any, where: str) -> str:
@@ -150,17 +155,24 @@ def _mapping(name: str, value: Any, where: str) -> str:
     """Return a friction law or profile as its canonical text."""
     try:
         text = mapping_text(name, value)
-        if name == "friction_law" and not text and (own := at_rest(value)) is not None:
-            raise InputError(
-                name,
-                "a table of one value",
-                "a table whose friction changes with the slip speed",
-                f"Remove the law and give friction_coefficient: {own:g}.",
-            )
+        if name == "friction_law" and not text:
+            _refuse_constant_law(value)
         return text
     except InputError as exc:
-        field = exc.field.replace(name, where, 1) if exc.field.startswith(name) else f"{where}: {exc.field}"
+        if exc.field.startswith(name):
+            field = exc.field.replace(name, where, 1)
+        else:
+            field = f"{where}: {exc.field}"
         raise exc.named(field) from None
+
+
+def _refuse_constant_law(value: Any) -> None:
+    """Refuse a table of friction with one value, which `friction_coefficient` states."""
+    friction = at_rest(value)
+    if friction is not None:
+        allowed = "a table whose friction changes with the slip speed"
+        remedy = f"Remove the law and give friction_coefficient: {friction:g}."
+        raise InputError("friction_law", "a table of one value", allowed, remedy)
 
 
 def _number(parameter: Parameter, value: Any, where: str) -> Any:
@@ -197,7 +209,9 @@ def factor(key: Any, spec: Any, factors: Mapping[Any, Any], on_carriage: bool = 
     InputError : unknown name, or an entry that is not allowed
     """
     where = f"factors.{key}"
-    field = field_of(key) if on_carriage and isinstance(key, str) else None
+    field = None
+    if on_carriage and isinstance(key, str):
+        field = field_of(key)
     parameter = PARAMETERS.get(key, field)
     own = key not in FACTOR_NAMES and field is None
     if own and not (isinstance(key, str) and key.isidentifier() and _used(key, factors)):
@@ -228,14 +242,17 @@ def _in_expressions(factors: Mapping[Any, Any]) -> set[str]:
 
 def _unused(name: str, factors: Mapping[Any, Any], on_carriage: bool) -> InputError:
     """Return the error for a factor that is no parameter, no field of the carriage and no name of an expression."""
-    fields = (*OF_WHOLE, *OF_LOAD_CASE) if on_carriage else ()
-    if on_carriage and field_of(own := f"{PREFIX}{name}"):
+    fields: tuple[str, ...] = ()
+    if on_carriage:
+        fields = (*OF_WHOLE, *OF_LOAD_CASE)
+    if on_carriage and field_of(f"{PREFIX}{name}"):
         allowed = f"parameters of a roller, and fields of the carriage, whose names begin with {PREFIX}"
-        return InputError("factors", name, allowed, f"Write {own}.", "is not known")
+        return InputError("factors", name, allowed, f"Write {PREFIX}{name}.", "is not known")
     error = unknown_field("factors", name, (*FACTOR_NAMES, *fields, *ALIASES, *RADII), OPTIONS)
     used = _in_expressions(factors)
     unknown = sorted(used - {*FACTOR_NAMES, *map(str, factors)})
-    if results := [one for one in unknown if one in PARTS or one in VARIABLES]:
+    results = [name for name in unknown if name in PARTS or name in VARIABLES]
+    if results:
         return _of_result("factors", name, results[0])
     if not unknown:
         return error
@@ -273,12 +290,16 @@ def _entries(key: str, kind: Any, value: Any, where: str, parameter: Parameter |
         levels = [field_value(key, entry, where) for entry in value]
         _refuse_equal_names(key, levels, where)
         return levels
-    unit = None if parameter is None else parameter.unit
-    spread = 1 if kind in ("normal", "truncnormal") else None
-    plain = 1 if kind in ("lognormal", "weibull") else None  # a number without unit beside the median or scale
-    numbers = [
-        _to_float(entry, "-" if place == plain else unit, where, place == spread) for place, entry in enumerate(value)
-    ]
+    unit = None
+    if parameter is not None:
+        unit = parameter.unit
+    numbers = []
+    for place, entry in enumerate(value):
+        if place == 1 and kind in ("lognormal", "weibull"):  # a number without unit beside the median or scale
+            numbers.append(_to_float(entry, "-", where, False))
+        else:
+            is_deviation = place == 1 and kind in ("normal", "truncnormal")
+            numbers.append(_to_float(entry, unit, where, is_deviation))
     if kind in LISTS and len(numbers) == 3 and isinstance(numbers[2], (int, float)) and not numbers[2] <= MAX_LEVELS:
         # a mistyped number of levels would fill the memory
         raise InputError(where, numbers[2], f"at most {MAX_LEVELS} levels of a factor")
@@ -297,5 +318,8 @@ def _refuse_equal_names(key: str, levels: list[Any], where: str) -> None:
 
 
 def _to_float(value: Any, unit: str | None, where: str, difference: bool) -> Any:
-    number = number_or_nan(value, unit, where, difference) if isinstance(value, str) else math.nan
+    if isinstance(value, str):
+        number = number_or_nan(value, unit, where, difference)
+    else:
+        number = math.nan
     return value if math.isnan(number) else number

@@ -26,7 +26,10 @@ def doubled(study: Study, unsure: Collection[int] | None = None) -> Study:
     if not study.drawn.method.points:
         return dataclasses.replace(study, grown=(2 * study.samples,))
     sizes = [rows.stop - rows.start for rows in study.drawn.points]
-    sizes = [2 * size if unsure is None or point in unsure else size for point, size in enumerate(sizes)]
+    if unsure is None:
+        unsure = range(len(sizes))
+    for point in set(unsure):
+        sizes[point] *= 2
     return dataclasses.replace(study, grown=tuple(sizes))
 
 
@@ -40,12 +43,17 @@ def as_planned(study: Study, record: Mapping[str, Any]) -> Study:
     """
     if study.config.until is None or not record.get("grown"):
         return study
-    planned, now = record["sample"], sample_of(study)
-    return dataclasses.replace(study, grown=tuple(record["grown"])) if planned == now else study
+    planned = record["sample"]
+    now = sample_of(study)
+    if planned == now:
+        return dataclasses.replace(study, grown=tuple(record["grown"]))
+    return study
 
 
 def sample_of(study: Study) -> dict[str, Any]:
     """Return what decides the first rows of a sample, as values of JSON."""
     stated = study.as_dict()
-    replicates = study.config.until.replicates if study.config.until is not None else 1
+    replicates = 1
+    if study.config.until is not None:
+        replicates = study.config.until.replicates
     return {key: stated[key] for key in SAME if key in stated} | {"replicates": replicates}

@@ -34,7 +34,10 @@ def short(name: str, value: Any) -> str:
     A description of the mapping, such as 'linear to 0.3 at 50 mm/s'.
     """
     try:
-        mapping = value if isinstance(value, Mapping) else json.loads(str(value) or "{}")
+        if isinstance(value, Mapping):
+            mapping = value
+        else:
+            mapping = json.loads(str(value) or "{}")
         if name == "friction_law":
             return _law(mapping)
         if name in MECHANICAL_MAPPINGS:
@@ -46,7 +49,9 @@ def short(name: str, value: Any) -> str:
             return f"{_first_entries(mapping)}, {_mark(text)}"
     except (ValueError, KeyError, TypeError, AttributeError, IndexError):
         text = str(value)
-    return text if len(text) <= LONGEST else f"{text[:34]}… {_mark(text)}"
+    if len(text) <= LONGEST:
+        return text
+    return f"{text[:34]}… {_mark(text)}"
 
 
 def _first_entries(mapping: Mapping[str, Any]) -> str:
@@ -60,18 +65,29 @@ def _first_entries(mapping: Mapping[str, Any]) -> str:
 def entries(mapping: Mapping[str, Any]) -> str:
     """Return the entries of a mapping as text, such as 'kind ball, rows 2'; keys in capitals come last."""
     keys = sorted(mapping, key=lambda key: (key[:1].isupper(), key))
-    values = {key: v if isinstance(v := mapping[key], (str, list)) else _number(v) for key in keys}
-    return ", ".join(f"{key} {value}".replace("_", " ") for key, value in values.items())
+    return ", ".join(f"{key} {_entry(mapping[key])}".replace("_", " ") for key in keys)
+
+
+def _entry(value: Any) -> Any:
+    """Return an entry of a mapping as it is shown."""
+    if isinstance(value, (str, list)):
+        return value
+    return _number(value)
 
 
 def in_words(name: str, value: Any) -> str:
     """Return a level of a factor, number or not, as text for tables and messages."""
-    return short(name, value) if name in MAPPING_FIELDS else label(value)
+    if name in MAPPING_FIELDS:
+        return short(name, value)
+    return label(value)
 
 
 def _mark(value: Any) -> str:
     """Return four characters computed from a value that is too long for a description."""
-    text = value if isinstance(value, str) else json.dumps(value, sort_keys=True, default=float)
+    if isinstance(value, str):
+        text = value
+    else:
+        text = json.dumps(value, sort_keys=True, default=float)
     return f"{zlib.crc32(text.encode()) & 0xFFFF:04x}"
 
 
@@ -83,13 +99,17 @@ def _number(value: Any) -> str:
 
 def _law(law: Mapping[str, Any]) -> str:
     kind = str(law.get("kind", "constant"))
-    if kind in ("linear", "exponential"):
-        lowest = law.get("lowest", 0.0 if kind == "linear" else 0.4)
-        return f"{kind} to {_number(lowest)} {'at' if kind == 'linear' else 'over'} {_number(law['speed'])} mm/s"
+    if kind == "linear":
+        return f"linear to {_number(law.get('lowest', 0.0))} at {_number(law['speed'])} mm/s"
+    if kind == "exponential":
+        return f"exponential to {_number(law.get('lowest', 0.4))} over {_number(law['speed'])} mm/s"
     if kind == "table":
-        speed, friction = law["speed"], law["friction"]
+        speed = law["speed"]
+        friction = law["friction"]
         last = f"{_number(friction[0])} to {_number(friction[-1])} from {_number(speed[-1])} mm/s"
-        return f"table {last}" if len(speed) <= 2 else f"table {_mark(law)}, {last}"
+        if len(speed) <= 2:
+            return f"table {last}"
+        return f"table {_mark(law)}, {last}"
     return kind
 
 
@@ -107,7 +127,10 @@ def _profile(profile: Mapping[str, Any]) -> str:
         words = f"drawn {profile['file']}"
     else:  # the mark distinguishes drawn shapes, and smoothed or worn ones from others
         plain = "name" in profile and profile.get("frame") == "section" and not {"smooth", "worn"} & set(profile)
-        words = profile["name"] if plain else f"{profile.get('name', 'drawn')} {_mark(profile)}"
+        if plain:
+            words = profile["name"]
+        else:
+            words = f"{profile.get('name', 'drawn')} {_mark(profile)}"
         words += f", {len(profile['points'])} points"
     if "width" in profile:
         words += f", {_number(profile['width'])} mm wide"

@@ -33,23 +33,36 @@ def table(path: Any, used: Collection[str] = ()) -> dict[str, np.ndarray]:
 
     Returns
     -------
-    Columns: name -> values, shape (n,).
+    Columns: name -> values, shape (n,). Blanks in names of further columns become underscores.
 
     Raises
     ------
     InputError : no such file, a line of another length, or a cell that is empty, not clear or of another kind
     """
     wrong = Collector()
-    found = read_cases(Path(path), wrong, used)
+    cases = read_cases(Path(path), wrong, used)
     with wrong.part():
-        _check_names(found, used, path)
-    columns = {}
-    for j, name in enumerate(found.names):
-        cells = {number: line[j] for number, line in found.lines.items()}
+        _check_names(cases, used, path)
+    columns: dict[str, np.ndarray] = {}
+    for j, name in enumerate(cases.names):
+        cells = {number: line[j] for number, line in cases.lines.items()}
+        key = _without_blanks(name)
+        if key in columns:
+            allowed = f"one column for {key}"
+            error = InputError("table column", name, allowed, f"Rename it, for example {key}_2.")
+            raise error.at(path, cases.head)
         numbers = _numbers_of(name, cells)
-        columns[name] = _cells_of(name, cells, path, wrong) if numbers is None else numbers
+        if numbers is None:
+            columns[key] = _cells_of(name, cells, path, wrong)
+        else:
+            columns[key] = numbers
     wrong.check()
     return columns
+
+
+def _without_blanks(name: str) -> str:
+    """Return the name of a column as results have it: xarray marks no coordinate with a blank in its name."""
+    return "_".join(name.split())
 
 
 def genes(path: Any) -> np.ndarray:
@@ -73,22 +86,23 @@ def read_cases(path: Path, wrong: Collector, used: Collection[str] = ()) -> User
     return read_table(path, "table", "case", wrong, used, content=read_bytes(path, "table", math.inf))
 
 
-def _check_names(found: UserTable, used: Collection[str], path: Any) -> None:
+def _check_names(cases: UserTable, used: Collection[str], path: Any) -> None:
     """Refuse further columns of a table that look like a parameter, and a table with further columns only."""
-    own, wrong = [name for name in found.names if name not in FACTOR_NAMES and name not in used], Collector()
-    for name in own:
+    further = [name for name in cases.names if name not in FACTOR_NAMES and name not in used]
+    wrong = Collector()
+    for name in further:
         with wrong.part():
             bare, unit = split_head(name)  # the name of a further column holds its unit
             check_own_name(name, "table column")
             if name in RADII:
                 remedy = f'Add factors: {{axis_distance: {{expression: "{AXIS_DISTANCE}"}}}}.'
                 raise InputError("table column", name, "a parameter, or a column that an expression uses", remedy)
-            if nearest(bare, FACTOR_NAMES) or len(own) == len(found.names):
+            if nearest(bare, FACTOR_NAMES) or len(further) == len(cases.names):
                 raise unknown_name("table column", bare, FACTOR_NAMES)
-            if found.all(found.names.index(name), is_number):
-                _check_meaning(name, bare, unit, found.names)
+            if cases.all(cases.names.index(name), is_number):
+                _check_meaning(name, bare, unit, cases.names)
     for error in wrong.errors:
-        error.at(path, found.head)
+        error.at(path, cases.head)
     wrong.check()
 
 
@@ -117,7 +131,18 @@ def _numbers_of(name: str, cells: Mapping[int, str]) -> np.ndarray | None:
         numbers = np.array([read_number(cell) for cell in cells.values()], dtype=float)
     except ValueError:
         return None
-    return numbers if PARAMETERS[name].accepts(numbers).all() else None
+    if PARAMETERS[name].accepts(numbers).all():
+        return numbers
+    return None
+
+
+def _value_of(name: str, cell: str) -> Any:
+    """Return the checked value of a cell; a column that is no factor holds words."""
+    if name == "material_pair":
+        return field_value(name, [part.strip() for part in cell.split("/")], name)
+    if name in FACTOR_NAMES:
+        return field_value(name, cell, name)
+    return str(cell)
 
 
 def _cells_of(name: str, cells: Mapping[int, str], path: Any, wrong: Collector) -> np.ndarray:
@@ -127,8 +152,7 @@ def _cells_of(name: str, cells: Mapping[int, str], path: Any, wrong: Collector) 
         if not cell or isinstance(cell, Refused):  # the reader has added its error
             continue
         try:
-            pair = [part.strip() for part in cell.split("/")] if name == "material_pair" else cell
-            values.append(field_value(name, pair, name) if name in FACTOR_NAMES else str(cell))
+            values.append(_value_of(name, cell))
         except InputError as error:
             wrong.errors += [one.at(path, number) for one in error.errors]
     return column(values, name in PARAMETERS and not any(isinstance(value, str) for value in values))

@@ -95,6 +95,8 @@ def roles_of(
             return "condition"
         if name in ROLE_OF:
             return ROLE_OF[name]
-        return "condition" if name in fed and all(role(other) == "condition" for other in fed[name]) else "choice"
+        if name in fed and all(role(other) == "condition" for other in fed[name]):
+            return "condition"
+        return "choice"
 
     return {name: role(name) for name in names if name not in OPTION_FACTORS}

@@ -61,7 +61,8 @@ def sample(
     ------
     InputError : unknown method or option, a factor the method cannot take, a value outside its bounds
     """
-    settings, drawn_by = _settings(method, options), METHODS[method]
+    settings = _settings(method, options)
+    drawn_by = METHODS[method]
     if drawn_by.observed:
         used = {name for spec in factors.values() for name in expressions.names(spec.get("expression", "0"))}
         columns = table(settings["table"], used)
@@ -102,7 +103,8 @@ def _settings(method: str, options: Mapping[str, Any]) -> dict[str, Any]:
     check_names("design", [method], METHODS)
     settings = METHODS[method].defaults
     for key in options.keys() - settings.keys():
-        if having := those_that_take(key):
+        having = those_that_take(key)
+        if having:
             raise InputError(key, options[key], f"an option of design {' and '.join(having)}", "Remove the key.")
         raise unknown_name("design option", key, settings)
     return {**settings, **options}
@@ -110,13 +112,17 @@ def _settings(method: str, options: Mapping[str, Any]) -> dict[str, Any]:
 
 def _check_weights(free: Mapping[str, Factor], method: str) -> None:
     """Refuse weights in a design that does not draw the values of a list at random."""
-    drawing, outer = those_with("weighs"), METHODS[method].points
+    drawing = those_with("weighs")
+    outer = METHODS[method].points
     for name, factor in free.items():
         if factor.weights and not METHODS[method].random(factor):
-            where = f"the outer array of {method}" if outer else f"design {method}"
-            known = f"a design that draws values at random ({', '.join(drawing)})"
-            remedy = f"Remove the weights, or {'add scatter: true' if outer else f'choose design {drawing[0]}'}."
-            allowed = f"{known}; {where} takes each value equally often"
+            where = f"design {method}"
+            remedy = f"Remove the weights, or choose design {drawing[0]}."
+            if outer:
+                where = f"the outer array of {method}"
+                remedy = "Remove the weights, or add scatter: true."
+            random = f"a design that draws values at random ({', '.join(drawing)})"
+            allowed = f"{random}; {where} takes each value equally often"
             raise InputError(f"factors.{name}.weights", list(factor.weights), allowed, remedy)
 
 
@@ -138,7 +144,8 @@ def _derived(
     for name in order:
         value = expressions.evaluate(texts[name], known, f"factors.{name}.expression")
         known[name] = out[name] = np.broadcast_to(value, (rows,)).copy()
-        if bad := int(np.isnan(out[name]).sum()):
+        bad = int(np.isnan(out[name]).sum())
+        if bad:
             wrong = f"is not a number in {bad} of {rows} rows"
             raise InputError(f"factors.{name}.expression", texts[name], "a number in each row", wrong=wrong)
     return out

@@ -21,7 +21,10 @@ from trackroller.methods.grid import cells
 from trackroller.methods.table import of_columns
 from trackroller.study.outputs import flat
 
-PLACE, FACTOR, META = "design_place", "design_factor", "design_meta"
+PLACE = "design_place"
+FACTOR = "design_factor"
+META = "design_meta"
+REMEDY = "Rows and study file do not belong together. Run the study again."
 
 
 def stored(design: Design) -> tuple[dict[str, Any], dict[str, Any]]:
@@ -61,12 +64,13 @@ def restored(ds: xr.Dataset, parsed: Mapping[str, Factor], dims: tuple[str, ...]
     ------
     InputError : the design is missing, or rows and factors are not those of the study file
     """
-    known, meta = str(ds.attrs.get("design", "")), json.loads(ds.attrs.get(META, "null"))
-    remedy = "Rows and study file do not belong together. Run the study again."
+    known = str(ds.attrs.get("design", ""))
+    meta = json.loads(ds.attrs.get(META, "null"))
     if known not in METHODS or meta is None:
-        raise InputError("study", sorted(map(str, ds.attrs)), f"results with the attributes design and {META}", remedy)
+        raise InputError("study", sorted(map(str, ds.attrs)), f"results with the attributes design and {META}", REMEDY)
     method = METHODS[known]
-    names, size = meta.pop("columns"), meta.pop("size")
+    names = meta.pop("columns")
+    size = meta.pop("size")
     rows = int(np.prod([ds.sizes[d] for d in dims]))
     if rows != max(size, 1):
         raise InputError("study", f"{rows} rows", f"the {size} rows of its design {known}", "Gather the study again.")
@@ -80,19 +84,28 @@ def restored(ds: xr.Dataset, parsed: Mapping[str, Factor], dims: tuple[str, ...]
     else:
         unit = flat(ds, PLACE, dims)
         if [str(name) for name in ds[FACTOR].values] != list(free):
-            raise InputError("study", list(map(str, ds[FACTOR].values)), f"the factors {', '.join(free)}", remedy)
-    drawn = {name: method.values(factor, unit[:, j]) for j, (name, factor) in enumerate(free.items())}
-    for name, values in drawn.items():
-        number = name in ds.variables and free[name].ordered and ds[name].dtype.kind in "fiu"
-        if number and not np.allclose(flat(ds, name, dims), values, rtol=1e-6, atol=1e-12):
-            raise InputError("study", name, "the values of its design", remedy)
+            raise InputError("study", list(map(str, ds[FACTOR].values)), f"the factors {', '.join(free)}", REMEDY)
+    levels = {name: method.values(factor, unit[:, j]) for j, (name, factor) in enumerate(free.items())}
+    _check_values(ds, free, levels, dims)
     columns = {}
     for name in names:
         if not parsed[name].discrete:
             columns[name] = _column(ds, name, dims)
+        elif name in levels:
+            columns[name] = levels[name]
         else:
-            columns[name] = drawn[name] if name in drawn else parsed[name].take(np.zeros(rows))
+            columns[name] = parsed[name].take(np.zeros(rows))
     return Design(columns, free, method, unit, meta)
+
+
+def _check_values(
+    ds: xr.Dataset, free: Mapping[str, Factor], levels: Mapping[str, np.ndarray], dims: tuple[str, ...]
+) -> None:
+    """Refuse rows whose numbers are not those that the design draws."""
+    for name, values in levels.items():
+        number = name in ds.variables and free[name].ordered and ds[name].dtype.kind in "fiu"
+        if number and not np.allclose(flat(ds, name, dims), values, rtol=1e-6, atol=1e-12):
+            raise InputError("study", name, "the values of its design", REMEDY)
 
 
 def solved_part(design: Design, rows: np.ndarray) -> Design:
@@ -118,4 +131,6 @@ def _column(ds: xr.Dataset, name: str, dims: tuple[str, ...]) -> np.ndarray:
     if name not in ds.variables:
         raise InputError("study", name, "a column of the results", "Gather the study again.")
     values = flat(ds, name, dims)
-    return values.astype(float if values.dtype.kind in "fiu" else object)
+    if values.dtype.kind in "fiu":
+        return values.astype(float)
+    return values.astype(object)

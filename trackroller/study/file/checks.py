@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -84,16 +84,20 @@ def cross_check(study: Study) -> None:
     single = {*study.factors, *config.base} & set(MATERIAL_FIELDS)
     if both and single:
         raise InputError("material_pair", sorted(single), "the pair or the single materials, not both")
-    if doubled := set(config.base) & set(study.factors):
+    doubled = set(config.base) & set(study.factors)
+    if doubled:
         name = min(doubled)
         raise InputError(
             f"base.{name}", config.base[name], "", "Remove one of them.", wrong=f"stands beside a factor {name}"
         )
     if not config.method.proposes and config.method.observed != (config.table is not None):
-        remedy = "Write 'design: table' too." if config.table else "Write 'table: cases.csv' too, with your file."
+        remedy = "Write 'table: cases.csv' too, with your file."
+        if config.table:
+            remedy = "Write 'design: table' too."
         raise InputError("table", config.table, "design: table and the path of a CSV or Excel file together", remedy)
     config.method.check(study.parsed)
-    if config.method.proposes and (several := [n for n in OPTION_FACTORS if n in study.factors]):
+    several = [name for name in OPTION_FACTORS if name in study.factors]
+    if config.method.proposes and several:
         raise InputError(several[0], study.factors[several[0]]["values"], "one model: a search compares designs")
     for name in study.factors:
         check_own_name(name, f"factors.{name}")
@@ -111,17 +115,24 @@ def cross_check(study: Study) -> None:
 
 def _check_roles(study: Study) -> None:
     config = study.config
+    factors: Mapping[str, Any] = study.parsed
+    if config.roles and config.method.observed:
+        factors = study.drawn.columns
     if config.roles:
-        check_roles(config.roles, study.drawn.columns if config.method.observed else study.parsed, config.design)
+        check_roles(config.roles, factors, config.design)
 
 
 def _check_parts(study: Study) -> None:
     """Check `analysis.groups` and `analysis.conditional_on` of a study."""
     config = study.config
-    groups, category = config.analysis.groups, config.analysis.conditional_on
+    groups = config.analysis.groups
+    category = config.analysis.conditional_on
     if not groups and category is None:
         return
-    free = study.drawn.factors if config.method.observed else {n: f for n, f in study.parsed.items() if f.varies}
+    if config.method.observed:
+        free = study.drawn.factors
+    else:
+        free = {n: f for n, f in study.parsed.items() if f.varies}
     if groups:
         _check_groups(config, groups, free, study.factors)
     if category is not None:
@@ -131,7 +142,8 @@ def _check_parts(study: Study) -> None:
 def _check_groups(
     config: Any, groups: Mapping[str, tuple[str, ...]], free: Mapping[str, Factor], specs: Mapping[str, Any]
 ) -> None:
-    names, seen = list(free), set()
+    names = list(free)
+    grouped = set()
     if not config.method.grouped:
         allowed = f"design {listing(those_with('grouped'), 'or')}, not {config.design}"
         raise InputError("analysis.groups", list(groups), allowed, "Take design: saltelli.")
@@ -146,16 +158,19 @@ def _check_groups(
                 if name in specs:
                     raise InputError(where, name, "factors that vary and are not computed by an expression")
                 raise unknown_name(where, name, names)
-            if name in seen:
+            if name in grouped:
                 raise InputError(where, name, "each factor in one group", "Remove it from one of the groups.")
-            seen.add(name)
+            grouped.add(name)
 
 
 def _check_category(config: Any, name: str, free: Mapping[str, Factor]) -> None:
     where = "analysis.conditional_on"
     by_group = "groups" in config.method.takes and bool(config.analysis.groups)
     if not config.method.conditional or by_group:
-        own = f"{config.design} with analysis.groups" if by_group else config.design
+        if by_group:
+            own = f"{config.design} with analysis.groups"
+        else:
+            own = config.design
         raise InputError(where, name, f"design {listing(those_with('conditional'), 'or')}, not {own}")
     if name not in free:
         raise unknown_name(where, name, [n for n, f in free.items() if f.discrete])
@@ -209,17 +224,23 @@ def _names_of_materials(base: Mapping[str, Any], factors: Mapping[str, Any]) -> 
     roller, guide = MATERIAL_FIELDS
     for field, bodies in ((roller, BODIES[:1]), (guide, BODIES[1:]), ("material_pair", BODIES)):
         spec = factors.get(field)
-        listed = spec.get("values") if isinstance(spec, Mapping) else ()
+        listed = None
+        if isinstance(spec, Mapping):
+            listed = spec.get("values")
         entries = [(f"base.{field}", base.get(field))]
-        entries += [(f"factors.{field}.values", one) for one in listed] if isinstance(listed, (list, tuple)) else []
+        if isinstance(listed, (list, tuple)):
+            entries += [(f"factors.{field}.values", one) for one in listed]
         for where, entry in entries:
-            names = entry if isinstance(entry, (list, tuple)) else (entry,)
+            names: Sequence[Any] = (entry,)
+            if isinstance(entry, (list, tuple)):
+                names = entry
             yield from ((where, body, name) for body, name in zip(bodies, names, strict=False) if isinstance(name, str))
 
 
 def check_cells(study: Study) -> None:
     """Check the names and cells of a table of cases; raise the errors of all its lines together."""
-    wrong, known = Collector(), (*MATERIAL_FIELDS, "material_pair")
+    wrong = Collector()
+    known = (*MATERIAL_FIELDS, "material_pair")
     with wrong.part():
         _ = study.drawn  # names and numbers
     if set(known) & set(column_names(study.table_path, "table")):
@@ -227,12 +248,20 @@ def check_cells(study: Study) -> None:
         for name in (name for name in table.names if name in known):
             cells = {line: row[table.names.index(name)] for line, row in table.lines.items()}
             for cell, line in {cell: line for line, cell in reversed(cells.items())}.items():  # its first line
-                for material in filter(None, map(str.strip, cell.split("/") if name == "material_pair" else [cell])):
+                for material in _materials_in(cell, name):
                     try:
                         study.materials.material(material, name)
                     except InputError as error:
                         wrong.errors.append(error.at(study.table_path, line))
     wrong.check()
+
+
+def _materials_in(cell: str, name: str) -> list[str]:
+    """Return the names of materials in a cell, those of both bodies in the column `material_pair`."""
+    names = [cell]
+    if name == "material_pair":
+        names = cell.split("/")
+    return [name.strip() for name in names if name.strip()]
 
 
 def check_geometry(study: Study) -> None:
@@ -252,8 +281,8 @@ def check_geometry(study: Study) -> None:
     the rollers of a carriage are checked on the whole design before anything is solved.
     """
     config = study.config
-    drawn = config.method.observed or any(factor.kind == "expression" for factor in study.parsed.values())
-    if drawn or config.carriage is not None:
+    needs_rows = config.method.observed or any(factor.kind == "expression" for factor in study.parsed.values())
+    if needs_rows or config.carriage is not None:
         design = study.design()
         problems = list(geometry_problems({name: design[name].values for name in GEOMETRY}))
         if problems and config.method.observed:
@@ -267,7 +296,9 @@ def check_geometry(study: Study) -> None:
         rows = np.array(list(itertools.product(*levels)), dtype=float)
         problem = geometry_problem({name: rows[:, i] for i, name in enumerate(GEOMETRY)})
     if problem is not None:
-        where = "factors" if problem.field in study.factors else "base"
+        where = "base"
+        if problem.field in study.factors:
+            where = "factors"
         raise problem.named(f"{where}.{problem.field}")
 
 
@@ -279,7 +310,9 @@ def _ends(study: Study, name: str) -> list[float]:
         return [float(level) for level in factor.levels]
     if factor.kind in UNBOUNDED:
         return [factor.numbers[0]]
-    low, high = factor.numbers[-2:] if factor.kind == "truncnormal" else (factor.numbers[0], factor.numbers[-1])
+    low, high = factor.numbers[0], factor.numbers[-1]
+    if factor.kind == "truncnormal":
+        low, high = factor.numbers[-2:]
     if low < 0 < high and PARAMETERS[name].nonzero:
         raise InputError(f"factors.{name}", [low, high], PARAMETERS[name].allowed(), wrong="holds 0")
     return [low, high]

@@ -41,7 +41,8 @@ DEVICE = re.compile(r"(con|prn|aux|nul|com\d|lpt\d)(\..*)?", re.IGNORECASE)
 
 def check_name(name: Any) -> str:
     """Return a name that is valid for a folder inside the results folder; refuse any other name."""
-    name = str(name) if isinstance(name, (int, float)) and not isinstance(name, bool) else name
+    if isinstance(name, (int, float)) and not isinstance(name, bool):
+        name = str(name)
     if isinstance(name, str) and DEVICE.fullmatch(name):
         raise InputError("name", name, "the name of a folder", "Add a word to it.", "is a device of Windows")
     if not isinstance(name, str) or not NAME.fullmatch(name) or ".." in name or name.endswith("."):
@@ -125,14 +126,13 @@ _WithKeys = create_model(
         for name, (key, method) in study_keys().items()
     },
 )
+_TYPES_OF_OPTIONS: dict[str, Any] = {option.name: _TYPES.get(option.kind, str) for option in IN_STUDY}
+_TYPES_OF_OPTIONS |= {option.name: str | tuple[str, ...] for option in IN_STUDY if option.factor}
 _WithOptions = create_model(
     "_WithOptions",
     __base__=_WithKeys,
     **{  # type: ignore[call-overload]
-        option.name: (
-            str | tuple[str, ...] if option.factor else _TYPES.get(option.kind, str),
-            Field(option.default, description=option.meaning),
-        )
+        option.name: (_TYPES_OF_OPTIONS[option.name], Field(option.default, description=option.meaning))
         for option in IN_STUDY
     },
 )
@@ -202,13 +202,17 @@ class StudyFile(_WithOptions):  # type: ignore[misc, valid-type]
         if "duty" not in info.data:  # it is wrong itself
             return {}
         carriage = info.data.get("carriage") or {}
-        on_carriage = carriage_of(carriage).duty if carriage.get("duty") is not None else None
+        on_carriage = None
+        if carriage.get("duty") is not None:
+            on_carriage = carriage_of(carriage).duty
         return checked_requirement(value, info.data["duty"] or on_carriage)
 
     @field_validator("question")
     @classmethod
     def _question(cls, value: str | None) -> str | None:
-        return None if value is None else choice(value, "question", QUESTIONS)
+        if value is None:
+            return None
+        return choice(value, "question", QUESTIONS)
 
     @field_validator("carriage", mode="before")
     @classmethod

@@ -27,7 +27,7 @@ from trackroller.methods.factor import Factor
 from trackroller.numerics.units import without_units
 from trackroller.parameters import MATERIAL_FIELDS, PARAMETERS, REGIMES, expressions
 from trackroller.roller.dataset import VARIABLES
-from trackroller.roller.output_names import PARTS, body_of, is_life, parts_of, unit_of
+from trackroller.roller.output_names import PARTS, Part, body_of, is_life, parts_of, unit_of
 from trackroller.roller.requirement import DEFAULT, KEY
 from trackroller.study.design.entries import FACTOR_NAMES, check_own_name, choice
 
@@ -44,7 +44,9 @@ STATISTICS_OF = {  # by the key of a study file
 
 def without_spaces(value: Any) -> Any:
     """Return a mapping from outputs with their names as they are stored; the type of the field refuses other values."""
-    return {str(name).replace(" ", ""): own for name, own in value.items()} if isinstance(value, Mapping) else value
+    if isinstance(value, Mapping):
+        return {str(name).replace(" ", ""): own for name, own in value.items()}
+    return value
 
 
 class Analysis(BaseModel):
@@ -90,7 +92,9 @@ class Analysis(BaseModel):
     def _outputs(cls, value: tuple[str, ...] | None) -> tuple[str, ...] | None:
         if value is not None and not value:
             raise InputError("analysis.outputs", [], "at least one output", "Remove the key for the usual outputs.")
-        return None if value is None else tuple(dict.fromkeys(value))
+        if value is None:
+            return None
+        return tuple(dict.fromkeys(value))
 
     @field_validator("material_scatter", mode="before")
     @classmethod
@@ -171,19 +175,19 @@ def _own_expression(name: Any, text: Any) -> str:
 def check_own(config: Any, factors: Mapping[str, Factor]) -> None:
     """Check that the expressions of the key `own` use results and inputs of the study, and clash with no factor."""
     results = output_names(config.outputs)
-    known = [*results, *factors, *PARAMETERS, *MATERIAL_FIELDS, "material_pair", "regime"]
+    allowed_names = [*results, *factors, *PARAMETERS, *MATERIAL_FIELDS, "material_pair", "regime"]
     texts = {*MATERIAL_FIELDS, "material_pair", "regime"}
     texts |= {name for name, factor in factors.items() if not factor.numeric}
-    dummy: dict[str, Any] = {name: "" if name in texts else np.ones(2) for name in known}
+    dummy: dict[str, Any] = dict.fromkeys(allowed_names, np.ones(2)) | dict.fromkeys(texts, "")
     wrong = Collector()
     for name, text in config.own.items():
         where = f"own.{name}"
         with wrong.part():
             if name in factors:
                 raise InputError("own", name, "a name that is no factor", "Rename it.", "stands among the factors too")
-            for one in sorted(expressions.names(text, where) - set(REGIMES)):
-                if one not in known:
-                    raise unknown_result(where, one, known, config.outputs)
+            for used in sorted(expressions.names(text, where) - set(REGIMES)):
+                if used not in allowed_names:
+                    raise unknown_result(where, used, allowed_names, config.outputs)
             expressions.evaluate(text, dummy | {regime: regime for regime in REGIMES}, where)
     wrong.check()
 
@@ -200,22 +204,22 @@ def check_scatter(config: Any, materials: Mapping[str, Iterable[Any]]) -> None:
     ------
     InputError : a design in which the scatter has no use, or a material without scatter
     """
-    wanted = config.analysis.material_scatter
-    if wanted is False:
+    scatter = config.analysis.material_scatter
+    if scatter is False:
         return
-    if wanted == "fitted":  # the analysis finds the fits
+    if scatter == "fitted":  # the analysis finds the fits
         if config.method.weighted and not config.method.whole:
             return
         remedy = "Remove the key: the verdict has the range by the tests in any design."
         allowed = "design: inner_outer, or a random sample such as design: sobol"
-        raise InputError("analysis.material_scatter", wanted, allowed, remedy)
+        raise InputError("analysis.material_scatter", scatter, allowed, remedy)
     if not config.method.points:
         remedy = "Remove the key: only inner_outer has a B10 life."
-        raise InputError("analysis.material_scatter", wanted, "design: inner_outer", remedy)
-    asked = config.analysis.outputs or [f"life_cycles_{body}" for body in materials if "life" in config.outputs]
+        raise InputError("analysis.material_scatter", scatter, "design: inner_outer", remedy)
+    outputs = config.analysis.outputs or [f"life_cycles_{body}" for body in materials if "life" in config.outputs]
     for body, used in materials.items():
         bare = [m.name for m in used if m.scatter_in_cycles is None and m.scatter_in_stress is None]
-        if wanted is True and bare and any(is_life(name) and body_of(name) == body for name in asked):
+        if scatter is True and bare and any(is_life(name) and body_of(name) == body for name in outputs):
             raise InputError(
                 "analysis.material_scatter",
                 True,
@@ -245,14 +249,14 @@ def check(config: Any, factors: Mapping[str, Factor]) -> None:
 
 def check_analysed(config: Any) -> None:
     """Check that the outputs under `analysis` and `requirement` are results of the study; raise all errors together."""
-    known, scale = names_of_outputs(config), config.analysis.scale
-    asked = {
-        "analysis.outputs": (*(config.analysis.outputs or ()), *(scale if isinstance(scale, dict) else ())),
-        KEY: config.requirement,
-    }
+    known = names_of_outputs(config)
+    scale = config.analysis.scale
+    outputs = [*(config.analysis.outputs or ())]
+    if isinstance(scale, dict):
+        outputs += scale
     raise_all(
         unknown_result(where, name, known, config.outputs)
-        for where, names in asked.items()
+        for where, names in (("analysis.outputs", outputs), (KEY, config.requirement))
         for name in names
         if name.replace(" ", "") not in known
     )
@@ -288,7 +292,9 @@ def check_statistic(config: Any, entry: tuple[str, str], kind: str, output: str,
 def statistic(name: str, kinds: tuple[str, ...] = STATISTICS) -> tuple[str, str]:
     """Split 'b10(roller_life_hours)' into the statistic and its output; ('', name) for a plain name."""
     kind, bracket, output = name.replace(" ", "").partition("(")
-    return (kind, output[:-1]) if bracket and kind in kinds and output.endswith(")") else ("", name)
+    if bracket and kind in kinds and output.endswith(")"):
+        return kind, output[:-1]
+    return "", name
 
 
 def _check_constraints(config: Any, factors: Mapping[str, Factor], free: list[str]) -> None:
@@ -304,15 +310,21 @@ def _check_constraints(config: Any, factors: Mapping[str, Factor], free: list[st
 
 def unknown_result(where: str, name: str, known: Iterable[str], groups: Iterable[str]) -> InputError:
     """Return the error for a name that is no result of these groups; it gives the nearest one."""
-    if kinds := STATISTICS_OF.get(where) if "(" in name else None:
+    kinds = STATISTICS_OF.get(where)
+    if kinds and "(" in name:
         allowed = f"a result, or {listing(kinds, 'or')} of one"
         return InputError(where, name, allowed, f"For example {kinds[0]}({name.partition('(')[2].rstrip(') ')}).")
-    variable = PARTS[name].variable if name in PARTS else VARIABLES.get(name)
+    variable = VARIABLES.get(name)
+    if name in PARTS:
+        variable = PARTS[name].variable
     if variable is not None and variable.group not in set(groups):
         if variable.group == "status":
             return InputError(where, name, "a result or a factor")
         allowed = f"results of the study's outputs; its group {variable.group} is not among them"
         return InputError(where, name, allowed, f"Add {variable.group} to outputs.")
-    if variable is not None and (parts := [part.name for part in parts_of(variable)]):
-        return InputError(where, name, "one number a case", f"Choose one, such as {parts[0]}.")
+    parts: list[Part] = []
+    if variable is not None:
+        parts = list(parts_of(variable))
+    if parts:
+        return InputError(where, name, "one number a case", f"Choose one, such as {parts[0].name}.")
     return unknown_name(where, name, known)

@@ -60,20 +60,24 @@ def _translated(detail: Mapping[str, Any]) -> InputError:
         return context
     where = ".".join(str(part) for part in detail["loc"]) or "study"
     if detail["type"] == "extra_forbidden":
-        place, name = str(detail["loc"][0]), str(detail["loc"][-1])
+        place = str(detail["loc"][0])
+        name = str(detail["loc"][-1])
         if len(detail["loc"]) > 1 and place in ROOMS:
             return unknown_name(place, name, ROOMS[place])
         return unknown_name("study key", where, StudyFile.model_fields)
     if detail["type"] == "missing":
         *room, key = (str(part) for part in detail["loc"])
-        needs = f"this key, in {room[-1] if room else 'every study'}"
-        return InputError(where, None, needs, f"Add {key}: ... to {room[-1]}." if room else f"Add a line '{key}: ...'.")
+        if room:
+            return InputError(where, None, f"this key, in {room[-1]}", f"Add {key}: ... to {room[-1]}.")
+        return InputError(where, None, "this key, in every study", f"Add a line '{key}: ...'.")
     allowed = detail["msg"].replace("Input should be ", "")
     if detail["type"] == "model_type":
         allowed = f"a mapping with {', '.join(ROOMS[where])}"
     for word, plain in (("dictionary", "mapping of names to values"), ("tuple", "list"), ("string", "text")):
         allowed = allowed.replace(f"valid {word}", plain)
-    remedy = f"For example {where}: {EXAMPLES[where]}." if where in EXAMPLES else ""
+    remedy = ""
+    if where in EXAMPLES:
+        remedy = f"For example {where}: {EXAMPLES[where]}."
     if where == "table" and isinstance(detail.get("input"), (list, dict)):
         remedy = "Write the table to a file, as frame.to_csv('cases.csv', index=False), and give the path: cases.csv."
     return InputError(where, detail.get("input"), allowed, remedy)
@@ -119,7 +123,9 @@ def _as_written(data: Mapping[str, Any]) -> Iterator[None]:
 def _renamed(error: InputError, names: Mapping[str, str]) -> InputError:
     """Return an error whose key has the name that the study file uses."""
     head, dot, tail = error.field.partition(".")
-    return error.named(f"{names[head]}{dot}{tail}") if head in names else error
+    if head in names:
+        return error.named(f"{names[head]}{dot}{tail}")
+    return error
 
 
 def checked_keys(data: Mapping[str, Any]) -> StudyFile:
@@ -157,7 +163,8 @@ def _by_strokes(data: Mapping[str, Any]) -> Mapping[str, Any]:
     """
     if not is_of_strokes(_mapping(data.get("duty"))):
         return data
-    duty, base = checked_duty(data["duty"]), dict(_mapping(data.get("base")))
+    duty = checked_duty(data["duty"])
+    base = dict(_mapping(data.get("base")))
     remedies = {
         "carriage": "Write the strokes into the file of the carriage.",
         "table": "Write hours_per_day here, and guide_overrollings_per_hour in the table.",
@@ -209,7 +216,8 @@ def _on_carriage(study: Study, whole: Carriage, names: set[str]) -> tuple[dict[s
 
     The key `base` takes what all rollers share, `roles` the roles of the fields, and `duty` that of the carriage.
     """
-    config, wrong = study.config, Collector()
+    config = study.config
+    wrong = Collector()
     for name in sorted(names & {*given_by(whole)}):
         allowed = "parameters that the carriage does not give"
         wrong.errors.append(InputError(name, None, allowed, "Remove it: statics gives it.", "stands beside a carriage"))
@@ -219,43 +227,56 @@ def _on_carriage(study: Study, whole: Carriage, names: set[str]) -> tuple[dict[s
     fields = [name for name in study.factors if field_of(name)]  # in their order: a file is written the same again
     with wrong.part():
         check_fields(whole, fields)
+    _check_rollers(config, whole, wrong)
+    if "life" not in config.outputs:
+        allowed = "outputs with life, by which the worst roller is found"
+        wrong.errors.append(InputError("outputs", list(config.outputs), allowed, "Add life."))
+    duty: Mapping[str, float] | None = config.duty
+    if duty is None:
+        duty = whole.duty
+    if whole.duty is not None and duty != whole.duty:
+        wrong.errors.append(InputError("duty", config.duty, "the duty of the carriage", "Remove one of them."))
+    speeds = [name for name in fields if "carriage_speed" in name]
+    if math.isfinite(whole.stroke) and speeds:
+        remedy = "Write hours_per_day in place of the strokes."
+        wrong.errors.append(InputError(f"factors.{speeds[0]}", None, "one speed", remedy, "varies beside strokes"))
+    wrong.check()
+    of_study = set(names)
+    if "material_pair" in names:
+        of_study |= {*MATERIAL_FIELDS}
+    common = {name: value for name, value in common_values(whole).items() if name not in of_study}
+    cases = [roller.case for roller in whole.rollers if roller.case is not None]
+    lacking = {name for name in common if all(name in case.not_given for case in cases)}
+    roles = {}
+    if not config.method.points:
+        roles = {name: field.role for name in fields if (field := field_of(name))}
+    return (
+        {"base": config.base | common, "roles": roles | config.roles, "duty": duty},
+        {name: value for name, value in not_given(of_study).items() if name in lacking},
+    )
+
+
+def _check_rollers(config: StudyFile, whole: Carriage, wrong: Collector) -> None:
+    """Add the errors of rollers without a file, and of files with other options than the study has."""
     checked: set[tuple[str, str]] = set()
     for roller in whole.rollers:
+        field = f"carriage.rollers.{roller.name}.roller"
         if roller.case is None:
-            wrong.errors.append(
-                InputError(f"carriage.rollers.{roller.name}.roller", None, "its file", "Add roller: FILE.")
-            )
+            wrong.errors.append(InputError(field, None, "its file", "Add roller: FILE."))
         for key, value in roller.options.items():
             if (key, str(value)) in checked:  # rollers may share a file, whose error is stated once
                 continue
             checked.add((key, str(value)))
             with wrong.part():
-                _check_option(config, key, value, f"carriage.rollers.{roller.name}.roller.{key}")
-    if "life" not in config.outputs:
-        allowed = "outputs with life, by which the worst roller is found"
-        wrong.errors.append(InputError("outputs", list(config.outputs), allowed, "Add life."))
-    duty = whole.duty if config.duty is None else config.duty
-    if whole.duty is not None and duty != whole.duty:
-        wrong.errors.append(InputError("duty", config.duty, "the duty of the carriage", "Remove one of them."))
-    if math.isfinite(whole.stroke) and (faster := [name for name in fields if "carriage_speed" in name]):
-        remedy = "Write hours_per_day in place of the strokes."
-        wrong.errors.append(InputError(f"factors.{faster[0]}", None, "one speed", remedy, "varies beside strokes"))
-    wrong.check()
-    known = names | ({*MATERIAL_FIELDS} if "material_pair" in names else set())
-    common = {name: value for name, value in common_values(whole).items() if name not in known}
-    cases = [roller.case for roller in whole.rollers if roller.case is not None]
-    lacking = {name for name in common if all(name in case.not_given for case in cases)}
-    roles = {} if config.method.points else {name: field.role for name in fields if (field := field_of(name))}
-    return (
-        {"base": config.base | common, "roles": roles | config.roles, "duty": duty},
-        {name: value for name, value in not_given(known).items() if name in lacking},
-    )
+                _check_option(config, key, value, f"{field}.{key}")
 
 
 def _check_option(config: StudyFile, key: str, value: Any, where: str) -> None:
     """Refuse an option in the file of a roller that the study does not have."""
     stated = getattr(config, key, None)
-    listed = tuple(value) if isinstance(value, (list, tuple)) else value
+    listed = value
+    if isinstance(value, (list, tuple)):
+        listed = tuple(value)
     if key == "outputs" or stated == listed:
         return
     allowed = f"the option of the study, {stated}"

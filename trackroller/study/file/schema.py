@@ -58,10 +58,9 @@ def schema() -> dict[str, Any]:
     base |= {name: {"type": "string"} for name in MATERIAL_FIELDS} | {"material_pair": pair}
     base |= {name: {"type": ["object", "string", "null"], "description": text} for name, text in MAPPING_FIELDS.items()}
     properties["base"] |= {"properties": base, "additionalProperties": False}
-    named = {
-        name: _factor() | ({"description": PARAMETERS[name].allowed()} if name in PARAMETERS else {})
-        for name in (*base, *OPTION_FACTORS)
-    }
+    named = {name: _factor() for name in (*base, *OPTION_FACTORS)}
+    for name in named.keys() & PARAMETERS.keys():
+        named[name] = named[name] | {"description": PARAMETERS[name].allowed()}
     properties["factors"] |= {"properties": named, "additionalProperties": _factor()}
     properties["method"]["enum"] = list(METHODS)
     properties["question"]["enum"] = list(QUESTIONS)

@@ -72,6 +72,8 @@ def check_search(config: Any, factors: Mapping[str, Factor]) -> None:
 
 def _check_goal(config: Any, goal: str, factors: Mapping[str, Factor], free: list[str], known: list[str]) -> None:
     kind, output = judged_by(goal)
-    check_statistic(config, ("goals", goal), kind, output, free if kind == "worst" else known)
+    if kind == "worst":
+        known = free
+    check_statistic(config, ("goals", goal), kind, output, known)
     if output in factors and not factors[output].numeric:
         raise InputError("goals", goal, "a result or factor with one number a case", "Names have no order.")

@@ -84,12 +84,17 @@ class Study:
     @cached_property
     def carriage(self) -> Carriage | None:
         """Return the carriage whose rollers are solved, None for a study of one roller."""
-        return None if self.config.carriage is None else carriage_of(self.config.carriage)
+        if self.config.carriage is None:
+            return None
+        return carriage_of(self.config.carriage)
 
     @cached_property
     def materials(self) -> MaterialDatabase:
         """Return the material database: the built-in one, changed and extended by the user's file."""
-        return load_database() if self.database is None else self.database
+        if self.database is None:
+            return load_database()
+        database: MaterialDatabase = self.database
+        return database
 
     @property
     def decides(self) -> bool:
@@ -99,8 +104,10 @@ class Study:
     @property
     def table_path(self) -> Path:
         """Return the path of the CSV of cases; a relative path starts from the folder of the study file."""
-        folder = Path() if self.path is None else self.path.parent
-        return folder / str(self.config.table)
+        table = Path(str(self.config.table))
+        if self.path is None:
+            return table
+        return self.path.parent / table
 
     @property
     def options(self) -> dict[str, Any]:
@@ -115,7 +122,9 @@ class Study:
         table : str, optional
             Write this path of the table of cases instead of that in the study file.
         """
-        return self._text if table is None else write_yaml(self.as_dict() | {"table": table})
+        if table is None:
+            return self._text
+        return write_yaml(self.as_dict() | {"table": table})
 
     def as_dict(self) -> dict[str, Any]:
         """Return what the study file says, every default included, as values of YAML."""
@@ -134,7 +143,12 @@ class Study:
         """Return a sentence for each value that is unusual, see `trackroller.roller.doubts`."""
         values = {**self.config.base, **self.drawn.columns}
         pair = np.ravel(np.array(values.get("material_pair", ()), dtype=object)).tolist()
-        names = [name for entry in pair for name in (entry if isinstance(entry, tuple) else str(entry).split(" / "))]
+        names: list[str] = []
+        for entry in pair:
+            if isinstance(entry, tuple):
+                names += entry
+            else:
+                names += str(entry).split(" / ")
         names += [name for field in MATERIAL_FIELDS for name in set(np.ravel(values.get(field, ())).tolist())]
         return doubts(values, map(self.materials.material, dict.fromkeys(names)))
 

@@ -48,17 +48,21 @@ def check_until(config: Any) -> None:
     until = config.until
     if until is None:
         return
-    for key, drawn in (("design", config.design), ("inner", config.inner)):
-        if drawn is not None and not METHODS[drawn].grows:
+    for key, method in (("design", config.design), ("inner", config.inner)):
+        if method is not None and not METHODS[method].grows:
             allowed = f"with until: {listing(those_with('grows'), 'or')}, which grow by more samples"
-            allowed = allowed if key == "design" else "with until: sobol, whose rows stay as the sample grows"
-            remedy = f"Write {key}: sobol" if METHODS[drawn].weighs else "Choose one of them"
-            raise InputError(key, drawn, allowed, f"{remedy}, or remove until.")
+            if key != "design":
+                allowed = "with until: sobol, whose rows stay as the sample grows"
+            remedy = "Choose one of them"
+            if METHODS[method].weighs:
+                remedy = f"Write {key}: sobol"
+            raise InputError(key, method, allowed, f"{remedy}, or remove until.")
     if "groups" in config.method.takes and config.analysis.groups:
         groups = list(config.analysis.groups)
         raise InputError("analysis.groups", groups, "with until: indices of single factors", "Remove groups or until.")
-    each, rest = divmod(config.samples, until.replicates)
-    if rest or each & (each - 1) or not each:
+    size, remainder = divmod(config.samples, until.replicates)
+    is_power_of_two = size > 0 and size & (size - 1) == 0
+    if remainder or not is_power_of_two:
         near = until.replicates << max(0, round(config.samples / until.replicates) - 1).bit_length()
         allowed = f"with until: the {until.replicates} replicates times a power of two, at the first look"
         raise InputError("samples", config.samples, allowed, f"Write samples: {near}, or remove the key.")
@@ -69,7 +73,9 @@ def check_until(config: Any) -> None:
 def _check_of(config: Any, name: str, known: list[str]) -> None:
     """Check one entry of `until.of`."""
     points = config.method.points
-    kind, output = statistic(name) if points else ("", name)
+    kind, output = "", name
+    if points:
+        kind, output = statistic(name)
     if kind == "probability" and output in (*config.requirement, *REGIMES):
         return
     if kind == "probability":
@@ -88,6 +94,9 @@ def _check_of(config: Any, name: str, known: list[str]) -> None:
 def check_first_look(study: Any) -> None:
     """Refuse a number of cases that the first look exceeds already."""
     until = study.config.until
-    if until is not None and (cases := study.drawn.size) > until.at_most:
+    if until is None:
+        return
+    cases = study.drawn.size
+    if cases > until.at_most:
         remedy = f"Write at_most: {4 * cases}, for example, or fewer samples."
         raise InputError("until.at_most", until.at_most, f"at least the {cases} cases of the first look", remedy)

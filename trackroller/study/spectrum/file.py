@@ -168,33 +168,35 @@ class Spectrum:
         if not isinstance(values, Mapping):
             raise InputError("spectrum", type(values).__name__, "a mapping with the keys of a spectrum file")
         wrong = Collector()
-        found: dict[str, Any] = {}
+        fields: dict[str, Any] = {}
         with wrong.part():
             check_names("spectrum: key", values, FILE_FIELDS)
         with wrong.part():
-            found["blocks"], found["by_share"] = _blocks(values.get("blocks"), values.get("base") or {})
+            fields["blocks"], fields["by_share"] = _blocks(values.get("blocks"), values.get("base") or {})
         with wrong.part():
-            found["critical_damage"] = _number("critical_damage", values.get("critical_damage", 1.0), open_lower=True)
+            fields["critical_damage"] = _number("critical_damage", values.get("critical_damage", 1.0), open_lower=True)
         with wrong.part():
-            found["failure_probabilities"] = _probabilities(values.get("failure_probabilities", PROBABILITIES))
+            fields["failure_probabilities"] = _probabilities(values.get("failure_probabilities", PROBABILITIES))
         with wrong.part():
-            found["duty"] = checked_duty(values["duty"]) if values.get("duty") is not None else None
+            fields["duty"] = None
+            if values.get("duty") is not None:
+                fields["duty"] = checked_duty(values["duty"])
         left_out = {}
         with wrong.part():
             if "limits" in values:
-                found["groups"] = _groups(values["limits"])
+                fields["groups"] = _groups(values["limits"])
                 left_out = {"not_checked": others([*np.atleast_1d(values["limits"])])}
         with wrong.part():
-            found["options"] = left_out | {key: values[key] for key in OPTIONS if key in values}
-            Options(**found["options"])  # checked before any case is solved
+            fields["options"] = left_out | {key: values[key] for key in OPTIONS if key in values}
+            Options(**fields["options"])  # checked before any case is solved
         with wrong.part():
-            found["name"] = checked_text(str(values.get("name", "spectrum")), "name")
+            fields["name"] = checked_text(str(values.get("name", "spectrum")), "name")
         with wrong.part():
-            found["description"] = checked_text(str(values.get("description", "")), "description", lines=True)
+            fields["description"] = checked_text(str(values.get("description", "")), "description", lines=True)
         wrong.check()
-        if is_of_strokes(found["duty"]):
-            found |= _by_strokes(found["duty"], found["blocks"])
-        return cls(**found)
+        if is_of_strokes(fields["duty"]):
+            fields |= _by_strokes(fields["duty"], fields["blocks"])
+        return cls(**fields)
 
 
 def _by_strokes(duty: Mapping[str, float], blocks: Sequence[Block]) -> dict[str, Any]:
@@ -249,15 +251,20 @@ def _blocks(given: Any, base: Any) -> tuple[tuple[Block, ...], bool]:
     Raises the errors of all blocks and of `base` together.
     """
     wrong = Collector()
-    path = find_beside(given, "blocks") if isinstance(given, str) else None
-    table = None if path is None else read_table(path, "blocks", "block", wrong, optional=OPTIONAL)
-    blocks = given if table is None else _entries(table, path, wrong)
+    table = None
+    path = None
+    blocks = given
+    if isinstance(given, str):
+        path = find_beside(given, "blocks")
+        table = read_table(path, "blocks", "block", wrong, optional=OPTIONAL)
+        blocks = _entries(table, path, wrong)
     if not isinstance(blocks, list) or not blocks:
         example = "Write - {name: loaded, distance: 4000, radial_force: -300}."
         raise InputError("blocks", blocks, "a list of blocks that is not empty, or the name of a table", example)
     if not isinstance(base, Mapping):
         raise InputError("base", base, "a mapping of case fields to values")
-    base, made = renamed(base), []
+    base = renamed(base)
+    checked = []
     try:
         Case.from_dict(base)
     except InputError as error:
@@ -265,30 +272,37 @@ def _blocks(given: Any, base: Any) -> tuple[tuple[Block, ...], bool]:
         base = {}  # the loads of the blocks are checked on their own
     for i, entry in enumerate(blocks):
         try:
-            made.append(_block(entry, base, i + 1))
+            checked.append(_block(entry, base, i + 1))
         except InputError as error:
-            for one in error.errors:
-                one.path = ("blocks", str(i))
-                wrong.errors.append(one if table is None else one.at(path, list(table.lines)[i]))
+            wrong.errors += [_placed(one, i, table, path) for one in error.errors]
     wrong.check()
-    names = Counter(block.name for block in made).most_common(1)
+    names = Counter(block.name for block in checked).most_common(1)
     if names[0][1] > 1:
         raise InputError("blocks", names[0][0], "a name of its own for each block", "Rename one of the blocks.")
-    if not sum(block.distance for block in made) > 0:
+    if not sum(block.distance for block in checked) > 0:
         raise InputError("distance", 0.0, "distances of a shift that add up to more than 0 m", "Give distances in m.")
     by_share = ["share" in entry for entry in blocks]
     if any(by_share):
-        _check_shares(made, by_share)
-    return tuple(made), any(by_share)
+        _check_shares(checked, by_share)
+    return tuple(checked), any(by_share)
 
 
-def _check_shares(made: list[Block], by_share: list[bool]) -> None:
+def _placed(error: InputError, i: int, table: UserTable | None, path: Path | None) -> InputError:
+    """Return an error of a block with its place: its line in a table, or its number in `blocks`."""
+    error.path = ("blocks", str(i))
+    if table is None:
+        return error
+    return error.at(path, list(table.lines)[i])
+
+
+def _check_shares(blocks: list[Block], by_share: list[bool]) -> None:
     """Refuse shares beside distances or hours, and shares that do not add up to 1."""
     if not all(by_share):
-        other = made[by_share.index(False)].name
+        other = blocks[by_share.index(False)].name
         allowed = "a share in each block, because a share of the time is no part of a shift"
         raise InputError(f"block '{other}'.share", None, allowed, "Give share in all blocks, or hours in all of them.")
-    if abs((whole := sum(block.hours for block in made)) - 1.0) > 1e-6:
+    whole = sum(block.hours for block in blocks)
+    if abs(whole - 1.0) > 1e-6:
         remedy = "Write 0.2 or 20 % for a fifth of the time of travel."
         raise InputError("share", whole, "shares of the blocks that add up to 1", remedy)
 
@@ -300,10 +314,10 @@ def _entries(table: UserTable, path: Path | None, wrong: Collector) -> list[dict
         with heads.part():
             _check_fields([name], "blocks", {name: "a column"})
     wrong.errors += [error.at(path, table.head) for error in heads.errors]
-    told = {error.line for error in wrong.errors}  # cells that are empty or not clear
-    if table.head in told or told >= {*table.lines}:
+    wrong_lines = {error.line for error in wrong.errors}  # cells that are empty or not clear
+    if table.head in wrong_lines or wrong_lines >= {*table.lines}:
         wrong.check()
-    table.lines = {number: line for number, line in table.lines.items() if number not in told}
+    table.lines = {number: line for number, line in table.lines.items() if number not in wrong_lines}
     return [{n: c for n, c in zip(table.names, line, strict=True) if c} for line in table.lines.values()]
 
 
@@ -324,10 +338,11 @@ def _block(entry: Any, base: Mapping[str, Any], number: int) -> Block:
         raise InputError(f"blocks[{number}]", entry, "a mapping such as {distance: 4000, radial_force: -300}")
     entry = renamed(entry)
     name = checked_text(str(entry.get("name") or f"block {number}"), "name of a block")
-    where, wrong = f"block '{name}'", Collector()
+    where = f"block '{name}'"
+    wrong = Collector()
     with wrong.part():
         _check_fields(list(entry), where, entry)
-    made: dict[str, Any] = {"name": name}
+    fields: dict[str, Any] = {"name": name}
     lasts = [key for key in TRAVEL if key in entry]
     with wrong.part():
         if not lasts and not any(nearest(key, BLOCK_FIELDS) in TRAVEL for key in entry):
@@ -338,41 +353,52 @@ def _block(entry: Any, base: Mapping[str, Any], number: int) -> Block:
             raise InputError(f"{where}.{lasts[1]}", entry[lasts[1]], allowed, f"Remove {lasts[0]} or {lasts[1]}.")
     for key in lasts[:1]:
         with wrong.part():
-            made["distance"] = _number(f"{where}.{key}", entry[key], unit=TRAVEL[key])
+            fields["distance"] = _number(f"{where}.{key}", entry[key], unit=TRAVEL[key])
     with wrong.part():
         if entry.get("guide_overrollings") is not None:
             if lasts[:1] == ["share"]:
                 allowed = "overrollings per hour, because blocks by share of the time have no shift"
                 remedy = "Give guide_overrollings_per_hour instead."
                 raise InputError(f"{where}.guide_overrollings", entry["guide_overrollings"], allowed, remedy)
-            made["guide_overrollings"] = _number(f"{where}.guide_overrollings", entry["guide_overrollings"])
+            fields["guide_overrollings"] = _number(f"{where}.guide_overrollings", entry["guide_overrollings"])
     try:
-        made["case"] = Case.from_dict({**base, **{key: entry[key] for key in LOAD_FIELDS if key in entry}})
+        fields["case"] = Case.from_dict({**base, **{key: entry[key] for key in LOAD_FIELDS if key in entry}})
     except InputError as error:
         wrong.errors += _named(error, where)
     wrong.check()
     if lasts[0] != "distance":
-        made["distance"] *= 60.0 * float(made["case"].velocity)  # the velocity of the block [m/min]
-    return Block(**made)
+        fields["distance"] *= 60.0 * float(fields["case"].velocity)  # the velocity of the block [m/min]
+    return Block(**fields)
 
 
 def _named(error: InputError, where: str) -> list[InputError]:
     """Return the errors of a case with the place of the case before their fields."""
-    named = [f"{where}{'.' if one.field in FIELDS else ': '}{one.field}" for one in error.errors]
-    return [one.named(name) for name, one in zip(named, error.errors, strict=True)]
+    named = []
+    for entry in error.errors:
+        if entry.field in FIELDS:
+            named.append(entry.named(f"{where}.{entry.field}"))
+        else:
+            named.append(entry.named(f"{where}: {entry.field}"))
+    return named
 
 
 def _number(name: str, value: Any, open_lower: bool = False, unit: str = "-") -> float:
-    lower = math.nextafter(0.0, 1.0) if open_lower else 0.0
-    return number_in(value, name, f"a finite number {'>' if open_lower else '>='} 0", lower, sys.float_info.max, unit)
+    lower = 0.0
+    allowed = "a finite number >= 0"
+    if open_lower:
+        lower = math.nextafter(0.0, 1.0)
+        allowed = "a finite number > 0"
+    return number_in(value, name, allowed, lower, sys.float_info.max, unit)
 
 
 def _groups(names: Any) -> tuple[str, ...]:
     """Return the groups of outputs of `all` limits, or of a list of limits."""
-    wanted = [names] if isinstance(names, str) else names
-    if not isinstance(wanted, list) or not wanted:
+    limits = names
+    if isinstance(names, str):
+        limits = [names]
+    if not isinstance(limits, list) or not limits:
         raise InputError("limits", names, "all, or a list of names of limits", "Write limits: [fatigue, wear].")
-    return groups_of("limits", [str(name) for name in wanted])
+    return groups_of("limits", [str(name) for name in limits])
 
 
 def _probabilities(values: Any) -> tuple[float, ...]:
@@ -406,7 +432,11 @@ def overrollings_per_shift(spectrum: Spectrum) -> np.ndarray:
         guide = block.guide_overrollings
         if guide is None:
             per_hour = case.guide_overrollings_per_hour
-            guide = math.nan if per_hour is None else per_hour * block.hours
-        guide = 0.0 if block.distance == 0 and block.guide_overrollings is None else guide
+            if per_hour is None:
+                guide = math.nan
+            else:
+                guide = per_hour * block.hours
+        if block.distance == 0 and block.guide_overrollings is None:
+            guide = 0.0
         rows.append((block.distance * 1e3 / (2 * math.pi * float(radius)), guide))
     return np.array(rows, dtype=float)

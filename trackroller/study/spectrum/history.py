@@ -69,8 +69,13 @@ def spectrum_of_log(path: Path | str, roller: Mapping[str, Any]) -> tuple[dict[s
     fields, options = parts_for_spectrum(roller)
     if any("velocity" in block for block in blocks):
         fields.pop("velocity", None)
-    duty = {"duty": given["duty"]} if "duty" in given else {}
-    levels_ = "1 level of load" if len(blocks) == 1 else f"{len(blocks)} levels of load"
+    duty = {}
+    if "duty" in given:
+        duty = {"duty": given["duty"]}
+    if len(blocks) == 1:
+        levels_ = "1 level of load"
+    else:
+        levels_ = f"{len(blocks)} levels of load"
     whole = {"lines": len(log.travel), "file": path.name, "levels": levels_}
     whole |= {"km": float(log.travel.sum() / 1e3), "hours": float(log.hours.sum())}
     log.doubts.insert(0, Doubt("lines", values=whole))
@@ -131,8 +136,8 @@ def _doubt_loads(
         doubts.append(Doubt("lift_off", values={"share": 100 * share}))
     contact = -loads[:, 0] + np.abs(loads[:, 1]) / tangent
     power = POWERS[1]
-    what = f"the sum of travel times load to the power of {power:g}, to which damage may grow"
-    doubts += few_lines(weights, lines, "the travel") or few_lines(weights * contact**power, lines, what)
+    damage = f"the sum of travel times load to the power of {power:g}, to which damage may grow"
+    doubts += few_lines(weights, lines, "the travel") or few_lines(weights * contact**power, lines, damage)
 
 
 def levels(loads: np.ndarray, weights: np.ndarray, tangent: float) -> list[np.ndarray]:

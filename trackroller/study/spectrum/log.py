@@ -94,7 +94,9 @@ def _check_names(log: LogColumns) -> None:
     """Refuse a log without the columns that it needs, and with two that say the same."""
     has_axis = "time" in log.values or "distance" in log.values
     if not has_axis or "radial_force" not in log.values:
-        lacking = "radial_force" if has_axis else "time or distance"
+        lacking = "time or distance"
+        if has_axis:
+            lacking = "radial_force"
         allowed = "columns time or distance, radial_force, and where they vary axial_force and velocity"
         raise InputError(FIELD, ", ".join(log.names), allowed, f"Name a column {lacking}.").at(log.path, log.head)
     if {"speed", "velocity"} <= set(log.values):
@@ -105,23 +107,23 @@ def _check_names(log: LogColumns) -> None:
 def _without_marks(log: LogColumns, answers: LogAnswers, doubts: list[Doubt], questions: Collector) -> LogColumns:
     """Tell which lines were left out; ask about values that look like marks for no value."""
     if log.empty.size:
-        values = {"values": listing([repr(cell) for cell in answers.missing or ()], "or")}
-        doubts.append(Doubt("left_out", int(log.empty.size), int(log.empty[0]), values))
+        words = {"values": listing([repr(cell) for cell in answers.missing or ()], "or")}
+        doubts.append(Doubt("left_out", int(log.empty.size), int(log.empty[0]), words))
     if answers.missing == ():
         return log
     for name, column in log.values.items():
         marks = marks_of(column, log.scales[name])
         if not marks:
             continue
-        here = np.isin(column, marks)
-        line = int(log.lines[np.argmax(here)])
+        is_marked = np.isin(column, marks)
+        line = int(log.lines[np.argmax(is_marked)])
         shown = [float(f"{mark / log.scales[name]:.9g}") for mark in marks]
         if answers.missing is None:
-            question = mark_question(name, shown, int(here.sum()), COLUMNS[name])
+            question = mark_question(name, shown, int(is_marked.sum()), COLUMNS[name])
             questions.errors.append(question.at(log.path, line))
         else:
-            found: dict[str, float | str] = {"column": name, "value": marks[0], "unit": COLUMNS[name]}
-            doubts.append(Doubt("mark", int(here.sum()), line, found))
+            values: dict[str, float | str] = {"column": name, "value": marks[0], "unit": COLUMNS[name]}
+            doubts.append(Doubt("mark", int(is_marked.sum()), line, values))
     return log
 
 
@@ -144,15 +146,15 @@ def _without_spikes(log: LogColumns, answers: LogAnswers, doubts: list[Doubt]) -
     rows = np.unique(np.concatenate(list(spikes.values())))
     if answers.spikes == "leave out" and rows.size:
         doubts.append(Doubt("spikes_left_out", int(rows.size), int(log.lines[rows[0]])))
-        kept = np.full(len(log), True)
-        kept[rows] = False
-        return log.take(kept)
+        counts = np.full(len(log), True)
+        counts[rows] = False
+        return log.take(counts)
     if pace is not None and spikes["speed"].size:
-        own = spikes["speed"]
-        worst = int(own[np.argmax(np.abs(pace[own]))])
-        share = 100 * float(np.abs(pace[own]).sum() / np.abs(pace).sum())
+        fast = spikes["speed"]
+        worst = int(fast[np.argmax(np.abs(pace[fast]))])
+        share = 100 * float(np.abs(pace[fast]).sum() / np.abs(pace).sum())
         values = {"value": float(pace[worst]), "share": share}
-        doubts.append(Doubt("speed_spike", int(own.size), int(log.lines[worst]), values))
+        doubts.append(Doubt("speed_spike", int(fast.size), int(log.lines[worst]), values))
     return log
 
 
@@ -167,8 +169,9 @@ def _travel_and_hours(
         doubts.append(Doubt("no_velocity", values={"velocity": velocity}))
     elif pace is not None and (pace < 0).any():
         doubts.append(Doubt("speed_back", values={"share": 100 * float(np.mean(pace < 0))}))
-    speed = np.full(len(log), velocity) if pace is None else np.abs(pace)
-    speed = speed / 60  # m/s
+    speed = np.full(len(log), velocity / 60)  # m/s
+    if pace is not None:
+        speed = np.abs(pace) / 60
     hold = answers.hold or "middle"
     if answers.hold is not None:
         doubts.append(Doubt("hold", values={"words": HOLD[answers.hold]}))
@@ -179,15 +182,19 @@ def _travel_and_hours(
         with np.errstate(divide="ignore", invalid="ignore"):
             return travel, np.where(speed > 0, travel / speed / 3600, 0.0)
     seconds = time_steps(log, doubts)
-    moved = distance_steps(log, seconds, doubts) if counted else None
+    moved = None
+    if counted:
+        moved = distance_steps(log, seconds, doubts)
     steps = Steps("time", seconds, moved)
     steps.cut_gaps(log, answers.hold, doubts, questions)
-    held = _of_lines(steps.along, hold)
+    duration = _of_lines(steps.along, hold)
     if moved is None:
-        return held * speed, held / 3600
+        return duration * speed, duration / 3600
     if pace is not None:
         _compare_travel(steps, moved, speed, log, answers, doubts, questions)
-    return (held * speed if answers.travel == "velocity" else _of_lines(moved, hold)), held / 3600
+    if answers.travel == "velocity":
+        return duration * speed, duration / 3600
+    return _of_lines(moved, hold), duration / 3600
 
 
 def _compare_travel(
@@ -200,12 +207,17 @@ def _compare_travel(
     questions: Collector,
 ) -> None:
     """Compare what the columns of distance and speed [m/s] say of the steps that are neither gaps nor jumps."""
-    of_steps = speed[:-1] if answers.hold == "last" else (speed[:-1] + speed[1:]) / 2
+    if answers.hold == "last":
+        of_steps = speed[:-1]
+    else:
+        of_steps = (speed[:-1] + speed[1:]) / 2
     usual = steps.usual
     distance = float(moved[usual].sum())
     by_speed = float((of_steps * steps.along)[usual].sum())
     difference = abs(distance - by_speed) / max(distance, by_speed, 1e-300)
-    column = "velocity" if "velocity" in log.values else "speed"
+    column = "speed"
+    if "velocity" in log.values:
+        column = "velocity"
     if difference > ASKED_ABOVE and answers.travel is None:
         questions.errors.append(travel_question(distance, by_speed, column).at(log.path, log.head))
     elif difference > TOLD_ABOVE:

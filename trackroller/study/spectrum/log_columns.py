@@ -8,12 +8,13 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Literal
 
 import numpy as np
 import pandas as pd
 
 from trackroller.errors import Collector, InputError
-from trackroller.files import opened
+from trackroller.files import UTF_16, opened
 from trackroller.numerics.numbers import number_or_nan
 from trackroller.numerics.table_cells import Refused, decimal_signs, plain_column
 from trackroller.numerics.units import in_unit, split_quantity
@@ -27,7 +28,6 @@ MOST_BYTES = 500_000_000  # of a log; its numbers take about as much memory
 FIRST_BYTES = 200_000  # of a log, in which heads, units and decimal sign show
 PIECE = 200_000  # lines that are read at once
 SMALLER = "Split the log, write a spectrum of each part, and put the blocks of all of them into one file."
-UTF_16 = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
 
 
 @dataclass
@@ -83,21 +83,28 @@ def read_columns(path: Path, answers: LogAnswers) -> LogColumns:
     lines = np.concatenate([lines for lines, _ in pieces])
     scales = {name: _scale(name, heads) for name in values}
     bare = [f"{name} in {COLUMNS[name]}" for name in values if not _stated_unit(name, heads)]
-    found = LogColumns(values, lines, path, heads.head, heads.names, scales, bare)
+    log = LogColumns(values, lines, path, heads.head, heads.names, scales, bare)
     empty = np.any([np.isnan(column) for column in values.values()], axis=0)
     if empty.any():
-        found = found.take(~empty)
-        found.empty = lines[empty]
-    return found
+        log = log.take(~empty)
+        log.empty = lines[empty]
+    return log
 
 
 def _heads(path: Path, wrong: Collector) -> UserTable:
     """Return the table of the first lines of a log, with its names, units and decimal sign; all of a workbook."""
     with opened(path, FIELD, MOST_BYTES, SMALLER) as stream:
-        first = stream.read() if is_workbook(path) else stream.read(FIRST_BYTES)
+        if is_workbook(path):
+            first = stream.read()
+        else:
+            first = stream.read(FIRST_BYTES)
     if len(first) == FIRST_BYTES and not is_workbook(path):
         wide = first.startswith(UTF_16)
-        newline = "\n".encode("utf-16-le" if first.startswith(codecs.BOM_UTF16_LE) else "utf-16-be") if wide else b"\n"
+        newline = b"\n"
+        if first.startswith(codecs.BOM_UTF16_LE):
+            newline = "\n".encode("utf-16-le")
+        elif wide:
+            newline = "\n".encode("utf-16-be")
         end = first.rfind(newline)
         while wide and end % 2 and end > 0:  # between two letters
             end = first.rfind(newline, 0, end)
@@ -119,7 +126,9 @@ def _stated_unit(name: str, heads: UserTable) -> str:
 
 def _scale(name: str, heads: UserTable) -> float:
     unit = _stated_unit(name, heads)
-    return in_unit(1.0, unit, COLUMNS[name], name) if unit else 1.0
+    if unit:
+        return in_unit(1.0, unit, COLUMNS[name], name)
+    return 1.0
 
 
 def _pieces(path: Path, heads: UserTable) -> Iterator[tuple[np.ndarray, dict[str, list[str]]]]:
@@ -133,7 +142,14 @@ def _pieces(path: Path, heads: UserTable) -> Iterator[tuple[np.ndarray, dict[str
         first = stream.read(FIRST_BYTES)
         wide = first.startswith(UTF_16)
         _refuse_zeros(stream, path, wide)
-    quoted = '"'.encode("utf-16-le") in first if wide else b'"' in first
+    mark = b'"'
+    encoding = "utf-8-sig"
+    if wide:
+        mark = '"'.encode("utf-16-le")
+        encoding = "utf-16"
+    quoting: Literal[0, 1, 2, 3] = csv.QUOTE_NONE  # a mark further down is a letter, which no number has
+    if mark in first:
+        quoting = csv.QUOTE_MINIMAL
     try:
         with pd.read_csv(
             path,
@@ -145,9 +161,8 @@ def _pieces(path: Path, heads: UserTable) -> Iterator[tuple[np.ndarray, dict[str
             keep_default_na=False,
             skip_blank_lines=False,
             skipinitialspace=True,
-            # without quotes in the first lines a mark further down is a letter, which no number has
-            quoting=csv.QUOTE_MINIMAL if quoted else csv.QUOTE_NONE,
-            encoding="utf-16" if wide else "utf-8-sig",
+            quoting=quoting,
+            encoding=encoding,
             chunksize=PIECE,
         ) as reader:
             for piece in reader:
@@ -189,9 +204,9 @@ def _cells(
         allowed = f"{len(heads.places)} cells, one for each name; there are more"
         remedy = "Write one cell for each name; with decimal commas, separate the columns by semicolons."
         raise InputError(FIELD, text, allowed, remedy).at(path, int(lines[row]))
-    kept = piece[rows]
+    filled_lines = piece[rows]
     places = {name: heads.places[heads.names.index(name)] for name in _known(heads)}
-    return lines[rows], {name: kept[place].str.strip().tolist() for name, place in places.items()}
+    return lines[rows], {name: filled_lines[place].str.strip().tolist() for name, place in places.items()}
 
 
 def _numbers(
@@ -204,8 +219,9 @@ def _numbers(
     for name, column in cells.items():
         unit = heads.units[heads.names.index(name)]
         values[name] = _numbers_of(name, column, unit, signs, answers)
-        missing = np.array([cell.lower() in answers.missing_words for cell in column]) if answers.missing else False
-        bad = ~np.isfinite(values[name]) & ~np.asarray(missing)
+        bad = ~np.isfinite(values[name])
+        if answers.missing:
+            bad &= [cell.lower() not in answers.missing_words for cell in column]
         for row in np.flatnonzero(bad)[:30]:
             wrong.errors.append(_refused(name, column[row], path, int(lines[row])))
         unit = _stated_unit(name, heads)
@@ -218,14 +234,14 @@ def _numbers(
 
 def _numbers_of(name: str, cells: list[str], unit: str, signs: frozenset[str], answers: LogAnswers) -> np.ndarray:
     """Return the numbers of a column in its unit of `COLUMNS`; NaN for a cell that holds none."""
-    wanted = COLUMNS[name]
+    target = COLUMNS[name]
     plain = plain_column(cells, signs)
     numbers = _plain_numbers(plain)
-    if numbers is not None and unit in ("", wanted):
+    if numbers is not None and unit in ("", target):
         return numbers
     if numbers is not None:
-        return np.array([in_unit(number, unit, wanted, name) for number in numbers])
-    return np.array([_number_of(cell, unit, wanted, name) for cell in plain])
+        return np.array([in_unit(number, unit, target, name) for number in numbers])
+    return np.array([_number_of(cell, unit, target, name) for cell in plain])
 
 
 def _plain_numbers(cells: Sequence[str]) -> np.ndarray | None:
@@ -234,20 +250,21 @@ def _plain_numbers(cells: Sequence[str]) -> np.ndarray | None:
         numbers = np.fromiter(map(float, cells), float, len(cells))
     except ValueError:
         return None
-    return numbers if np.isfinite(numbers).all() and "_" not in "".join(cells) else None
+    if np.isfinite(numbers).all() and "_" not in "".join(cells):
+        return numbers
+    return None
 
 
-def _number_of(cell: str, unit: str, wanted: str, name: str) -> float:
+def _number_of(cell: str, unit: str, target: str, name: str) -> float:
     """Return the number of a cell in a unit; NaN for a cell without one, and one that is not clear."""
     if isinstance(cell, Refused):
         return math.nan
-    parts = split_quantity(cell)
-    number = number_or_nan(parts[0] if parts else cell)
-    own = parts[1] if parts else unit
-    if not own or not math.isfinite(number):
+    digits, stated = split_quantity(cell) or (cell, unit)
+    number = number_or_nan(digits)
+    if not stated or not math.isfinite(number):
         return number
     try:
-        return in_unit(number, own, wanted, name)
+        return in_unit(number, stated, target, name)
     except InputError:  # of a unit that is unknown or measures something else
         return math.nan
 

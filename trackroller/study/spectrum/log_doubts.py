@@ -106,20 +106,29 @@ class Doubt:
     def text(self) -> str:
         """Return the doubt in words."""
         one, several = COUNTED.get(self.code, ("", ""))
-        counted = one if self.count == 1 else several.format(self.count)
+        if self.count == 1:
+            counted = one
+        else:
+            counted = several.format(self.count)
         return TOLD[self.code].format(counted=counted, line=self.line, **self.values)
 
     @property
     def record(self) -> dict[str, Any]:
         """Return the doubt as the entries of a file."""
-        place = {} if self.line is None else {"count": self.count, "line": self.line}
+        if self.line is None:
+            place = {}
+        else:
+            place = {"count": self.count, "line": self.line}
         return {"code": self.code} | place | dict(self.values)
 
 
 def mark_question(column: str, values: list[float], count: int, unit: str) -> InputError:
     """Ask whether values far from all others stand for no value."""
     shown = ", ".join(f"{value:g}" for value in values)
-    wrong = f"stands in {count} line{'s' if count > 1 else ''}, far from all other values, as a mark for no value does"
+    lines = f"{count} lines"
+    if count == 1:
+        lines = "1 line"
+    wrong = f"stands in {lines}, far from all other values, as a mark for no value does"
     remedy = f"Write log: {{missing: [{shown}]}} in the case file to leave such lines out, and log: {{missing: []}} "
     return InputError(column, f"{shown} {unit}", "values that were measured", f"{remedy}to keep them.", wrong)
 
@@ -139,7 +148,9 @@ def travel_question(distance: float, speed: float, column: str) -> InputError:
     ratio = speed / distance if distance else 0.0
     size = UNITS[COLUMN_UNIT[column]]
     meant = [unit for unit, own in UNITS.items() if abs(ratio * own / size - 1) < 0.03]
-    hint = f"Write {column} [{meant[0]}] if this is its unit. " if meant else ""
+    hint = ""
+    if meant:
+        hint = f"Write {column} [{meant[0]}] if this is its unit. "
     remedy = f"{hint}Write log: {{travel: distance}} or log: {{travel: velocity}} in the case file."
     wrong = f"adds up to {distance:.4g} m, and {column} to {speed:.4g} m in the same lines"
     return InputError("distance", f"{distance:.4g} m", f"the travel that {column} gives", remedy, wrong)
@@ -188,8 +199,12 @@ def marks_of(values: np.ndarray, scale: float) -> list[float]:
         far = None
         for end, (start, stop) in ends.items():
             others = different[start:stop]
-            distance = abs(different[end] - (others[0] if end == low else others[-1]))
-            spread, largest = float(np.ptp(others)), float(np.abs(others).max())
+            neighbour = others[-1]
+            if end == low:
+                neighbour = others[0]
+            distance = abs(different[end] - neighbour)
+            spread = float(np.ptp(others))
+            largest = float(np.abs(others).max())
             known = is_mark(float(f"{different[end] / scale:.9g}"))
             beyond = distance > FAR * spread and abs(different[end]) > 2 * largest
             if known and distance > max(spread, 0.5 * largest):
@@ -217,7 +232,9 @@ def spikes_of(values: np.ndarray, size: float) -> np.ndarray:
         Usual size of the column: a change far below is no spike, also where the column is constant otherwise.
     """
     change = np.diff(values)
-    usual = float(np.median(np.abs(change))) if change.size else 0.0
+    usual = 0.0
+    if change.size:
+        usual = float(np.median(np.abs(change)))
     least = max(SPIKE * usual, RELEVANT * size)
     far = np.minimum(np.abs(change[:-1]), np.abs(change[1:])) > least
     return np.flatnonzero(far & (change[:-1] * change[1:] < 0)) + 1
@@ -225,7 +242,9 @@ def spikes_of(values: np.ndarray, size: float) -> np.ndarray:
 
 def usual_size(values: np.ndarray) -> float:
     """Return the size of a column (n,) without its few largest values."""
-    return float(np.percentile(np.abs(values), 90)) if values.size else 0.0
+    if values.size:
+        return float(np.percentile(np.abs(values), 90))
+    return 0.0
 
 
 def force_doubts(column: str, force: np.ndarray, size: float, lines: np.ndarray) -> list[Doubt]:
@@ -280,7 +299,7 @@ def _frozen(column: str, force: np.ndarray, lines: np.ndarray) -> list[Doubt]:
     return [Doubt("frozen", size, int(lines[first]), {"column": column, "value": float(force[first])})]
 
 
-def few_lines(effects: np.ndarray, lines: np.ndarray, what: str) -> list[Doubt]:
+def few_lines(effects: np.ndarray, lines: np.ndarray, name: str) -> list[Doubt]:
     """Return a doubt if a few of the lines hold most of a sum of effects (n,) >= 0."""
     count = max(1, int(FEW * effects.size))
     if effects.size < 30 or not effects.sum() > 0:
@@ -291,11 +310,14 @@ def few_lines(effects: np.ndarray, lines: np.ndarray, what: str) -> list[Doubt]:
         return []
     largest = largest[np.argsort(effects[largest])[::-1]]
     needed = int(np.argmax(np.cumsum(effects[largest]) >= MOST_OF_IT * effects.sum())) + 1
-    held = float(effects[largest[:needed]].sum() / effects.sum())
+    share_of_few = float(effects[largest[:needed]].sum() / effects.sum())
     first = int(lines[largest[:needed]].min())
-    return [Doubt("few_lines", needed, first, {"share": 100 * held, "sum": what})]
+    return [Doubt("few_lines", needed, first, {"share": 100 * share_of_few, "sum": name})]
 
 
 def first_lines(lines: np.ndarray) -> str:
     """Return the first numbers of lines in words."""
-    return listing([*map(str, lines[:3].tolist()), *(["others"] if lines.size > 3 else [])])
+    words = [str(line) for line in lines[:3].tolist()]
+    if lines.size > 3:
+        words.append("others")
+    return listing(words)

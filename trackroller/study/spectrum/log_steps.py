@@ -72,14 +72,19 @@ class Steps:
             doubts.append(Doubt("gap_with_travel", count, int(lines[0]), values | {"travel": travel}))
             self.along = np.where(gaps, self._needed(self.travel, usual), steps)
         else:
-            cause = _forward_cause(lost, usual) if self.name == "time" and count == 1 else ""
+            cause = ""
+            if self.name == "time" and count == 1:
+                cause = _forward_cause(lost, usual)
             doubts.append(Doubt("gap", count, int(lines[0]), values | {"cause": cause}))
             self.along = np.where(gaps, usual, steps)
 
     def _needed(self, travel: np.ndarray, usual: float) -> np.ndarray:
         """Return the seconds of each step at the usual speed of the log: a usual step at least, its own at most."""
         moving = self.usual & (travel > 0) & (self.along > 0)
-        speed = float(np.median(travel[moving] / self.along[moving])) if moving.any() else np.inf
+        if moving.any():
+            speed = float(np.median(travel[moving] / self.along[moving]))
+        else:
+            speed = np.inf
         return np.asarray(np.minimum(self.along, np.maximum(travel / speed, usual)))
 
 
@@ -182,8 +187,8 @@ def _shared(steps: np.ndarray) -> np.ndarray:
     share = np.minimum(following, usual) / sizes
     share[-1] = usual / max(float(np.median(sizes)), float(sizes[-1]))
     shared = np.repeat(share, sizes)
-    rest = following - share * (sizes - 1)
-    shared[ends[:-1]] = rest[:-1]
+    last_share = following - share * (sizes - 1)
+    shared[ends[:-1]] = last_share[:-1]
     return np.asarray(shared[: steps.size])
 
 
@@ -199,10 +204,14 @@ def distance_steps(log: LogColumns, seconds: np.ndarray | None, doubts: list[Dou
     moving = np.abs(steps[steps != 0])
     if not moving.size:
         return np.abs(steps)
-    before, after = np.append(0.0, steps[:-1]), np.append(steps[1:], 0.0)
+    before = np.append(0.0, steps[:-1])
+    after = np.append(steps[1:], 0.0)
     alone = (steps < 0) & (before >= 0) & (after >= 0)
     jumps = alone & (-steps > BACK * np.median(moving))
-    rates = np.abs(steps) if seconds is None else np.abs(steps) / np.maximum(seconds, 1e-300)
+    if seconds is None:
+        rates = np.abs(steps)
+    else:
+        rates = np.abs(steps) / np.maximum(seconds, 1e-300)
     fast = rates > max(GAP * np.median(rates[rates > 0]), 2 * np.percentile(rates, 95))
     jumps |= fast & ((steps < 0) | (seconds is not None))
     if jumps.any():

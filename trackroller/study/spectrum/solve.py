@@ -23,7 +23,7 @@ from trackroller.materials import load_database
 from trackroller.parameters import BODIES, PARAMETERS
 from trackroller.roller.case import Case, to_table
 from trackroller.roller.doubts import doubts
-from trackroller.roller.duty import with_duty
+from trackroller.roller.duty import OVERROLLINGS, with_duty
 from trackroller.roller.stored_inputs import DOUBTS, NOT_GIVEN, material_values, plain_inputs
 from trackroller.roller.temperature import temperatures_of
 from trackroller.study.spectrum.file import LOAD_FIELDS, Spectrum, overrollings_per_shift
@@ -36,7 +36,8 @@ OF_CURVE = (
     *("tensile_strength", "fatigue_limit", "cycles_at_tensile_strength", "cycles_at_fatigue_limit"),
     *("scatter_in_cycles", "scatter_in_stress", "second_exponent"),
 )
-_BCB, _CB = ("block", "contact", "body"), ("contact", "body")
+_BCB = ("block", "contact", "body")
+_CB = ("contact", "body")
 
 
 def solve_spectrum(
@@ -73,17 +74,19 @@ def solve_spectrum(
         from trackroller.roller.solver import solve as solve_cases  # numba compiles on import
     else:
         solve_cases = solve
-    database = load_database() if database is None else database
+    if database is None:
+        database = load_database()
     overrollings = overrollings_per_shift(spectrum)
     cases = cases_of(spectrum, overrollings)
-    wanted = dict.fromkeys(("forces", "peak_stress", "life", verdict.GROUP, *spectrum.groups))
-    solved = solve_cases(cases, outputs=tuple(wanted), database=database, **spectrum.options)
+    outputs = dict.fromkeys(("forces", "peak_stress", "life", verdict.GROUP, *spectrum.groups))
+    solved = solve_cases(cases, outputs=tuple(outputs), database=database, **spectrum.options)
     return _damage(spectrum, solved, database, overrollings)
 
 
 def curves(spectrum: Spectrum, solved: xr.Dataset, bodies: list[Material], rule: str) -> list[SNCurve]:
     """Return the S-N curves of roller and guide at their temperature in each block, values (block, 1)."""
-    reached, out = temperatures_of(solved, [[block.case.ambient_temperature] for block in spectrum.blocks]), []
+    reached = temperatures_of(solved, [[block.case.ambient_temperature] for block in spectrum.blocks])
+    out = []
     for material, at in zip(bodies, reached.T, strict=True):
         warm = [material.at(temperature) for temperature in at]
         values = {name: np.array([[getattr(own, name)] for own in warm], dtype=float) for name in OF_CURVE}
@@ -118,10 +121,10 @@ def damage_per_shift(
 
 def _damage(spectrum: Spectrum, solved: xr.Dataset, database: MaterialDatabase, overrollings: np.ndarray) -> xr.Dataset:
     """Return the damage of the solved blocks as a data set; see `solve_spectrum`."""
-    peak, stress = (
-        solved[name if name in solved else "peak_stress"].transpose("case", "contact", "body").values
-        for name in ("peak_stress", "fatigue_stress")
-    )
+    peak = solved["peak_stress"].transpose("case", "contact", "body").values
+    stress = peak
+    if "fatigue_stress" in solved:
+        stress = solved["fatigue_stress"].transpose("case", "contact", "body").values
     cycles = overrollings[:, None, :]
     case = spectrum.blocks[0].case
     rule = spectrum.options.get("life_rule", "elementary")
@@ -145,13 +148,14 @@ def _damage(spectrum: Spectrum, solved: xr.Dataset, database: MaterialDatabase, 
     }
     distance, duration = (float(np.sum(variables[name][1])) for name in ("distance", "duration"))
     for i, body in enumerate(BODIES):
-        index, to = ("TR", "G")[i], f"to the first failure of the {body}"
-        for unit, name, words, scale in (
-            ("1", "shifts", "shifts", 1.0),
-            ("km", "km", "distance", distance / 1e3),
-            ("h", "hours", "hours of travel", duration),
+        index = ("TR", "G")[i]
+        to = f"to the first failure of the {body}"
+        for unit, name, words, letter, scale in (
+            ("1", "shifts", "shifts", "S", 1.0),
+            ("km", "km", "distance", "k", distance / 1e3),
+            ("h", "hours", "hours of travel", "h", duration),
         ):
-            meta = _attrs(unit, f"{words} {to}", f"L_{name[0].upper() if name == 'shifts' else name[0]},{index}")
+            meta = _attrs(unit, f"{words} {to}", f"L_{letter},{index}")
             variables[f"{body}_life_{name}"] = ((), first[i] * scale, meta)
     variables |= _loads(spectrum, database)
     if "limit" in solved.coords:
@@ -240,12 +244,13 @@ def cases_of(spectrum: Spectrum, overrollings: np.ndarray) -> list[Case]:
     overrollings : numpy.ndarray
         Overrollings per shift, (block, body) [1].
     """
-    made = []
-    for block, own in zip(spectrum.blocks, overrollings, strict=True):
-        known = block.guide_overrollings and block.hours > 0
-        more = {"guide_overrollings_per_hour": float(own[1]) / block.hours} if known else {}
-        made.append(replace(block.case, **more))
-    return made
+    cases = []
+    for block, passes in zip(spectrum.blocks, overrollings, strict=True):
+        case = block.case
+        if block.guide_overrollings and block.hours > 0:
+            case = replace(case, **{OVERROLLINGS: float(passes[1]) / block.hours})
+        cases.append(case)
+    return cases
 
 
 def by_limit(spectrum: Spectrum, solved: xr.Dataset, by_curve: np.ndarray, breaks: np.ndarray) -> dict[str, Any]:
@@ -274,11 +279,13 @@ def by_limit(spectrum: Spectrum, solved: xr.Dataset, by_curve: np.ndarray, break
         for name in ("utilisation", *(f"life_hours_by_limit{end}" for end in verdict.ENDS))
     )
     travel = np.array([block.hours for block in spectrum.blocks])[:, None, None]
-    worst = np.argmax(np.nan_to_num(by_curve.sum(axis=0), nan=np.inf), axis=0)
+    unknown = np.isnan(by_curve.sum(axis=0))  # such a track counts before a known one
+    worst = np.argmax(np.where(unknown == unknown.any(axis=0), np.nansum(by_curve, axis=0), -1.0), axis=0)
     of_fatigue = np.take_along_axis(by_curve, worst[None, None], axis=1)[:, 0]
     most = np.max(np.where(travel > 0, used, 0.0), axis=0)
     # D_crit belongs to Miner's rule of the S-N curve; other limits are reached at a sum of 1
-    critical = np.array([spectrum.critical_damage if limit.name == "fatigue" else 1.0 for limit in limits])[:, None]
+    is_fatigue = np.array([limit.name == "fatigue" for limit in limits])
+    critical = np.where(is_fatigue, spectrum.critical_damage, 1.0)[:, None]
     timed = solved["life_hours_by_limit"].notnull().any(["case", "body"]).values
     broken = verdict.breaking(np.any(breaks & (travel[:, 0] > 0), axis=0), limits)
     words = (*LIMITS, "unknown")

@@ -20,9 +20,10 @@ import xarray as xr
 from trackroller.files import memory
 from trackroller.parameters import REGIMES
 from trackroller.roller.dataset import file_attributes, joined
-from trackroller.study.store.identity import chunk_name
-from trackroller.study.store.manifest import put_unlisted, sums_up
+from trackroller.study.store.digests import sums_up
+from trackroller.study.store.fingerprint import chunk_name
 from trackroller.study.store.netcdf import too_large
+from trackroller.study.store.put import put_unlisted
 
 FAILED = REGIMES.index("failed")
 _ATTRIBUTES = file_attributes("Cases of a parameter study of track rollers, named by their fingerprints", "solved")
@@ -40,9 +41,11 @@ class CorruptFile(Exception):
 
 def from_results(results: xr.Dataset, cases: np.ndarray) -> xr.Dataset:
     """Return what `solve` returned for the cases with the fingerprints `cases`, shape (n,), as a block."""
-    why = np.broadcast_to(results["reason"].values if "reason" in results else "", len(cases)).astype(object)
-    why = np.where((results["regime"].values == FAILED) & (why == ""), "no convergence", why)
-    return results.transpose("case", ...).assign_coords(case=cases).assign(reason=("case", why))
+    reasons = np.full(len(cases), "", dtype=object)
+    if "reason" in results:
+        reasons[:] = results["reason"].values
+    reasons[(results["regime"].values == FAILED) & (reasons == "")] = "no convergence"
+    return results.transpose("case", ...).assign_coords(case=cases).assign(reason=("case", reasons))
 
 
 def failure(cases: np.ndarray, reason: str) -> xr.Dataset:
@@ -70,8 +73,11 @@ def write(path: Path, block: xr.Dataset, packed: bool = False) -> None:
     labelled = block.assign_attrs(_ATTRIBUTES)
     for name in _LABELS.keys() & labelled.variables.keys():
         labelled[name].attrs = {"long_name": _LABELS[name]}
-    numbers = [name for name, values in block.variables.items() if "case" in values.dims and values.dtype.kind in "fi"]
-    encoding = dict.fromkeys(numbers if packed and block.sizes["case"] >= _SMALL else (), _PACKED)
+    encoding = {}
+    if packed and block.sizes["case"] >= _SMALL:
+        for column, values in block.variables.items():
+            if "case" in values.dims and values.dtype.kind in "fi":
+                encoding[column] = _PACKED
 
     def save(beside: Path) -> None:
         labelled.to_netcdf(beside, engine="netcdf4", encoding=encoding)
@@ -97,7 +103,8 @@ def _opened(path: Path) -> Iterator[tuple[netCDF4.Dataset, np.ndarray]]:
     if not sums_up(content):
         raise CorruptFile(path, "its content does not fit its checksum")
     with netCDF4.Dataset(path.name, memory=content[:-32]) as file:
-        if excess := too_large(file, len(content)):
+        excess = too_large(file, len(content))
+        if excess:
             raise CorruptFile(path, f"it {excess}")
         file.set_auto_mask(False)
         cases: np.ndarray = np.ascontiguousarray(file["case"][:]).view("S32").reshape(-1)

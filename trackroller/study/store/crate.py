@@ -22,11 +22,13 @@ import numpy as np
 from trackroller.errors import InputError
 from trackroller.files import sha256
 from trackroller.roller.differences import Difference, compare
+from trackroller.study.store.crate_entries import CRATE, crate_graph
 from trackroller.study.store.folder import StudyFolder, check_readable
-from trackroller.study.store.inputs import study_of_folder
-from trackroller.study.store.manifest import CRATE, REPORT, check_unaltered, crate_graph, digests_of, put_text
+from trackroller.study.store.input_files import study_of_folder
+from trackroller.study.store.manifest import REPORT, check_unaltered, digests_of
 from trackroller.study.store.netcdf import read_result
 from trackroller.study.store.provenance import versions
+from trackroller.study.store.put import put_text
 
 if TYPE_CHECKING:
     from trackroller.study.file.study import Study
@@ -58,15 +60,15 @@ def write_crate(root: Path) -> Path:
     """
     study = study_of_folder(StudyFolder(root))
     # a user may delete what a report made: `trackroller report` makes it again
-    kept = [*DATA, *(name for name in REPORT if (root / name).exists())]
+    names = [*DATA, *(name for name in REPORT if (root / name).exists())]
     inputs = digests_of(check_unaltered(root / INPUTS))
     results: dict[str, str] = {}
-    for name in kept:
+    for name in names:
         results |= digests_of(check_unaltered(root / name))
     newest = str(np.datetime64(int(max((root / name).stat().st_mtime for name in results)), "s")) + "Z"
     path = root / CRATE
-    known = _text(study, root, inputs, results, _end_of_run(root))
-    if digests_of(path) and path.read_text(encoding="utf-8") == known:
+    as_before = _text(study, root, inputs, results, _end_of_run(root))
+    if digests_of(path) and path.read_text(encoding="utf-8") == as_before:
         return path  # a copy has other dates, and describes the same run
     return put_text(path, _text(study, root, inputs, results, newest))
 
@@ -81,8 +83,8 @@ def _text(study: Study, root: Path, inputs: dict[str, str], results: dict[str, s
     return json.dumps({"@context": "https://w3id.org/ro/crate/1.1/context", "@graph": graph}, indent=1) + "\n"
 
 
-def _entry(place: str, kind: str | list[str], **more: Any) -> dict[str, Any]:
-    return {"@id": place, "@type": kind, **more}
+def _entry(place: str, kind: str | list[str], **properties: Any) -> dict[str, Any]:
+    return {"@id": place, "@type": kind, **properties}
 
 
 def _references(names: Iterable[str]) -> list[dict[str, str]]:
@@ -92,7 +94,9 @@ def _references(names: Iterable[str]) -> list[dict[str, str]]:
 def _file(root: Path, name: str, digest: str) -> dict[str, Any]:
     path = root / name
     entry = _entry(name, "File", sha256=digest, contentSize=path.stat().st_size)
-    kind = "application/yaml" if path.suffix == ".yaml" else mimetypes.guess_type(name, strict=False)[0]
+    kind = mimetypes.guess_type(name, strict=False)[0]
+    if path.suffix == ".yaml":
+        kind = "application/yaml"
     if kind is not None:
         entry["encodingFormat"] = kind
     if name == STUDY_FILE:
@@ -108,7 +112,8 @@ def _graph(
 
     `inputs` and `results` hold the digest of each file by its name.
     """
-    programs, work = versions(), "CreativeWork"
+    programs = versions()
+    work = "CreativeWork"
     return [
         _entry(CRATE, work, about={"@id": "./"}, conformsTo={"@id": "https://w3id.org/ro/crate/1.1"}),
         _entry(
@@ -198,10 +203,10 @@ def study_of_crate(root: Path | str) -> Study:
     InputError
         If the folder is not a crate, an input is damaged, or the study file is not accepted.
     """
-    damaged = {name: what for name, what in damaged_files(root).items() if name.startswith(INPUTS)}
+    damaged = {name: state for name, state in damaged_files(root).items() if name.startswith(INPUTS)}
     if damaged:
-        name, what = next(iter(damaged.items()))
-        raise InputError("crate", name, "inputs as they were written", "Fetch the crate again.", f"is {what}")
+        name, state = next(iter(damaged.items()))
+        raise InputError("crate", name, "inputs as they were written", "Fetch the crate again.", f"is {state}")
     return study_of_folder(StudyFolder(Path(root)))
 
 

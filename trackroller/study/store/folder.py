@@ -21,23 +21,10 @@ from trackroller.files import (
     refuse_links,
     why_not,
 )
-from trackroller.study.store.manifest import (
-    BLOCK,
-    GATHERED,
-    MARK,
-    OURS,
-    SCRATCH,
-    WHAT,
-    Manifest,
-    files_below,
-    is_study,
-    put_unlisted,
-    read_mark,
-    remove_empty,
-    signed,
-    sweep,
-)
-from trackroller.study.store.sources import solver_digest
+from trackroller.study.store.manifest import BLOCK, GATHERED, SCRATCH, WHAT, Manifest, files_below, remove_empty
+from trackroller.study.store.mark import MARK, OURS, is_study, read_mark, signed
+from trackroller.study.store.program_digest import solver_digest
+from trackroller.study.store.put import put_unlisted, sweep
 from trackroller.yaml_file import parse_mapping
 
 Tell = Callable[[str], None]
@@ -229,7 +216,9 @@ class StudyFolder:
     def earlier(self) -> dict[str, Any]:
         """Return the study as it was planned last, {} if it was not planned."""
         text = self.record().get("study")
-        return {} if text is None else parse_mapping(text, str(self.plan_file))
+        if text is None:
+            return {}
+        return parse_mapping(text, str(self.plan_file))
 
     def write_record(self, record: Mapping[str, Any]) -> None:
         """Write the record of the plan with its digest, and the mark that the folder is ours."""

@@ -16,17 +16,19 @@ from trackroller.files import reserve
 from trackroller.roller.dataset import file_attributes, united
 from trackroller.study.store import chunks
 from trackroller.study.store.folder import Tell, reporting, unheard
-from trackroller.study.store.labels import labelled
 from trackroller.study.store.ledger import Ledger
-from trackroller.study.store.manifest import digests_of, put
+from trackroller.study.store.manifest import digests_of
 from trackroller.study.store.provenance import DATE
+from trackroller.study.store.put import put
+from trackroller.study.store.solved_dataset import labelled
 
 MOST_MEMORY = 10_000_000  # bytes of a result in memory; a larger one lies in a temporary file
 
 
 def write_design(ledger: Ledger) -> None:
     """Write `design.nc`, the cases of a study, and record its digest."""
-    design, path = ledger.cases.design, ledger.folder.design
+    design = ledger.cases.design
+    path = ledger.folder.design
     title = f"Cases of the parameter study '{ledger.study.name}' of locating-bearing track rollers"
     described = design.assign_attrs(file_attributes(title, "drawn") | design.attrs)
     encoding = {str(name): {"_FillValue": None} for name in described.variables}
@@ -60,12 +62,15 @@ def gather(ledger: Ledger, tell: Tell = unheard, attrs: Mapping[str, str] | None
     The time is proportional to the number of results. A result above `MOST_MEMORY` passes through a temporary
     file in the study's folder.
     """
-    study, folder, ledger = ledger.study, ledger.folder, ledger.anew()
+    study = ledger.study
+    folder = ledger.folder
+    ledger = ledger.anew()
     if not digests_of(folder.design):
         write_design(ledger)
-    count = len(ledger.place)
-    if missing := int((ledger.place < 0).sum()):
-        damaged = "".join(f" Corrupt: {why}." for why in ledger.corrupt.values())
+    count = len(ledger.state_number)
+    missing = int((ledger.state_number < 0).sum())
+    if missing:
+        damaged = "".join(f" Corrupt: {reason}." for reason in ledger.corrupt.values())
         raise WorkError(f"{missing} of {count} cases are not solved.{damaged} Start the run again.")
 
     def save(beside: Path) -> None:
@@ -89,7 +94,7 @@ def collect(ledger: Ledger, solved: slice | np.ndarray = slice(None)) -> xr.Data
     solved : slice or numpy.ndarray of int, shape (n,)
         The wanted cases of the design, each of which is solved; all by default.
     """
-    place = ledger.place[solved]
+    place = ledger.state_number[solved]
     results: dict[Hashable, xr.Variable] = {}
     coords: dict[Hashable, xr.Variable] = {}
     attrs: dict[str, Any] = {}

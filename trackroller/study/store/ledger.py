@@ -33,12 +33,14 @@ from trackroller.study.design.growth import sample_of
 from trackroller.study.design.levels import in_words
 from trackroller.study.file.config import check_name
 from trackroller.study.store import chunks
+from trackroller.study.store.crate_entries import CRATE
+from trackroller.study.store.fingerprint import StudyCases, chunk_name, solver_and_materials
 from trackroller.study.store.folder import StudyFolder, Tell, unheard
-from trackroller.study.store.identity import Cases, chunk_name, solver_and_materials
-from trackroller.study.store.inputs import store_inputs
-from trackroller.study.store.manifest import CRATE, Manifest, sweep
+from trackroller.study.store.input_files import store_inputs
+from trackroller.study.store.manifest import Manifest
+from trackroller.study.store.program_digest import solver_digest
 from trackroller.study.store.provenance import now
-from trackroller.study.store.sources import solver_digest
+from trackroller.study.store.put import sweep
 from trackroller.yaml_file import parse_mapping
 
 if TYPE_CHECKING:
@@ -57,7 +59,7 @@ class Ledger:
 
     Attributes
     ----------
-    cases : Cases
+    cases : StudyCases
         The cases of the study, which a process builds and identifies once.
     folder : StudyFolder
         Files of the study.
@@ -71,7 +73,7 @@ class Ledger:
         Names of the files that hold the cases which are in no planned chunk.
     """
 
-    cases: Cases
+    cases: StudyCases
     folder: StudyFolder
     chunks: dict[str, int] = field(default_factory=dict)
     size: int = 0
@@ -130,14 +132,14 @@ class Ledger:
         """Return the hours that all runs together spent on solving."""
         return float(self.states.attrs["seconds"]) / 3600
 
-    def find(self, wanted: np.ndarray) -> np.ndarray:
+    def find(self, fingerprints: np.ndarray) -> np.ndarray:
         """Return the index of each wanted case in `states`, shape (n,); -1 marks a case that is not solved."""
         cases = self.states["case"].values
-        place = np.searchsorted(cases, wanted)
-        return np.where(np.append(cases, b"")[place] == wanted, place, -1)
+        number = np.searchsorted(cases, fingerprints)
+        return np.where(np.append(cases, b"")[number] == fingerprints, number, -1)
 
     @cached_property
-    def place(self) -> np.ndarray:
+    def state_number(self) -> np.ndarray:
         """Return the index of each case of the design in `states`, shape (n,); -1 marks a case that is not solved."""
         return self.find(self.cases.fingerprints)
 
@@ -186,40 +188,50 @@ def read_ledger(study: Study, folder: StudyFolder) -> Ledger | None:
     record = folder.record()
     if record.get("key") != plan_key(study):
         return None
-    return Ledger(Cases(study), folder, record["chunks"], record["size"], record["distinct"], tuple(record["uses"]))
+    return Ledger(
+        StudyCases(study), folder, record["chunks"], record["size"], record["distinct"], tuple(record["uses"])
+    )
 
 
-def sound_ledger(found: Ledger) -> tuple[Ledger | None, list[str]]:
+def sound_ledger(files: Ledger) -> tuple[Ledger | None, list[str]]:
     """Return the ledger on the disk if it accounts for every case, and a line on each damaged case list.
 
     Each case must be in a solved file or in the sound list of an open chunk, and no case of an open chunk may be solved
     already, as it is after a process was killed while it forgot failed cases.
     """
-    folder, ledger = found.folder, read_ledger(found.study, found.folder)
+    folder = files.folder
+    ledger = read_ledger(files.study, files.folder)
     if ledger is None:
         return None, []
-    sound, damaged = set(ledger.uses) <= {path.name for path in found.paths}, []
+    sound = set(ledger.uses) <= {path.name for path in files.paths}
+    damaged = []
     for name in ledger.chunks:
         try:
-            listed = chunks.check(folder.case_list(name))
-            sound &= folder.chunk(name).is_file() or bool((found.find(listed) < 0).all())
+            fingerprints = chunks.check(folder.case_list(name))
+            sound &= folder.chunk(name).is_file() or bool((files.find(fingerprints) < 0).all())
         except (chunks.CorruptFile, FileNotFoundError) as exc:
             damaged.append(f"corrupt or missing case list, its cases are planned anew: {exc}")
-    return (ledger if sound and not damaged else None), damaged
+    if not sound or damaged:
+        return None, damaged
+    return ledger, []
 
 
-def planned(found: Ledger) -> Ledger:
+def planned(files: Ledger) -> Ledger:
     """Return the ledger in which each case that no file holds has a chunk, and write the case lists of these chunks."""
-    study, folder, cases = found.study, found.folder, found.cases
-    names, (options, group) = cases.fingerprints, cases.options
-    wanted, first = np.unique(names, return_index=True)
-    place = found.find(wanted)
-    missing = np.sort(first[place < 0])
+    study = files.study
+    folder = files.folder
+    cases = files.cases
+    names = cases.fingerprints
+    options, group = cases.options
+    distinct, first = np.unique(names, return_index=True)
+    state_number = files.find(distinct)
+    missing = np.sort(first[state_number < 0])
     size = chunk_size(study, len(missing))
     columns = {name: cases.design[name].values for name in case_columns(cases.design)}
     # a value that all cases share is written once
     shared = {name: values[:1].reshape(()) for name, values in columns.items() if all_equal(values)}
-    fields = xr.Dataset({n: ((), shared[n]) if n in shared else ("case", v) for n, v in columns.items()})
+    fields = xr.Dataset({name: ("case", values) for name, values in columns.items()})
+    fields = fields.assign({name: ((), value) for name, value in shared.items()})
     sizes: dict[str, int] = {}
     identity = solver_and_materials(study.materials)
     parts = [part for number in range(len(options)) for part in _split(missing[group[missing] == number], size)]
@@ -231,8 +243,8 @@ def planned(found: Ledger) -> Ledger:
         attrs = {"options": json.dumps(options[group[part[0]]]), "identity": identity, "words": words}
         chunks.write(folder.case_list(name), block.assign_attrs(attrs))
         sizes[name] = len(part)
-    uses = sorted(found.paths[i].name for i in np.unique(found.states["file"].values[place[place >= 0]]))
-    return replace(found, chunks=sizes, size=len(names), distinct=len(wanted), uses=tuple(uses))
+    uses = sorted(files.paths[i].name for i in np.unique(files.states["file"].values[state_number[state_number >= 0]]))
+    return replace(files, chunks=sizes, size=len(names), distinct=len(distinct), uses=tuple(uses))
 
 
 def unused_cases(ledger: Ledger) -> str:
@@ -243,16 +255,22 @@ def unused_cases(ledger: Ledger) -> str:
     ledger : Ledger
         The ledger of the study, whose design may differ from the one that was solved.
     """
-    study, folder = ledger.study, ledger.folder
-    solved, place = ledger.states.sizes["case"], ledger.place
+    study = ledger.study
+    folder = ledger.folder
+    solved = ledger.states.sizes["case"]
+    state_number = ledger.state_number
     if study.config.method.proposes or study.config.until is not None:  # each step is a design of its own
         return ""
-    if not solved or folder.of_another_solver or not (unused := solved - len(np.unique(place[place >= 0]))):
+    unused = solved - len(np.unique(state_number[state_number >= 0]))
+    if not unused or folder.of_another_solver:
         return ""
-    before, remedy = folder.earlier(), "They stay in chunks/."
+    before = folder.earlier()
+    remedy = "They stay in chunks/."
     earlier = before.get("factors", {})
     added = [name for name in study.config.factors if name not in earlier]
-    why = f": {' and '.join(added)} became a factor" if earlier and added else ""
+    why = ""
+    if earlier and added:
+        why = f": {' and '.join(added)} became a factor"
     if why and not study.config.method.crossed:
         remedy = (
             f"A {study.config.design} design with another factor is drawn anew. To keep both, give it another name."
@@ -273,21 +291,27 @@ def _keeps_rows(study: Study) -> bool:
 
 def _split(rows: np.ndarray, size: int) -> list[np.ndarray]:
     """Return the rows in parts of at most `size` rows."""
-    return np.array_split(rows, math.ceil(len(rows) / size)) if len(rows) else []
+    if len(rows):
+        return np.array_split(rows, math.ceil(len(rows) / size))
+    return []
 
 
 def _levels_of(study: Study, rows: np.ndarray) -> list[str]:
     """Return the levels of the cases of a chunk for each listed factor of which the chunk holds some levels only."""
     words = []
     for name, factor in study.drawn.factors.items():
-        levels = list(dict.fromkeys(study.drawn.columns[name][rows].tolist())) if factor.discrete else []
+        levels = []
+        if factor.discrete:
+            levels = list(dict.fromkeys(study.drawn.columns[name][rows].tolist()))
         if not 0 < len(levels) < len(factor.levels):
             continue
         if factor.numeric and len(levels) > 1:
             words.append(f"{name} {in_words(name, min(levels))} to {in_words(name, max(levels))}")
         else:
-            shown = ", ".join(in_words(name, level) for level in levels[:MOST_LEVELS])
-            words.append(f"{name} {shown}" + ", ..." * (len(levels) > MOST_LEVELS))
+            shown = [in_words(name, level) for level in levels[:MOST_LEVELS]]
+            if len(levels) > MOST_LEVELS:
+                shown.append("...")
+            words.append(f"{name} {', '.join(shown)}")
     return words
 
 
@@ -341,17 +365,26 @@ def working_ledger(
     """
     folder = study_folder(study.name, results).create()
     with open(folder.lock, "rb+") as lock:
-        ledger = _plan(study, folder, tell, rerun_failed) if try_lock(lock) else None
+        ledger = None
+        if try_lock(lock):
+            ledger = _plan(study, folder, tell, rerun_failed)
         wait_for_lock(lock, shared=True)
         if ledger is None and not rerun_failed:  # another process has planned
             ledger = read_ledger(study, folder)
         if ledger is None:
-            raise WorkError(
-                f"study '{study.name}': another process is solving it, from another version of the study file or "
-                f"of the materials. Wait until that process ends, or stop it; then start again: {folder.root} keeps "
-                "every finished case. To solve both versions at once, give this one another name."
-            )
+            raise _held(study, folder, rerun_failed)
         yield ledger
+
+
+def _held(study: Study, folder: StudyFolder, rerun_failed: bool) -> WorkError:
+    """Return the error for a folder that another process holds, so that this one can neither plan nor join in."""
+    wait = f"Wait until that process ends, or stop it; then start again: {folder.root} keeps every finished case."
+    if rerun_failed:
+        why = "and failed cases are not removed under it"
+        return WorkError(f"study '{study.name}': another process is solving it, {why}. {wait}")
+    why = "from another version of the study file or of the materials"
+    both = "To solve both versions at once, give this one another name."
+    return WorkError(f"study '{study.name}': another process is solving it, {why}. {wait} {both}")
 
 
 def _plan(study: Study, folder: StudyFolder, tell: Tell, rerun_failed: bool) -> Ledger:
@@ -359,18 +392,21 @@ def _plan(study: Study, folder: StudyFolder, tell: Tell, rerun_failed: bool) -> 
     if folder.of_another_solver:
         tell(f"the solver's code has changed since {folder.root} was planned: all its cases are solved anew")
     _check_same_study(study, folder)
-    found = Ledger(Cases(study), folder)
-    _check_files(found)
+    files = Ledger(StudyCases(study), folder)
+    _check_files(files)
     sweep(folder.root)
     if rerun_failed:
-        tell(f"{found.forget_failed()} failed cases are solved again")
-        found = found.anew()
-    ledger, damaged = sound_ledger(found)
+        tell(f"{files.forget_failed()} failed cases are solved again")
+        files = files.anew()
+    ledger, damaged = sound_ledger(files)
     for line in damaged:
         tell(line)
     if ledger is None:
-        ledger = planned(found)
-        if found.paths and (unused := unused_cases(found)):
+        ledger = planned(files)
+        unused = ""
+        if files.paths:
+            unused = unused_cases(files)
+        if unused:
             tell(unused)
         Manifest(folder.root).discard(folder.design)
     _keep(ledger)
@@ -379,7 +415,8 @@ def _plan(study: Study, folder: StudyFolder, tell: Tell, rerun_failed: bool) -> 
 
 def _check_same_study(study: Study, folder: StudyFolder) -> None:
     """Refuse the folder of another study that was given the name of this one; a study may have been renamed itself."""
-    earlier, now = folder.earlier(), parse_mapping(study.merged(), "study file")
+    earlier = folder.earlier()
+    now = parse_mapping(study.merged(), "study file")
     other = earlier.get("name", study.name)
     if other != study.name and any(earlier.get(key) != now.get(key) for key in ("base", "factors")):
         remedy = "Give this study another name, choose another --results, or rename the folder."
@@ -387,14 +424,14 @@ def _check_same_study(study: Study, folder: StudyFolder) -> None:
         raise InputError("results folder", str(folder.root), "a folder of this study", remedy, wrong)
 
 
-def _check_files(found: Ledger) -> None:
+def _check_files(files: Ledger) -> None:
     """Refuse damaged files of solved or planned cases, and what stands in the place of a result."""
-    folder = found.folder
+    folder = files.folder
     manifest = Manifest(folder.root)
     results = [folder.design, folder.gathered, folder.root / CRATE]
     results += [folder.root / name for name in manifest.current(folder.inputs)]
     lists = [folder.case_list(name) for name in folder.record().get("chunks", {})]
-    manifest.check(*results, *lists, damaged=found.corrupt)
+    manifest.check(*results, *lists, damaged=files.corrupt)
 
 
 def _keep(ledger: Ledger) -> None:
@@ -403,7 +440,10 @@ def _keep(ledger: Ledger) -> None:
     manifest = Manifest(folder.root)
     earlier = folder.record()
     record = record_of(ledger, store_inputs(ledger.study, folder, ledger.cases.design))
-    record["planned"] = earlier.get("planned", now()) if earlier.get("study") == record["study"] else now()
+    if earlier.get("study") == record["study"]:
+        record["planned"] = earlier.get("planned", now())
+    else:
+        record["planned"] = now()
     if record != earlier:
         folder.write_record(record)
     for path in folder.lock.parent.iterdir():

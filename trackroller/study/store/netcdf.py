@@ -39,9 +39,9 @@ def read_netcdf(path: Path, what: str, remedy: str) -> xr.Dataset:
         with netCDF4.Dataset(path) as file:
             excess = too_large(file, path.stat().st_size)
         if excess is None:
-            found = xr.load_dataset(path, engine="netcdf4")
-            _check_attributes(found)
-            return found
+            ds = xr.load_dataset(path, engine="netcdf4")
+            _check_attributes(ds)
+            return ds
     except (
         OSError,
         ValueError,

@@ -17,8 +17,8 @@ from trackroller.damage.own import digests
 from trackroller.parameters import OPTIONS
 from trackroller.roller.dataset import file_attributes
 from trackroller.roller.stored_inputs import NOT_GIVEN
-from trackroller.study.store.manifest import STORE_FORMAT
-from trackroller.study.store.sources import solver_digest
+from trackroller.study.store.mark import STORE_FORMAT
+from trackroller.study.store.program_digest import solver_digest
 
 if TYPE_CHECKING:
     from trackroller.study.file.study import Study

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Mapping
+from collections.abc import Hashable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -24,14 +24,14 @@ if TYPE_CHECKING:
 Variables = dict[Hashable, tuple[tuple[Hashable, ...], np.ndarray, dict[str, Any], dict[str, Any]]]
 
 
-def labelled(study: Study, drawn: Design, cases: xr.Dataset, solved: xr.Dataset) -> xr.Dataset:
+def labelled(study: Study, plan: Design, cases: xr.Dataset, solved: xr.Dataset) -> xr.Dataset:
     """Return the data set of a solved study.
 
     Parameters
     ----------
     study : Study
         The study.
-    drawn : Design
+    plan : Design
         Its design.
     cases : xarray.Dataset
         Its n cases, as `Study.design` returns them; for a study of a carriage those of all its rollers.
@@ -46,9 +46,12 @@ def labelled(study: Study, drawn: Design, cases: xr.Dataset, solved: xr.Dataset)
         to repeat the study, and the study file itself.
     """
     if study.carriage is not None:
-        cases, solved = of_worst_rollers(study.config, drawn, study.materials, cases, solved)
-    grid = drawn.factors if drawn.method.crossed else {}
-    shape = drawn.meta["shape"] if grid else (cases.sizes["case"],)
+        cases, solved = of_worst_rollers(study.config, plan, study.materials, cases, solved)
+    grid = plan.factors if plan.method.crossed else {}
+    if grid:
+        shape = plan.meta["shape"]
+    else:
+        shape = (cases.sizes["case"],)
     sizes = dict(zip(grid or ("case",), shape, strict=True))
     unstacked = {
         name: _variable((*sizes, *v.dims[1:]), v.values.reshape(*shape, *v.shape[1:]), v.attrs)
@@ -63,12 +66,15 @@ def labelled(study: Study, drawn: Design, cases: xr.Dataset, solved: xr.Dataset)
 
 def _attributes(study: Study, design: xr.Dataset, attrs: Mapping[str, Any]) -> dict[str, Any]:
     """Return the global attributes: what the solver wrote, and what is needed to repeat the study."""
-    own = {*study.factors, "seconds", "date_solved"}  # earlier versions dated their chunks
-    kept = {k: v for k, v in attrs.items() if isinstance(v, (str, int, float)) and k not in own}
+    of_study = {*study.factors, "seconds", "date_solved"}  # earlier versions dated their chunks
+    of_solver = {k: v for k, v in attrs.items() if isinstance(v, (str, int, float)) and k not in of_study}
     # what `solve` recorded of its materials holds, whatever the database says by now
-    materials = attrs[MATERIALS] if MATERIALS in attrs else materials_of_design(design, study.materials)
-    stated = {k: design.attrs[k] for k in (META, FRICTION) if k in design.attrs}
-    return kept | stated | provenance.attributes(study) | {MATERIALS: materials}
+    if MATERIALS in attrs:
+        materials = attrs[MATERIALS]
+    else:
+        materials = materials_of_design(design, study.materials)
+    of_design = {k: design.attrs[k] for k in (META, FRICTION) if k in design.attrs}
+    return of_solver | of_design | provenance.attributes(study) | {MATERIALS: materials}
 
 
 def _labels(design: xr.Dataset, sizes: dict[str, int], grid: dict[str, Factor]) -> Variables:
@@ -76,21 +82,19 @@ def _labels(design: xr.Dataset, sizes: dict[str, int], grid: dict[str, Factor]) 
     labels: Variables = {}
 
     def add(name: str, dims: tuple[str, ...], values: np.ndarray) -> None:
-        known = design.get(name.removesuffix("_value"))
-        attrs = known.attrs if known is not None else {"long_name": name.replace("_", " ")}
+        attrs = {"long_name": name.replace("_", " ")}
+        column = design.get(name.removesuffix("_value"))
+        if column is not None:
+            attrs = column.attrs
         labels.setdefault(name, _variable(dims, values, attrs, coordinate=True))
 
-    for dim, factor in grid.items():
-        add(dim, (dim,), readable(factor.take(np.arange(sizes[dim]))))
-        if dim == "material_pair":
-            for i, name in enumerate(MATERIAL_FIELDS):
-                add(name, (dim,), np.array([pair[i] for pair in factor.levels], dtype=object))
+    for name, dim, values in _axes(grid, sizes):
+        add(name, (dim,), values)
     number = design["case"].values
     words = {"long_name": "case number, for `trackroller repeat`", "units": "1"}
     labels["case"] = _variable(tuple(sizes), number.reshape(*sizes.values()), words, coordinate=True)
-    for name, values in ((str(name), v.values) for name, v in design.variables.items() if v.dims == ("case",)):
-        if name == "case":
-            continue
+    columns = {str(name): v.values for name, v in design.variables.items() if v.dims == ("case",) and name != "case"}
+    for name, values in columns.items():
         if name in grid and set(grid[name].levels) & {*FRICTION_LEVELS, None}:
             name = f"{name}_value"
         add(name, *_varying(values.reshape(*sizes.values()), list(sizes)))
@@ -99,6 +103,15 @@ def _labels(design: xr.Dataset, sizes: dict[str, int], grid: dict[str, Factor]) 
             place = design[name]
             labels[name] = _variable(place.dims, place.values, place.attrs, coordinate=True)
     return labels
+
+
+def _axes(grid: dict[str, Factor], sizes: dict[str, int]) -> Iterator[tuple[str, str, np.ndarray]]:
+    """Yield name, dimension and values of each axis of a grid; one of pairs of materials has both bodies' names."""
+    for dim, factor in grid.items():
+        yield dim, dim, readable(factor.take(np.arange(sizes[dim])))
+        if dim == "material_pair":
+            for i, name in enumerate(MATERIAL_FIELDS):
+                yield name, dim, np.array([pair[i] for pair in factor.levels], dtype=object)
 
 
 def _varying(values: np.ndarray, dims: list[str]) -> tuple[tuple[str, ...], np.ndarray]:
@@ -116,9 +129,11 @@ def _variable(
 ) -> tuple[tuple[Hashable, ...], np.ndarray, dict[str, Any], dict[str, Any]]:
     """Return dimensions, values, attributes and encoding of a variable of the file; only results have a fill value."""
     encoding: dict[str, Any] = {"coordinates": None}  # one attribute of the file lists all of them
-    encoding["_FillValue"] = np.nan if values.dtype.kind == "f" and not coordinate else None
+    encoding["_FillValue"] = None
+    if values.dtype.kind == "f" and not coordinate:
+        encoding["_FillValue"] = np.nan
     if dims and values.dtype.kind not in "OSU":
         encoding |= {"zlib": True, "complevel": 4, "shuffle": True}
     flags = ("flag_values", "flag_masks")  # these take the type of their variable
-    attributes = {key: np.asarray(value, values.dtype) if key in flags else value for key, value in attrs.items()}
-    return tuple(dims), values, attributes, encoding
+    typed = {key: np.asarray(attrs[key], values.dtype) for key in flags if key in attrs}
+    return tuple(dims), values, {**attrs, **typed}, encoding

@@ -26,7 +26,7 @@ from trackroller.study.design.growth import as_planned
 from trackroller.study.file.load import load_study
 from trackroller.study.file.study import Study
 from trackroller.study.store.folder import StudyFolder, check_readable
-from trackroller.study.store.manifest import replacing
+from trackroller.study.store.put import replacing
 
 MATERIALS = "materials.yaml"
 LIMITS_FOLDER = "limits/"  # in `inputs/`: the files of a user's own limits
@@ -67,7 +67,10 @@ def store_inputs(study: Study, folder: StudyFolder, cases: xr.Dataset) -> dict[s
             used = {str(name) for field in MATERIAL_FIELDS if field in cases for name in np.unique(cases[field])}
             fits = [fit for fit in (posterior_path(path, name) for name in used) if fit.is_file()]
             contents |= {f"{FITS}/{fit.name}": read_bytes(fit, "fit") for fit in fits}
-    table = None if study.config.table is None else Path(study.config.table).name
+    if study.config.table is None:
+        table = None
+    else:
+        table = Path(study.config.table).name
     contents[folder.study_file.name] = study.merged(table=table).encode()
     with replacing(folder.inputs) as beside:
         for name, content in contents.items():
@@ -131,7 +134,10 @@ def study_of_folder(folder: StudyFolder) -> Study:
     _check_limits(folder, record.get("inputs", {}))
     materials = folder.inputs / MATERIALS
     with noted_reads():
-        database = load_database(materials) if materials.is_file() else builtin_database()
+        if materials.is_file():
+            database = load_database(materials)
+        else:
+            database = builtin_database()
         study = as_planned(load_study(folder.study_file, database), record)
     return dataclasses.replace(study, not_given=tuple(record.get("not_given", study.not_given)))
 

@@ -7,7 +7,7 @@ versions of the program rarely differ by comments alone, and no rule has to say 
 The solver's digest is part of each case's fingerprint (`solver_digest`). Rules of the workflow depend on a digest file
 instead of on source files, because the date of a source file changes when a copy is made::
 
-    from trackroller.study.store.sources import digest_file
+    from trackroller.study.store.program_digest import digest_file
 
     rule sensitivity:
         input:
@@ -18,7 +18,7 @@ instead of on source files, because the date of a source file changes when a cop
 
 Examples
 --------
->>> from trackroller.study.store.sources import code_digest, room_files
+>>> from trackroller.study.store.program_digest import code_digest, room_files
 >>> [path.name for path in room_files("errors")]
 ['environment.py', 'errors.py']
 >>> len(code_digest("errors"))
@@ -33,7 +33,7 @@ from functools import cache
 from pathlib import Path
 
 from trackroller.damage.own import digests
-from trackroller.study.store.manifest import put_text
+from trackroller.study.store.put import put_text
 
 PACKAGE = Path(__file__).resolve().parents[2]
 SOLVER = "roller"  # the last room that decides the numbers of a case
@@ -79,12 +79,16 @@ def room_files(last: str) -> list[Path]:
         the version only.
     """
     rooms = ROOMS[: ROOMS.index(last) + 1]
-    return [path for room in rooms for place in (PACKAGE / room, PACKAGE / f"{room}.py") for path in files_of(place)]
+    places = [place for room in rooms for place in (PACKAGE / room, PACKAGE / f"{room}.py")]
+    return [path for place in places for path in files_of(place)]
 
 
 def files_of(place: Path) -> list[Path]:
     """Return a file, or the source and data files of a folder, sorted; files that an editor leaves do not count."""
-    files = sorted(place.rglob("*")) if place.is_dir() else [place]
+    if place.is_dir():
+        files = sorted(place.rglob("*"))
+    else:
+        files = [place]
     return [path for path in files if path.suffix in CONTENT and path.is_file() and path.name[0] != "."]
 
 
@@ -105,7 +109,8 @@ def code_digest(last: str, *beside: str, leave_out: Iterable[str] = ()) -> str:
     str
         16 hexadecimal digits. Two copies of the same package have the same digest, wherever they lie.
     """
-    files, digest = room_files(last), hashlib.sha256()
+    files = room_files(last)
+    digest = hashlib.sha256()
     for name in beside:
         files += files_of(PACKAGE.parent / name)
     for path in files:
@@ -120,8 +125,11 @@ def code_digest(last: str, *beside: str, leave_out: Iterable[str] = ()) -> str:
 @cache
 def solver_digest() -> str:
     """Return the digest of all that `trackroller.solve` depends on except the values in a fingerprint."""
-    digest, own = code_digest(SOLVER, leave_out=BY_VALUE), {path.stem: sha for path, sha in digests().items()}
-    return hashlib.sha256(f"{digest} {sorted(own.items())}".encode()).hexdigest()[:16] if own else digest
+    digest = code_digest(SOLVER, leave_out=BY_VALUE)
+    own = {path.stem: sha for path, sha in digests().items()}
+    if own:
+        return hashlib.sha256(f"{digest} {sorted(own.items())}".encode()).hexdigest()[:16]
+    return digest
 
 
 def digest_file(folder: str | Path, last: str, *beside: str, leave_out: Iterable[str] = ()) -> str:

@@ -2,7 +2,7 @@
 
 A fingerprint is the SHA-256 (first 128 bits, as hexadecimal digits) of
 
-- the digest of the solver's source and data files (`trackroller.study.store.sources.solver_digest`),
+- the digest of the solver's source and data files (`trackroller.study.store.program_digest.solver_digest`),
 - the source of a contact model from outside,
 - the options of `solve` where they matter to the case (`trackroller.parameters.OPTIONS` says where),
 - the numeric parameters with the friction coefficient resolved, the friction law and the drawn profiles,
@@ -33,7 +33,7 @@ from trackroller.roller.case import CaseTable, MaterialArrays, to_table
 from trackroller.roller.case_table import TEXTS
 from trackroller.roller.options import options_of_cases
 from trackroller.study.design.carriage_cases import ROW
-from trackroller.study.store.sources import solver_digest
+from trackroller.study.store.program_digest import solver_digest
 
 if TYPE_CHECKING:
     from trackroller.study.file.study import Study
@@ -44,14 +44,18 @@ _MATERIAL_VALUES = tuple(field.name for field in fields(MaterialArrays) if field
 
 def _prefix(options: Mapping[str, Any]) -> bytes:
     """Return the options that matter to the contact model and the digest of the solver, as canonical bytes."""
-    given = {option.name: options.get(option.name, option.default) for option in OPTIONS.values()}
-    stated = {
-        option.name: sorted(value) if isinstance(value := given[option.name], (list, tuple)) else value
-        for option in OPTIONS.values()
-        if option.identity and option.applies(given["contact_model"])
-    }
-    own = DECLARED[given["contact_model"]].source
-    return json.dumps(stated | {"code": solver_digest()} | ({"model": own} if own else {}), sort_keys=True).encode()
+    model = options.get("contact_model", OPTIONS["contact_model"].default)
+    values: dict[str, Any] = {"code": solver_digest()}
+    for option in OPTIONS.values():
+        if not option.identity or not option.applies(model):
+            continue
+        value = options.get(option.name, option.default)
+        if isinstance(value, (list, tuple)):
+            value = sorted(value)
+        values[option.name] = value
+    if DECLARED[model].source:
+        values["model"] = DECLARED[model].source
+    return json.dumps(values, sort_keys=True).encode()
 
 
 def fingerprints(table: CaseTable, *options: Mapping[str, Any], group: np.ndarray | None = None) -> np.ndarray:
@@ -76,17 +80,19 @@ def fingerprints(table: CaseTable, *options: Mapping[str, Any], group: np.ndarra
     rows = np.ascontiguousarray(np.stack([np.asarray(c, dtype="<f8") for c in columns], axis=1))
     rows += 0.0  # -0.0 becomes 0.0
     rows[np.isnan(rows)] = np.nan  # every NaN gets the same bits
-    heads = [hashlib.sha256(_prefix(one)) for one in options]
-    numbers = [0] * len(rows) if group is None else group.tolist()
+    heads = [hashlib.sha256(_prefix(settings)) for settings in options]
+    if group is None:
+        group = np.zeros(len(rows), dtype=int)
     texts = [getattr(table, name) for name in MAPPING_FIELDS]
     texts += [text for body in (table.roller, table.guide) for text in (body.temperature_dependence, body.sn_points)]
-    given = any(np.any(column != "") for column in texts)
-    data, width = rows.reshape(-1).view(np.uint8).data, rows.itemsize * rows.shape[1]
+    has_texts = any(np.any(column != "") for column in texts)
+    data = rows.reshape(-1).view(np.uint8).data
+    width = rows.itemsize * rows.shape[1]
     digests = bytearray()
-    for i, number in enumerate(numbers):
+    for i, number in enumerate(group.tolist()):
         digest = heads[number].copy()
         digest.update(data[i * width : (i + 1) * width])
-        if given:
+        if has_texts:
             digest.update(json.dumps([column[i] for column in texts]).encode())
         digests += digest.digest()[:16]
     return np.frombuffer(digests.hex().encode(), dtype="S32")
@@ -105,7 +111,7 @@ def solver_and_materials(database: MaterialDatabase) -> str:
 
 
 @dataclass(frozen=True)
-class Cases:
+class StudyCases:
     """The cases of a study, which are built and identified when they are first needed, and only once."""
 
     study: Study
@@ -119,7 +125,9 @@ class Cases:
     def rows(self) -> np.ndarray:
         """Return the row of the study's design of each case, shape (n,)."""
         design = self.design
-        return np.asarray(design[ROW].values if ROW in design.coords else np.arange(design.sizes["case"]))
+        if ROW in design.coords:
+            return np.asarray(design[ROW].values)
+        return np.arange(design.sizes["case"])
 
     @cached_property
     def options(self) -> tuple[list[dict[str, Any]], np.ndarray]:
@@ -129,7 +137,8 @@ class Cases:
     @cached_property
     def fingerprints(self) -> np.ndarray:
         """Return the fingerprint of each case, dtype S32, shape (n,); raise `InputError` if a case is not valid."""
-        (options, group), database = self.options, self.study.materials
+        options, group = self.options
+        database = self.study.materials
         cases = self.design.drop_vars(list(self.design.coords))
         out = np.empty(len(group), dtype="S32")
         for start in range(0, len(out), BLOCK):
