@@ -35,5 +35,15 @@ def test_errors_that_were_not_measured_count_as_independent(accuracy, stated, fr
     assert compared(0.2, accuracy, stated, friction).error_of_ratio(0, 1) == pytest.approx(np.hypot(0.2, 0.2))
 
 
+def test_errors_of_different_contact_models_count_as_independent():
+    ds = grid_study({"material_pair": list(PAIRS[:2]), "friction_coefficient": [0.1, 0.2]})
+    ds["life_error_estimate"] = 0.2 + 0.0 * ds.life_cycles
+    ds.attrs["accuracy"] = "preview"
+    ds.attrs.pop("contact_model", None)
+    ds.life_cycles.attrs["expected_relative_error"] = 0.01
+    found = Comparison.of(results_of(ds))
+    assert found is not None and found.error_of_ratio(0, 1) == pytest.approx(np.hypot(0.2, 0.2))
+
+
 def test_a_ratio_without_stated_errors_has_none():
     assert compared(0.0, "preview", True).error_of_ratio(0, 1) == 0.0

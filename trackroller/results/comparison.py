@@ -456,6 +456,8 @@ class Comparison:
         stated = data.get("life_cycles" if is_life(name) else "peak_stress")
         if stated is None or "expected_relative_error" not in stated.attrs:
             return None  # solved patches, falling friction, tolerances and settings of a user
+        if "contact_model" not in data.attrs:
+            return None  # the model is a choice of the study: errors of different models are not alike
         friction = self.results.table.get("friction_coefficient", self.results.base.get("friction_coefficient", 0.0))
         if np.max(friction) > ORDINARY_FRICTION:
             return None
