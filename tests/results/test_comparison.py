@@ -35,6 +35,12 @@ def test_errors_that_were_not_measured_count_as_independent(accuracy, stated, fr
     assert compared(0.2, accuracy, stated, friction).error_of_ratio(0, 1) == pytest.approx(np.hypot(0.2, 0.2))
 
 
+def test_a_life_that_fatigue_does_not_end_shares_no_error():
+    found = compared(0.2, "preview", True)
+    found.ranges.__dict__["error"] = np.where(found.place == 0, 0.2, 0.0)  # fatigue ends the first candidate only
+    assert found.error_of_ratio(0, 1) == pytest.approx(0.2)
+
+
 def test_errors_of_different_contact_models_count_as_independent():
     ds = grid_study({"material_pair": list(PAIRS[:2]), "friction_coefficient": [0.1, 0.2]})
     ds["life_error_estimate"] = 0.2 + 0.0 * ds.life_cycles

@@ -439,12 +439,12 @@ class Comparison:
     def error_of_ratio(self, number: int, leader: int) -> float:
         """Return the error of a ratio of the outputs of two candidates, as a factor less 1 [1].
 
-        It was measured for lives by fatigue and peak stresses on the rungs. Elsewhere the errors of both candidates
-        count as independent; outputs without a stated error have none.
+        It was measured for lives by fatigue and peak stresses on the rungs. Elsewhere, also where fatigue ends one of
+        both only, the errors of both candidates count as independent; outputs without a stated error have none.
         """
         rows = [self._of_condition(one)[1] for one in (number, leader)]
         errors = [float(np.median(self.ranges.error[own])) if len(own) else 0.0 for own in rows]
-        if self._measured_error is None or not any(errors):
+        if self._measured_error is None or not all(errors):
             return float(np.hypot(errors[0], errors[1]))
         return self._measured_error
 
