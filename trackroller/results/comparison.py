@@ -25,7 +25,9 @@ from trackroller.results.lives import FIRST_LIMIT, OF_PAIR
 from trackroller.results.requirement import required_of
 from trackroller.results.robustness import material_deviations
 from trackroller.results.solved_cases import SolvedCases
+from trackroller.roller.expected_errors import ratio_error
 from trackroller.roller.output_names import is_life
+from trackroller.roller.told_errors import ORDINARY_FRICTION
 from trackroller.study.design.levels import OF_MATERIALS
 from trackroller.study.outputs import flat
 
@@ -449,10 +451,32 @@ class Comparison:
         return key, rows[first]
 
     def error_of_ratio(self, number: int, leader: int) -> float:
-        """Return the relative error of a ratio of the lives of two candidates [1]."""
+        """Return the error of a ratio of the outputs of two candidates, as a factor less 1 [1].
+
+        It was measured for lives by fatigue and peak stresses on the rungs. Elsewhere, also where fatigue ends one of
+        both only, the errors of both candidates count as independent; outputs without a stated error have none.
+        """
         rows = [self._of_condition(one)[1] for one in (number, leader)]
         errors = [float(np.median(self.ranges.error[own])) if len(own) else 0.0 for own in rows]
-        return float(np.hypot(errors[0], errors[1]))
+        if self._measured_error is None or not all(errors):
+            return float(np.hypot(errors[0], errors[1]))
+        return self._measured_error
+
+    @cached_property
+    def _measured_error(self) -> float | None:
+        """Return the measured error of a ratio at the rung of the study; None where it was not measured."""
+        name = self.ranges.output[0]
+        data = self.results.data
+        stated = data.get("life_cycles" if is_life(name) else "peak_stress")
+        if stated is None or "expected_relative_error" not in stated.attrs:
+            return None  # solved patches, falling friction, tolerances and settings of a user
+        if "contact_model" not in data.attrs:
+            return None  # the model is a choice of the study: errors of different models are not alike
+        friction = self.results.table.get("friction_coefficient", self.results.base.get("friction_coefficient", 0.0))
+        if np.max(friction) > ORDINARY_FRICTION:
+            return None
+        quantity = "life" if is_life(name) else "peak_stress"
+        return ratio_error(str(data.attrs["accuracy"]), str(data.attrs["contact_model"]), quantity)
 
     def hours_by_limit(self, end: str) -> np.ndarray | None:
         """Return the hours until each limit of each body, second models included, (n, limit, 2) [h]; None without."""

@@ -57,8 +57,63 @@ class Levels:
 
 @functools.cache
 def _measured() -> Any:
-    text = resources.files("trackroller.roller").joinpath(FILE).read_text(encoding="utf-8")
-    return json.loads(text)["models"]
+    return json.loads(resources.files("trackroller.roller").joinpath(FILE).read_text(encoding="utf-8"))
+
+
+def is_rung(options: Options) -> bool:
+    """Return whether the settings of the options are those of a rung."""
+    settings = options.settings
+    return settings.name in RUNGS and settings in (settings_of(settings.name, rough) for rough in (False, True))
+
+
+def told_weights(accuracy: str, contact_model: str) -> dict[str, float]:
+    """Return the factors on the estimated errors of a rung, see `told_errors`; nothing if they were not measured.
+
+    Parameters
+    ----------
+    accuracy : str
+        Name of a rung.
+    contact_model : str
+        Contact model.
+
+    Returns
+    -------
+    dict of str to float
+        By `friction_force`, `normal_force`, `friction_energy`, and for peaks `below_surface` and `at_surface` [1].
+    """
+    found: dict[str, float] = _measured()["told"].get(contact_model, {}).get(accuracy, {}).get("weights", {})
+    return found
+
+
+def ratio_error(accuracy: str, contact_model: str, quantity: str = "life") -> float | None:
+    """Return the error that 95 % of the ratios of two designs keep, as a factor less 1.
+
+    Parameters
+    ----------
+    accuracy : str
+        Name of a rung.
+    contact_model : str
+        Contact model.
+    quantity : str
+        `life` or `peak_stress`.
+
+    Returns
+    -------
+    float or None
+        The error [1]; None where it was not measured: other accuracies and contact models.
+
+    Notes
+    -----
+    Measured on pairs of ordinary designs that differ by the groove or by the contact angle, under the same load
+    (`validation.tradeoff.told`). Errors of such neighbours are alike, so that their ratio errs less than each of them.
+
+    Examples
+    --------
+    >>> ratio_error("reference", "kalker") < ratio_error("preview", "kalker")
+    True
+    """
+    found: float | None = _measured()["told"].get(contact_model, {}).get(accuracy, {}).get("ratio", {}).get(quantity)
+    return found
 
 
 def expected_errors(options: Options, contact_model: str, plain: bool) -> dict[str, Levels]:
@@ -70,10 +125,8 @@ def expected_errors(options: Options, contact_model: str, plain: bool) -> dict[s
     if options.normal != "hertz" or options.slip_terms or not plain or options.tolerance is not None:
         return {}
     errors = CLASSES[contact_model].errors()
-    settings = options.settings
-    is_rung = settings.name in RUNGS and settings in (settings_of(settings.name, rough) for rough in (False, True))
-    if not errors and is_rung:
-        errors = _measured().get(contact_model, {}).get(settings.name, {})
+    if not errors and is_rung(options):
+        errors = _measured()["models"].get(contact_model, {}).get(options.settings.name, {})
     published = options.life_criterion == OPTIONS["life_criterion"].default  # its life alone was measured
     return {name: Levels(*levels) for name, levels in errors.items() if published or name != "life"}
 

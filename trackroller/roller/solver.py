@@ -32,6 +32,7 @@ from trackroller.roller.stages.balance import balance
 from trackroller.roller.stages.models import depends_on_smoothing, finer_across
 from trackroller.roller.stages.scene import StageResults
 from trackroller.roller.stored_inputs import with_coordinates, with_design, with_inputs
+from trackroller.roller.told_errors import calibrate
 from trackroller.roller.tolerance import meet
 from trackroller.roller.travel import with_travel
 
@@ -241,6 +242,7 @@ def _solve_window(table: CaseTable, options: Options) -> Block:
         rows, number = distinct_contacts.distinct_mechanics(one_handed)
         distinct = one_handed.take(rows)
     at_temperature, block = temperature.settle(one_handed, solve_all(distinct).take(number), options, solve_all)
+    calibrate(at_temperature, block, options)
     stages_outcome.finish(at_temperature, block, options)
     reflect(block.values, mirrored)
     return block
