@@ -37,8 +37,8 @@ ORDINARY_FRICTION = 0.4  # largest friction of the designs that the factors were
 def calibrate(table: CaseTable, block: Block, options: Options) -> None:
     """Scale the estimated errors of a block of solved cases, in place.
 
-    Cases with more friction than ordinary ones, falling friction, solved patches and settings of a user keep their
-    estimates, because no factors were measured for them.
+    Cases with more friction than ordinary ones, falling friction, a film, solved patches and settings of a user keep
+    their estimates, because no factors were measured for them.
 
     Parameters
     ----------
@@ -54,6 +54,7 @@ def calibrate(table: CaseTable, block: Block, options: Options) -> None:
     texts = table.friction_law.tolist()
     constant = {text: law_of(text).is_constant for text in set(texts)}
     ordinary = np.array([constant[text] for text in texts], bool) & (table.friction_coefficient <= ORDINARY_FRICTION)
+    ordinary &= table.layer_flexibility == 0.0
     for place, rung in enumerate(RUNGS):
         rows = np.flatnonzero(ordinary & (block.rung == place))
         model = model_in_use(options.changed(accuracy=rung), "")
