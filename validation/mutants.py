@@ -156,7 +156,12 @@ DECISIONS = {
         '== "max", 1.0, -1.0',
         ("results/test_best.py", "results/test_optimum.py"),
     ),
-    "told-peaks": ("roller/stages/stress.py", "(peak.error + ", "(0.5 * peak.error + ", ("roller/test_tolerance.py",)),
+    "told-peaks": (
+        "roller/stages/stress.py",
+        "peak.error + results",
+        "0.5 * peak.error + results",
+        ("roller/test_tolerance.py",),
+    ),
     "told-forces": (
         "roller/stages/mechanics.py",
         "error = scene.model.force_error(scene.n)",

@@ -1,8 +1,9 @@
 """Run one study in a process of its own, which outlives the page and its server.
 
-`python -m trackroller.app.worker NAME` solves `studies/NAME.yaml` in the working directory and makes its report. It
-holds the lock `results/NAME/.page.lock` as long as it lives, writes how far it is into `results/NAME/.page.json`, and
-stops as at Ctrl-C once the file `results/NAME/.pause` is there.
+`python -m trackroller.app.worker NAME` solves `studies/NAME.yaml` in the working directory and
+makes its report. It holds the lock `results/NAME/.page.lock` as long as it lives, writes how far it
+is into `results/NAME/.page.json`, and stops as at Ctrl-C once the file `results/NAME/.pause` is
+there.
 """
 
 from __future__ import annotations
@@ -18,7 +19,13 @@ from pathlib import Path
 from typing import Any
 
 from trackroller.errors import InputError, WorkError
-from trackroller.files import confine, interrupts_wait_for_files, refuse_links, try_lock, wait_for_lock
+from trackroller.files import (
+    confine,
+    interrupts_wait_for_files,
+    refuse_links,
+    try_lock,
+    wait_for_lock,
+)
 from trackroller.study.store.folder import StudyFolder
 from trackroller.study.store.manifest import Manifest
 from trackroller.study.store.put import claim, put_unlisted
@@ -41,7 +48,10 @@ class Progress:
         """Add facts to the record, and write it at once or if the last record is old."""
         self.told |= told
         if at_once or time.monotonic() - self.written > TICK:
-            put_unlisted(self.place, lambda beside: beside.write_text(json.dumps(self.told), encoding="utf-8"))
+            put_unlisted(
+                self.place,
+                lambda beside: beside.write_text(json.dumps(self.told), encoding="utf-8"),
+            )
             self.written = time.monotonic()
 
     def started(self, total: int, done: int) -> None:
@@ -94,11 +104,15 @@ def run(name: str) -> None:
             progress.say(step="stopped", error=str(exc))
         except Exception as exc:
             traceback.print_exc()
-            progress.say(step="stopped", error=f"internal error, {type(exc).__name__}; see {root / 'page.log'}")
+            progress.say(
+                step="stopped",
+                error=f"internal error, {type(exc).__name__}; see {root / 'page.log'}",
+            )
 
 
 def _work(name: str, progress: Progress) -> None:
-    from trackroller.report.build import build_report  # heavy: SALib; the page shows "starting" meanwhile
+    # heavy: SALib; the page shows "starting" meanwhile
+    from trackroller.report.build import build_report
     from trackroller.report.explorer.page import write_explorer
     from trackroller.results.solving import run_any  # heavy: analysis
     from trackroller.results.stored_study import open_study
@@ -108,7 +122,9 @@ def _work(name: str, progress: Progress) -> None:
     progress.say(failed=status_of(study, folder).failed)  # in the chunks that an earlier run solved
     ledger = run_any(study, started=progress.started, progress=progress.advanced)
     status = status_of(study, folder)
-    progress.say(step="making the report", total=status.total, done=status.done, failed=status.failed)
+    progress.say(
+        step="making the report", total=status.total, done=status.done, failed=status.failed
+    )
     build_report(ledger.folder, lambda line: progress.say(step=line))
     progress.say(step="making the explorer")
     write_explorer(open_study(ledger.folder.root), ledger.folder.root / "explorer.html")
@@ -116,6 +132,7 @@ def _work(name: str, progress: Progress) -> None:
 
 
 if __name__ == "__main__":
-    signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell may start the server with SIGINT ignored
+    # a shell may start the server with SIGINT ignored
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     confine(Path.cwd())
     run(sys.argv[1])

@@ -42,12 +42,15 @@ _QUANTITY_OF = {
     "guide_life_hours": "life",
     "pair_life_hours": "life",
 }
-_RELATIVE_TO = {"friction_force": "mu F_N", "spin_moment": "mu F_N sqrt(a b)"}  # other quantities: to themselves
+# other quantities: to themselves
+_RELATIVE_TO = {"friction_force": "mu F_N", "spin_moment": "mu F_N sqrt(a b)"}
 
 
 @dataclass(frozen=True)
 class Levels:
-    """Measured relative errors over the sample of designs: percentiles, and `bound`, which 99 % of all cases keep."""
+    """Measured relative errors over the sample of designs: percentiles, and `bound`, which 99 % of
+    all cases keep.
+    """
 
     median: float
     p95: float
@@ -61,24 +64,37 @@ def _measured() -> Any:
     return json.loads(text)["models"]
 
 
-def expected_errors(options: Options, contact_model: str, constant_friction: bool) -> dict[str, Levels]:
-    """Return the measured errors of discretisation by quantity; nothing where this combination was not measured.
+def expected_errors(
+    options: Options, contact_model: str, constant_friction: bool
+) -> dict[str, Levels]:
+    """Return the measured errors of discretisation by quantity; nothing where this combination was
+    not measured.
 
-    The measurements hold for the rungs, ellipses, constant friction and the rigid slip that each model has by itself.
+    The measurements hold for the rungs, ellipses, constant friction and the rigid slip that each
+    model has by itself.
     """
-    if options.normal != "hertz" or options.slip_terms or not constant_friction or options.tolerance is not None:
+    if (
+        options.normal != "hertz"
+        or options.slip_terms
+        or not constant_friction
+        or options.tolerance is not None
+    ):
         return {}
     errors = CLASSES[contact_model].errors()
     settings = options.settings
-    is_rung = settings.name in RUNGS and settings in (settings_of(settings.name, rough) for rough in (False, True))
+    is_rung = settings.name in RUNGS and settings in (
+        settings_of(settings.name, rough) for rough in (False, True)
+    )
     if not errors and is_rung:
         errors = _measured().get(contact_model, {}).get(settings.name, {})
-    published = options.life_criterion == OPTIONS["life_criterion"].default  # its life alone was measured
+    # its life alone was measured
+    published = options.life_criterion == OPTIONS["life_criterion"].default
     return {name: Levels(*levels) for name, levels in errors.items() if published or name != "life"}
 
 
 def least_errors(table: CaseTable, options: Options) -> tuple[np.ndarray, np.ndarray]:
-    """Return the least error of the forces and of the peaks that a rung can tell for each case, (n,) each.
+    """Return the least error of the forces and of the peaks that a rung can tell for each case,
+    (n,) each.
 
     They are the constant parts of the estimated errors, which contact models from a table have.
     """
@@ -107,8 +123,12 @@ def error_attributes(levels: Mapping[str, Levels]) -> dict[str, dict[str, Any]]:
 
 
 def tell_errors(ds: xr.Dataset, table: CaseTable, options: Options) -> None:
-    """Add as attributes the limit of the residual, and the errors of discretisation if they were measured."""
-    ds.variables["residual"].attrs["converged_up_to"] = converged_up_to(options.contact_model, options.normal)
+    """Add as attributes the limit of the residual, and the errors of discretisation if they were
+    measured.
+    """
+    ds.variables["residual"].attrs["converged_up_to"] = converged_up_to(
+        options.contact_model, options.normal
+    )
     constant = all(law_of(text).is_constant for text in set(table.friction_law.tolist()))
     cheaper = DECLARED[options.contact_model].cheaper
     model = options.contact_model
