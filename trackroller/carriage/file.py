@@ -38,6 +38,7 @@ from trackroller.roller.duty import (
     is_of_strokes,
     refuse_overrollings,
 )
+from trackroller.roller.requirement import Requirement, checked_requirement
 from trackroller.roller.settings import LOADS, checked_case
 from trackroller.yaml_file import errors_by_line, parse_mapping
 
@@ -144,6 +145,8 @@ class MountedRoller:
         Options of the solver in the roller's file.
     given : mapping
         The roller's file.
+    required : mapping of str to Requirement
+        What the roller's file requires of outputs.
     stiffness : tuple of float, optional
         Radial and axial stiffness of the whole roller, in place of that of its contacts [N/mm].
     compliance : tuple of float
@@ -160,6 +163,7 @@ class MountedRoller:
     case: Case | None = None
     options: Mapping[str, Any] = field(default_factory=dict)
     given: Mapping[str, Any] = field(default_factory=dict)
+    required: Mapping[str, Requirement] = field(default_factory=dict)
     stiffness: tuple[float, float] | None = None
     compliance: tuple[float, float] = (0.0, 0.0)
     catalogue: CatalogueRoller | None = None
@@ -624,14 +628,27 @@ def _case(value: Any, where: str, files: dict[object, Any]) -> dict[str, Any]:
 def _read_roller(value: Any, where: str) -> dict[str, Any]:
     """Return case, options and given values of the roller of a mapping or a file."""
     if isinstance(value, Mapping):
-        case, options, _ = checked_case(value)
-        return {"case": case, "options": options, "given": dict(value)}
+        case, options, beside = checked_case(value)
+        return {
+            "case": case,
+            "options": options,
+            "given": dict(value),
+            "required": _required(beside),
+        }
     path = find_beside(value, where)
     text = read_text(path, "roller file")
     given = parse_mapping(text, str(path))
     with errors_by_line(text, file=str(path), aliases=ALIASES):
-        case, options, _ = checked_case(given)
-    return {"case": case, "options": options, "given": given}
+        case, options, beside = checked_case(given)
+    return {"case": case, "options": options, "given": given, "required": _required(beside)}
+
+
+def _required(beside: Mapping[str, Any]) -> dict[str, Requirement]:
+    """Return what the file of a roller requires, from its entries beside the case."""
+    found: dict[str, Requirement] = checked_requirement(
+        beside.get("requirement", {}), beside.get("duty")
+    )
+    return found
 
 
 def _stiffness(value: Any, where: str) -> tuple[float, float]:

@@ -5,6 +5,7 @@ by its life.
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -31,18 +32,26 @@ from trackroller.carriage.statics import (
 )
 from trackroller.carriage.strokes import passes_per_km
 from trackroller.contact.hertz import contact_modulus, unit_approach
-from trackroller.damage import verdict
+from trackroller.damage import LIMITS, verdict
 from trackroller.damage.miner import block_damage
 from trackroller.errors import InputError
 from trackroller.materials import load_database
-from trackroller.parameters import BODIES
+from trackroller.parameters import BODIES, MATERIAL_FIELDS
+from trackroller.parameters.example import used_of
 from trackroller.roller.case import Case, to_table
-from trackroller.roller.dataset import file_attributes, validity_bit
+from trackroller.roller.dataset import NOTES, file_attributes, validity_bit
 from trackroller.roller.doubts import doubts, ratings
 from trackroller.roller.duty import OVERROLLINGS, overrollings_per_hour, with_duty, years
 from trackroller.roller.geometry import contact_geometry
+from trackroller.roller.requirement import LIVES_OF_PAIR
 from trackroller.roller.settings import LOADS
-from trackroller.roller.stored_inputs import DOUBTS
+from trackroller.roller.stored_inputs import (
+    DOUBTS,
+    MATERIALS,
+    NOT_GIVEN,
+    material_values,
+    plain_inputs,
+)
 
 LIFE = "pair_life_to_first_limit_hours"
 CONVENTIONS = (
@@ -576,8 +585,8 @@ def _doubted_ratings(roller: MountedRoller, radial: np.ndarray) -> Iterator[str]
 
 
 def _unused_loads(roller: MountedRoller) -> Iterator[str]:
-    """Yield a sentence for each force in the file of a roller, whose place the loads of the
-    carriage take.
+    """Yield a sentence for each force in the file of a roller, and for each requirement, that does
+    not count.
     """
     for name in LOADS:
         if name in roller.given:
@@ -585,6 +594,9 @@ def _unused_loads(roller: MountedRoller) -> Iterator[str]:
                 f"{name} = {roller.given[name]} in its file does not count: the carriage gives it. "
                 "Remove it there."
             )
+    for name, own in roller.required.items():
+        if name not in LIVES_OF_PAIR or math.isfinite(own.most):
+            yield f"requirement.{name} in its file is not judged: of a carriage only a smallest life is."
 
 
 def _flags(solved: xr.Dataset) -> np.ndarray:
@@ -652,6 +664,7 @@ def with_lives(
     ends = np.full((n, 2), "", dtype=object)  # body and limit
     flags: Mapping[str, Any] = {}
     cases = cases_of(whole, ds)
+    checks = _Checks(n)
     groups: dict[str, list[tuple[int, int]]] = {}
     for place in cases:
         groups.setdefault(repr(whole.rollers[place[1]].options), []).append(place)
@@ -673,6 +686,7 @@ def with_lives(
         for end in lasts:
             lasts[end][j[lives.first]] = lives.summed[f"{LIFE}{end}"]
         ends[j[lives.first]] = _first_ends(lives, solved)
+        checks.add(j[lives.first], lives, solved)
         case_hours[i, j] = solved[LIFE].values
         regime[i, j] = solved["regime"].values
         flagged[i, j] = _flags(solved)
@@ -732,8 +746,134 @@ def with_lives(
             years(lasts[""], whole.duty),
             _attrs("year", "years of the duty to the first limit"),
         )
+    database = load_database()
+    materials = [
+        material_values(roller.case, database)
+        for roller in whole.rollers
+        if roller.case is not None
+    ]
+    variables |= checks.variables() | _inputs_of_rollers(whole, materials, pace)
     known = np.where(np.isnan(travel), np.inf, travel)
     worst = ""
     if np.isfinite(known).any():
         worst = ds["roller"].values[int(np.argmin(known))]
-    return ds.assign(variables).assign_attrs(worst_roller=str(worst))
+    attrs = checks.attributes() | {NOT_GIVEN: json.dumps(_not_given(whole))}
+    attrs |= {MATERIALS: json.dumps(_each_once(materials), default=str)}
+    return ds.assign(variables).assign_attrs(attrs, worst_roller=str(worst))
+
+
+class _Checks:
+    """The limits of the rollers of a carriage over their load cases.
+
+    Parameters
+    ----------
+    number : int
+        Rollers of the carriage; the limits of a roller that is never loaded are not known.
+    """
+
+    def __init__(self, number: int) -> None:
+        shape = (number, len(LIMITS), len(BODIES))
+        self.names = list(LIMITS)
+        self.used, self.hours = np.full(shape, np.nan), np.full(shape, np.nan)
+        self.state = np.zeros(shape, dtype=np.int8)
+        self.asked: list[str] = []
+        self.notes: list[str] = []
+
+    def add(self, rollers: np.ndarray, lives: Lives, solved: xr.Dataset) -> None:
+        """Take the limits of rollers that were solved together; one that is unknown in a load case
+        is not known.
+        """
+        places = [self.names.index(name) for name in solved["limit"].values.tolist()]
+        state = lives.summed["limit_state"].copy()
+        shares = (lives.share == 0)[:, None, None]
+        least = lives.of(
+            np.where(shares, len(verdict.STATES), solved["limit_state"].values), np.minimum
+        )
+        exceeded = verdict.STATES.index("exceeded")
+        state[(least == verdict.STATES.index("unknown")) & (state != exceeded)] = (
+            verdict.STATES.index("unknown")
+        )
+        into = np.ix_(rollers, np.array(places))
+        self.state[into] = state
+        self.used[into], self.hours[into] = (
+            lives.summed["utilisation"],
+            lives.summed["life_hours_by_limit"],
+        )
+        self.asked += [name for name in solved["limit"].values.tolist() if name not in self.asked]
+        self.notes += [
+            line
+            for line in str(solved.attrs.get(NOTES, "")).split("\n")
+            if line and line not in self.notes
+        ]
+
+    def variables(self) -> dict[str, Any]:
+        """Return utilisation, hours and state of each limit as variables, with their labels."""
+        dims = ("roller", "limit", "body")
+        flags = {
+            "flag_values": np.arange(len(verdict.STATES), dtype=np.int8),
+            "flag_meanings": " ".join(verdict.STATES),
+            "long_name": "whether the limit is kept over the load cases",
+        }
+        alone = _attrs("h", "hours of travel to the limit, with the damage of all load cases")
+        return {
+            "limit": ("limit", self.names, {"long_name": "limit"}),
+            "body": ("body", list(BODIES), {"long_name": "body"}),
+            "utilisation": (
+                dims,
+                self.used,
+                _attrs("1", "largest utilisation over the load cases"),
+            ),
+            "life_hours_by_limit": (dims, self.hours, alone),
+            "limit_state": (dims, self.state, flags),
+        }
+
+    def attributes(self) -> dict[str, str]:
+        """Return which limits were asked for, and what they lack, as attributes."""
+        return {"limits": " ".join(self.asked), NOTES: "\n".join(self.notes)}
+
+
+def _inputs_of_rollers(
+    whole: Carriage, materials: list[dict[str, Any]], pace: np.ndarray
+) -> dict[str, Any]:
+    """Return the materials of the rollers, and the life that their files require, as variables.
+
+    A required travel is one of the carriage, which takes `pace` hours a km, (n,).
+    """
+    required = np.full(len(whole.rollers), np.nan)
+    for j, roller in enumerate(whole.rollers):
+        least = [own.least for name, own in roller.required.items() if name in LIVES_OF_PAIR]
+        travel = None if roller.case is None else roller.case.required_travel
+        if travel is not None:
+            least.append(float(travel * pace[j]))
+        required[j] = max(filter(math.isfinite, least), default=math.nan)
+    names: dict[str, Any] = {
+        field: (_R, [str(own[field]["name"]) for own in materials], {}) for field in MATERIAL_FIELDS
+    }
+    return names | {
+        "required_hours": (_R, required, _attrs("h", "life that the file of the roller requires"))
+    }
+
+
+def _each_once(materials: list[dict[str, Any]]) -> dict[str, Any]:
+    """Return the values of the materials of all rollers and rails, those of equal pairs once."""
+    pairs = {json.dumps(own, sort_keys=True, default=str): own for own in materials}
+    return {
+        f"{name}_{k}": values
+        for k, own in enumerate(pairs.values())
+        for name, values in own.items()
+    }
+
+
+def _not_given(whole: Carriage) -> dict[str, Any]:
+    """Return the values of rollers that nobody gave and that the carriage does not give, by
+    name.
+    """
+    stated = {*LOADS, "travel"}
+    if all(case.speed is not None for case in whole.cases):
+        stated |= {"velocity"}
+    found: dict[str, Any] = {}
+    for case in (roller.case for roller in whole.rollers if roller.case is not None):
+        found |= used_of(
+            plain_inputs(case), [name for name in case.not_given if name not in stated]
+        )
+    return found

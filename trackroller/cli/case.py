@@ -493,7 +493,6 @@ def run_wear(
     from trackroller.report.pages.record import print_record
     from trackroller.report.pages.wear import write_wear
     from trackroller.results.wear_answer import answer_of_wear
-    from trackroller.roller.duty import with_duty
     from trackroller.roller.wear import wear
     from trackroller.study.store.netcdf import read_netcdf
 
@@ -517,7 +516,7 @@ def run_wear(
     dataset = wear(new, to, resume=before, tell=tell, **options)
     if target is not None:
         write_result(dataset, target)
-    worn = with_duty(dataset, beside.get("duty"))
+    worn = with_beside(dataset, beside)
     if page is not None:
         write_wear(worn, page)
     print_record(answer_of_wear(worn))
