@@ -596,7 +596,10 @@ def _unused_loads(roller: MountedRoller) -> Iterator[str]:
             )
     for name, own in roller.required.items():
         if name not in LIVES_OF_PAIR or math.isfinite(own.most):
-            yield f"requirement.{name} in its file is not judged: of a carriage only a smallest life is."
+            yield (
+                f"requirement.{name} in its file is not judged: of a carriage only a smallest life "
+                "is."
+            )
 
 
 def _flags(solved: xr.Dataset) -> np.ndarray:
@@ -774,7 +777,8 @@ class _Checks:
     def __init__(self, number: int) -> None:
         shape = (number, len(LIMITS), len(BODIES))
         self.names = list(LIMITS)
-        self.used, self.hours = np.full(shape, np.nan), np.full(shape, np.nan)
+        self.used = np.full(shape, np.nan)
+        self.hours = np.full(shape, np.nan)
         self.state = np.zeros(shape, dtype=np.int8)
         self.asked: list[str] = []
         self.notes: list[str] = []
@@ -795,10 +799,8 @@ class _Checks:
         )
         into = np.ix_(rollers, np.array(places))
         self.state[into] = state
-        self.used[into], self.hours[into] = (
-            lives.summed["utilisation"],
-            lives.summed["life_hours_by_limit"],
-        )
+        self.used[into] = lives.summed["utilisation"]
+        self.hours[into] = lives.summed["life_hours_by_limit"]
         self.asked += [name for name in solved["limit"].values.tolist() if name not in self.asked]
         self.notes += [
             line
