@@ -10,9 +10,9 @@ SLIP = ("contact/test_slip.py", "contact/test_sliding.py", "contact/test_slip_te
 GEOMETRY = ("roller/test_geometry.py", "roller/test_equilibrium.py", "roller/test_solver.py")
 ANSWER = ("results/test_answer.py",)
 WEAR = ("damage/test_wear.py",)
-SOBOL = ("results/test_sensitivity.py",)
+SOBOL = ("methods/test_indices.py", "results/test_sensitivity.py")
 TABLE = ("contact/test_kalker_table.py",)
-CONVERGENCE = (BORDERS, "results/test_sensitivity.py", "results/test_given_data.py")
+CONVERGENCE = (BORDERS, "methods/test_indices.py", "results/test_sensitivity.py", "methods/test_given_data.py")
 WORDS = (
     BORDERS,
     "report/test_sentences.py",
