@@ -147,9 +147,9 @@ def _temporary_folder() -> Path | None:
         place = TEMPORARY / f"trackroller-{'cache' if user is None else user}"
         with contextlib.suppress(FileExistsError):
             place.mkdir(mode=0o700)
-        seen = place.lstat()
-        own = stat.S_ISDIR(seen.st_mode) and (
-            user is None or (seen.st_uid == user and not seen.st_mode & 0o022)
+        state = place.lstat()
+        own = stat.S_ISDIR(state.st_mode) and (
+            user is None or (state.st_uid == user and not state.st_mode & 0o022)
         )
         if own and is_writable(place):
             return place

@@ -158,7 +158,7 @@ def escaped(text: str) -> str:
     >>> escaped("a\x1b[2J")
     'a\\x1b[2J'
     """
-    return _REFUSED_IN[True].sub(lambda found: ascii(found[0])[1:-1], text)
+    return _REFUSED_IN[True].sub(lambda match: ascii(match[0])[1:-1], text)
 
 
 MOST_SHOWN = 30  # errors of a file that a message names

@@ -34,7 +34,7 @@ STUDY_MARK = "plan.json"  # stands in the folder of a study, beside its finished
 MAX_BYTES = 5_000_000  # bytes; a larger table of cases belongs into a CSV file
 Reads = dict[Path, tuple[str, str]]  # kind and SHA-256 of each file that was read
 _beside: ContextVar[Path | None] = ContextVar("beside", default=None)
-_noted: ContextVar[Reads | None] = ContextVar("noted", default=None)
+_reads: ContextVar[Reads | None] = ContextVar("noted", default=None)
 _confined: list[Path] = []  # what this process may read and write; everything if empty
 
 
@@ -115,13 +115,13 @@ def noted_reads() -> Iterator[Reads]:
     """Note the kind and the SHA-256 of each file that `read_text` reads; an inner context adds to
     the outer one.
     """
-    outer = _noted.get()
-    noted: Reads = {} if outer is None else outer
-    token = _noted.set(noted)
+    outer = _reads.get()
+    reads: Reads = {} if outer is None else outer
+    token = _reads.set(reads)
     try:
-        yield noted
+        yield reads
     finally:
-        _noted.reset(token)
+        _reads.reset(token)
 
 
 def read_bytes(path: Path | str, what: str, most: float = MAX_BYTES) -> bytes:
@@ -131,9 +131,9 @@ def read_bytes(path: Path | str, what: str, most: float = MAX_BYTES) -> bytes:
     path = Path(path)
     with opened(path, what, most) as stream:
         content = stream.read()
-    noted = _noted.get()
-    if noted is not None:
-        noted[path.resolve()] = what, hashlib.sha256(content).hexdigest()
+    reads = _reads.get()
+    if reads is not None:
+        reads[path.resolve()] = what, hashlib.sha256(content).hexdigest()
     return content
 
 
@@ -358,19 +358,19 @@ def disk_error(exc: OSError, path: Path) -> WorkError:
     """Return the message for a failed write, with the remedy."""
     exc = _true_cause(exc, path)
     if exc.errno in (errno.ENOSPC, errno.EDQUOT):
-        what = "the disk is full"
+        cause = "the disk is full"
         remedy = "Free some space"
     elif exc.errno in (errno.EROFS, errno.EACCES, errno.EPERM):
-        what = f"it cannot be written ({exc.strerror})"
+        cause = f"it cannot be written ({exc.strerror})"
         remedy = "Change its permissions (or choose another --results)"
     else:
-        what = f"writing failed ({why_not(exc, path)})"
+        cause = f"writing failed ({why_not(exc, path)})"
         remedy = "Repair the folder or the disk"
     of_study = any((place / STUDY_MARK).is_file() for place in (path, *path.parents))
-    kept = ""
+    assurance = ""
     if of_study:
-        kept = ": every finished case is kept"
-    return WorkError(f"{path}: {what}. {remedy}, then start again{kept}.")
+        assurance = ": every finished case is kept"
+    return WorkError(f"{path}: {cause}. {remedy}, then start again{assurance}.")
 
 
 def why_not(exc: OSError, path: Path) -> str:

@@ -40,17 +40,17 @@ class Progress:
     """How far a study is, kept in a file for the page."""
 
     def __init__(self, root: Path) -> None:
-        self.place = claim(root / PROGRESS)
-        self.told: dict[str, Any] = {}
+        self.file = claim(root / PROGRESS)
+        self.record: dict[str, Any] = {}
         self.written = 0.0
 
-    def say(self, at_once: bool = True, **told: Any) -> None:
+    def say(self, at_once: bool = True, **facts: Any) -> None:
         """Add facts to the record, and write it at once or if the last record is old."""
-        self.told |= told
+        self.record |= facts
         if at_once or time.monotonic() - self.written > TICK:
             put_unlisted(
-                self.place,
-                lambda beside: beside.write_text(json.dumps(self.told), encoding="utf-8"),
+                self.file,
+                lambda beside: beside.write_text(json.dumps(self.record), encoding="utf-8"),
             )
             self.written = time.monotonic()
 
@@ -60,7 +60,9 @@ class Progress:
 
     def advanced(self, count: int, failed: int) -> None:
         """Record solved cases, of which some failed."""
-        self.say(at_once=False, done=self.told["done"] + count, failed=self.told["failed"] + failed)
+        self.say(
+            at_once=False, done=self.record["done"] + count, failed=self.record["failed"] + failed
+        )
 
 
 def is_held(path: Path) -> bool:

@@ -645,10 +645,10 @@ def _read_roller(value: Any, where: str) -> dict[str, Any]:
 
 def _required(beside: Mapping[str, Any]) -> dict[str, Requirement]:
     """Return what the file of a roller requires, from its entries beside the case."""
-    found: dict[str, Requirement] = checked_requirement(
+    requirements: dict[str, Requirement] = checked_requirement(
         beside.get("requirement", {}), beside.get("duty")
     )
-    return found
+    return requirements
 
 
 def _stiffness(value: Any, where: str) -> tuple[float, float]:

@@ -780,7 +780,7 @@ class _Checks:
         self.used = np.full(shape, np.nan)
         self.hours = np.full(shape, np.nan)
         self.state = np.zeros(shape, dtype=np.int8)
-        self.asked: list[str] = []
+        self.requested: list[str] = []
         self.notes: list[str] = []
 
     def add(self, rollers: np.ndarray, lives: Lives, solved: xr.Dataset) -> None:
@@ -801,7 +801,9 @@ class _Checks:
         self.state[into] = state
         self.used[into] = lives.summed["utilisation"]
         self.hours[into] = lives.summed["life_hours_by_limit"]
-        self.asked += [name for name in solved["limit"].values.tolist() if name not in self.asked]
+        self.requested += [
+            name for name in solved["limit"].values.tolist() if name not in self.requested
+        ]
         self.notes += [
             line
             for line in str(solved.attrs.get(NOTES, "")).split("\n")
@@ -831,7 +833,7 @@ class _Checks:
 
     def attributes(self) -> dict[str, str]:
         """Return which limits were asked for, and what they lack, as attributes."""
-        return {"limits": " ".join(self.asked), NOTES: "\n".join(self.notes)}
+        return {"limits": " ".join(self.requested), NOTES: "\n".join(self.notes)}
 
 
 def _inputs_of_rollers(
@@ -870,12 +872,12 @@ def _not_given(whole: Carriage) -> dict[str, Any]:
     """Return the values of rollers that nobody gave and that the carriage does not give, by
     name.
     """
-    stated = {*LOADS, "travel"}
+    given = {*LOADS, "travel"}
     if all(case.speed is not None for case in whole.cases):
-        stated |= {"velocity"}
-    found: dict[str, Any] = {}
+        given |= {"velocity"}
+    values: dict[str, Any] = {}
     for case in (roller.case for roller in whole.rollers if roller.case is not None):
-        found |= used_of(
-            plain_inputs(case), [name for name in case.not_given if name not in stated]
+        values |= used_of(
+            plain_inputs(case), [name for name in case.not_given if name not in given]
         )
-    return found
+    return values

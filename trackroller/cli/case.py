@@ -445,9 +445,9 @@ def run_spectrum(
         print_spectrum(dataset)
 
 
-def _write_log(log: Path, roller: Path | None, out: Path | None, more: bool) -> None:
+def _write_log(log: Path, roller: Path | None, out: Path | None, has_other_outputs: bool) -> None:
     """Write the load spectrum of a log, and print what a user must know of the log."""
-    if more or out is None or out.suffix.lower() not in YAML:
+    if has_other_outputs or out is None or out.suffix.lower() not in YAML:
         allowed = "--from with -o and a file whose name ends in .yaml"
         raise InputError(
             "--from",

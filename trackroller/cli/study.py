@@ -254,7 +254,9 @@ def _print_differences(compared: Mapping[str, Difference]) -> bool:
     """Print the variables that differ by more than rounding explains, and return whether there are
     any.
     """
-    differing = {name: difference for name, difference in compared.items() if difference.found}
+    differing = {
+        name: difference for name, difference in compared.items() if difference.exceeds_rounding
+    }
     for name, (apart, allowed, scale) in differing.items():
         if apart < math.inf:
             print(f"{name}: differs by {apart:.1e} of {scale}; rounding explains {allowed:.0e}")

@@ -25,7 +25,7 @@ from trackroller.study.store.ledger import Ledger, read_ledger, study_folder, wo
 from trackroller.study.store.put import claim
 
 CONFIG_KEYS = ("study", "results")
-_held = contextlib.ExitStack()  # keeps the lock of the study until this process ends
+_open_locks = contextlib.ExitStack()  # keeps the lock of the study until this process ends
 
 
 def workflow_config(
@@ -122,7 +122,7 @@ def workflow_ledger(config: Mapping[str, str], main: bool, tell: Tell = unheard)
     if study.decides:  # its rule plans each generation
         return Ledger(StudyCases(study), folder)
     if main:
-        return _held.enter_context(working_ledger(study, results, tell=tell))
+        return _open_locks.enter_context(working_ledger(study, results, tell=tell))
     ledger = read_ledger(study, folder)
     if ledger is None:
         raise WorkError(
@@ -245,7 +245,7 @@ def log_to(path: str, step: str = "") -> None:
     step's name.
     """
     sys.excepthook = _tell_error
-    _held.enter_context(interrupts_wait_for_files())
+    _open_locks.enter_context(interrupts_wait_for_files())
     if step:
         print(step, file=sys.stderr, flush=True)
     Path(path).parent.mkdir(parents=True, exist_ok=True)

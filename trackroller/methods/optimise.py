@@ -293,11 +293,11 @@ def _new(drawn: np.ndarray, known: np.ndarray, count: int) -> np.ndarray:
     """Return the first designs that differ from each other and from the known ones, at most
     `count`.
     """
-    seen = {row.tobytes() for row in known}
+    drawn_before = {row.tobytes() for row in known}
     rows: list[np.ndarray] = []
     for row in drawn:
         key = row.tobytes()
-        if len(rows) < count and key not in seen:
-            seen.add(key)
+        if len(rows) < count and key not in drawn_before:
+            drawn_before.add(key)
             rows.append(row)
     return np.array(rows).reshape(len(rows), drawn.shape[1])

@@ -54,12 +54,12 @@ def wide(copies: int) -> float:
     return float(WIDER * t.ppf(0.975, copies - 1))
 
 
-def jackknife(left: np.ndarray) -> np.ndarray:
+def jackknife(without_one: np.ndarray) -> np.ndarray:
     """Return the half width of the 95 % interval of a mean or a smooth function of means.
 
     Parameters
     ----------
-    left : estimates without one replicate each, shape (replicates, ...)
+    without_one : estimates without one replicate each, shape (replicates, ...)
 
     Returns
     -------
@@ -72,8 +72,8 @@ def jackknife(left: np.ndarray) -> np.ndarray:
     >>> bool(np.isclose(jackknife(left), 1.15 * 2.3646 * values.std(ddof=1) / 8**0.5, rtol=1e-4))
     True
     """
-    count = len(left)
-    variance = (count - 1) / count * ((left - left.mean(axis=0)) ** 2).sum(axis=0)
+    count = len(without_one)
+    variance = (count - 1) / count * ((without_one - without_one.mean(axis=0)) ** 2).sum(axis=0)
     return np.asarray(wide(count) * np.sqrt(variance))
 
 

@@ -200,9 +200,11 @@ class Saltelli(Method):
         single = [1 << j for j in range(count - 1)]
         sets = [*single, *(whole ^ j for j in single)]
         drawn = closed_indices(part, count - 1, False, sets, cluster=cluster)
-        first, rest = np.split(drawn, 2, axis=1)
+        first, of_complement = np.split(drawn, 2, axis=1)
         out: Estimates = {"conditional_rows": np.array(len(part))}
-        bounds = with_bounds("conditional_S1", first) | with_bounds("conditional_ST", 1 - rest)
+        bounds = with_bounds("conditional_S1", first) | with_bounds(
+            "conditional_ST", 1 - of_complement
+        )
         return out | {name: spread(values, place) for name, values in bounds.items()}
 
     def independent_rows(self, design: Design) -> np.ndarray:
@@ -292,9 +294,9 @@ def all_groups(
     """Return the groups of a study file and, after these, each factor in no group as a group of its
     own name.
     """
-    taken = {name for members in groups.values() for name in members}
+    grouped = {name for members in groups.values() for name in members}
     return {name: tuple(members) for name, members in groups.items()} | {
-        name: (name,) for name in factors if name not in taken
+        name: (name,) for name in factors if name not in grouped
     }
 
 

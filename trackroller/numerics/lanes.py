@@ -75,8 +75,10 @@ def subtract_multiple(typingctx, out, start, source, first, factors, at, count):
             where = target(loop.index)
             value = builder.load(origin(loop.index), align=_size(source))
             product = builder.fmul(multiplier, value, flags=("contract",))
-            rest = builder.fsub(builder.load(where, align=_size(out)), product, flags=("contract",))
-            builder.store(rest, where, align=_size(out))
+            remainder = builder.fsub(
+                builder.load(where, align=_size(out)), product, flags=("contract",)
+            )
+            builder.store(remainder, where, align=_size(out))
         return context.get_dummy_value()
 
     return signature, generate

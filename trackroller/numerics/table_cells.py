@@ -78,7 +78,7 @@ class _Parts(NamedTuple):
     decimals: str
     mark: str  # the sign before the decimals, or the only sign if it may also separate thousands
     certain: bool
-    rest: str  # exponent and unit
+    tail: str  # exponent and unit
 
 
 def stated_separator(line: str) -> str:
@@ -146,8 +146,8 @@ def plain_cell(cell: str, signs: Collection[str]) -> str:
     parts = _parts(text)
     if parts is None:
         return cell
-    sign, whole, decimals, mark, certain, rest = parts
-    if rest and split_quantity(f"1{rest}") is None and not re.fullmatch(r"e[-+]?\d+", rest):
+    sign, whole, decimals, mark, certain, tail = parts
+    if tail and split_quantity(f"1{tail}") is None and not re.fullmatch(r"e[-+]?\d+", tail):
         return cell
     if not certain:
         if len(signs) != 1:
@@ -163,7 +163,7 @@ def plain_cell(cell: str, signs: Collection[str]) -> str:
             whole = whole + decimals
             decimals = ""
     number = f"{whole}.{decimals}" if decimals else whole
-    return f"{sign.strip('+')}{number}{rest}"
+    return f"{sign.strip('+')}{number}{tail}"
 
 
 def plain_quantity(text: str) -> str:
@@ -237,7 +237,7 @@ def is_number(cell: str) -> bool:
         parts = None
     else:
         parts = _parts(_tidy(cell))
-    return parts is not None and re.fullmatch(r"(?:e[-+]?\d+)?", parts.rest) is not None
+    return parts is not None and re.fullmatch(r"(?:e[-+]?\d+)?", parts.tail) is not None
 
 
 def plain_labels(cells: Sequence[str], signs: Collection[str]) -> Sequence[str]:
@@ -332,19 +332,19 @@ def _parts(text: str) -> _Parts | None:
         return None
     sign = parts[1]
     mantissa = parts[2].rstrip(" ")
-    rest = parts[3]
+    tail = parts[3]
     blank = " " if len(parts[2]) > len(mantissa) else ""
-    exponent = None if blank else _EXPONENT.match(rest)
+    exponent = None if blank else _EXPONENT.match(tail)
     # Fortran's 1.5D3; 5d3 is no number
     if not exponent and not blank and ("." in mantissa or "," in mantissa):
-        exponent = re.match(r"[dD](\d+)()", rest, re.ASCII)
+        exponent = re.match(r"[dD](\d+)()", tail, re.ASCII)
     if exponent:
-        rest = f"e{exponent[1] or exponent[2]}{rest[exponent.end() :]}"
-    elif re.match(r"[eE]?[-+]?\d|[-+.,'’]", rest):
+        tail = f"e{exponent[1] or exponent[2]}{tail[exponent.end() :]}"
+    elif re.match(r"[eE]?[-+]?\d|[-+.,'’]", tail):
         return None
-    rest = blank + rest
+    tail = blank + tail
     if mantissa.isdigit():
-        return _Parts(sign, mantissa, "", "", True, rest)
+        return _Parts(sign, mantissa, "", "", True, tail)
     grouped = _GROUPED.fullmatch(mantissa)
     if grouped:
         mark = grouped[1]
@@ -355,10 +355,10 @@ def _parts(text: str) -> _Parts | None:
             digits = mantissa[: grouped.start(2)]
         if mark in ".," and not decimal and digits.count(mark) == 1:  # thousands or three decimals
             whole, _, end = digits.partition(mark)
-            return _Parts(sign, whole, end, mark, bool(exponent), rest)
+            return _Parts(sign, whole, end, mark, bool(exponent), tail)
         other = {".": ",", ",": "."}.get(mark, "")
-        return _Parts(sign, digits.replace(mark, ""), decimals or "", decimal or other, True, rest)
+        return _Parts(sign, digits.replace(mark, ""), decimals or "", decimal or other, True, tail)
     single = _SINGLE.fullmatch(mantissa)
     if single is None or (single[2] == "," and not single[3]):
         return None
-    return _Parts(sign, single[1] or "0", single[3], single[2], True, rest)
+    return _Parts(sign, single[1] or "0", single[3], single[2], True, tail)

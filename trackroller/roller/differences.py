@@ -62,7 +62,7 @@ class Difference(NamedTuple):
     scale: str
 
     @property
-    def found(self) -> bool:
+    def exceeds_rounding(self) -> bool:
         """Return whether rounding cannot explain the difference."""
         return self.apart > self.allowed
 

@@ -279,14 +279,14 @@ class _Record:
                 array = np.asarray(values[v.name])
                 row[v.name] = (
                     v.dims,
-                    self._seen(array, v.dims),
+                    self._as_given(array, v.dims),
                     {"units": v.units, "long_name": v.long_name},
                 )
         self.rows.append(row.assign_coords(travel=state.travel))
         if self.tell is not None:
             self.tell(self._joined("running"), self.to)
 
-    def _seen(self, array: np.ndarray, dims: tuple[str, ...]) -> np.ndarray:
+    def _as_given(self, array: np.ndarray, dims: tuple[str, ...]) -> np.ndarray:
         """Return an array with contacts 1 and 2 swapped if the mirror image of the roller was
         solved, and back.
         """
@@ -374,7 +374,7 @@ class _Record:
         last = self.rows[-1]
         m = self.wearing.contacts
         known = {
-            v.name: self._seen(last[v.name].values, v.dims) for v in VARIABLES if v.name in last
+            v.name: self._as_given(last[v.name].values, v.dims) for v in VARIABLES if v.name in last
         }
         state = Groove(
             float(last.travel),

@@ -93,11 +93,11 @@ def balance_again(
         normal_force=near.normal.T,
         forces=Resultants(*near.forces.transpose(0, 2, 1)),
     )
-    found = merged(balance, rows[good], again, np.flatnonzero(good))
+    merged_balance = merged(balance, rows[good], again, np.flatnonzero(good))
     lost = rows[~good]
     if lost.size:
-        return merged(found, lost, solve_some(loads, law, lost), np.arange(lost.size))
-    return found
+        return merged(merged_balance, lost, solve_some(loads, law, lost), np.arange(lost.size))
+    return merged_balance
 
 
 def solve_some(loads: RollerLoads, law: ContactLaw, rows: np.ndarray) -> Equilibrium:

@@ -431,11 +431,11 @@ def working_ledger(
         if ledger is None and not rerun_failed:  # another process has planned
             ledger = read_ledger(study, folder)
         if ledger is None:
-            raise _held(study, folder, rerun_failed)
+            raise _in_use(study, folder, rerun_failed)
         yield ledger
 
 
-def _held(study: Study, folder: StudyFolder, rerun_failed: bool) -> WorkError:
+def _in_use(study: Study, folder: StudyFolder, rerun_failed: bool) -> WorkError:
     """Return the error for a folder that another process holds, so that this one can neither plan
     nor join in.
     """
