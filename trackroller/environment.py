@@ -144,14 +144,14 @@ def _temporary_folder() -> Path | None:
         ):
             return None
         user = os.getuid() if hasattr(os, "getuid") else None
-        place = TEMPORARY / f"trackroller-{'cache' if user is None else user}"
+        folder = TEMPORARY / f"trackroller-{'cache' if user is None else user}"
         with contextlib.suppress(FileExistsError):
-            place.mkdir(mode=0o700)
-        state = place.lstat()
+            folder.mkdir(mode=0o700)
+        state = folder.lstat()
         own = stat.S_ISDIR(state.st_mode) and (
             user is None or (state.st_uid == user and not state.st_mode & 0o022)
         )
-        if own and is_writable(place):
-            return place
+        if own and is_writable(folder):
+            return folder
         return Path(tempfile.mkdtemp(prefix="trackroller-", dir=TEMPORARY))
     return None

@@ -50,15 +50,15 @@ def confine(folder: Path) -> None:
     own = tempfile.mkdtemp(prefix="trackroller-")
     atexit.register(shutil.rmtree, own, ignore_errors=True)
     tempfile.tempdir = own
-    places = [folder, Path(own)]
+    folders = [folder, Path(own)]
     if materials:
-        places.append(Path(os.path.expanduser(materials)))
-    _confined[:] = [place.resolve() for place in places]
+        folders.append(Path(os.path.expanduser(materials)))
+    _confined[:] = [place.resolve() for place in folders]
 
 
 def _check_confined(path: Path, what: str) -> None:
     """Refuse a path outside the folder that `confine` names."""
-    if _confined and not any(path.resolve().is_relative_to(place) for place in _confined):
+    if _confined and not any(path.resolve().is_relative_to(folder) for folder in _confined):
         wrong = "leads out of the folder of the page, by itself or by a link in it"
         raise InputError(
             what, str(path), f"a file below {_confined[0]}", "Copy the file into the folder.", wrong
@@ -105,9 +105,9 @@ def refuse_links(root: Path, what: str, inside: bool = False) -> None:
     """
     if not inside:
         refuse_link(root, what)
-    for place, folders, names in os.walk(root):
+    for folder, folders, names in os.walk(root):
         for name in (*folders, *names):
-            refuse_link(Path(place, name), what)
+            refuse_link(Path(folder, name), what)
 
 
 @contextmanager

@@ -229,8 +229,8 @@ def _of_sheet(values: Values) -> xr.Dataset:
 
 def file_of_roller(values: Values, name: str) -> bytes:
     """Return the sheet of a case as PDF, `sheet.pdf`, or its workbook, `roller.xlsx`."""
-    with tempfile.TemporaryDirectory() as place:
-        path = Path(place, name)
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder, name)
         if path.suffix == ".pdf":
             return write_sheet(_of_sheet(values), path).read_bytes()
         return write_roller(_of_sheet(values), path).read_bytes()

@@ -319,10 +319,10 @@ def _entry(name: str) -> dict[str, Any] | None:
 
 def _stats(root: Path) -> Iterator[os.stat_result]:
     """Return size and date of each file; the files of a study that runs may vanish meanwhile."""
-    for place, _, names in os.walk(root):
+    for folder, _, names in os.walk(root):
         for name in names:
             with contextlib.suppress(FileNotFoundError):
-                yield os.lstat(Path(place, name))
+                yield os.lstat(Path(folder, name))
 
 
 @functools.lru_cache(1000)  # the list is made every few seconds, and a digest takes up to a second
@@ -365,8 +365,8 @@ def file_of_study(name: str, file: str) -> bytes:
     """Return the report of a study as PDF, `report.pdf`, or its cases as a workbook,
     `cases.xlsx`.
     """
-    with tempfile.TemporaryDirectory() as place:
-        path = Path(place, file)
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder, file)
         if path.suffix == ".pdf":
             return write_page(
                 path, page_of(name, "report.html").read_text(encoding="utf-8")

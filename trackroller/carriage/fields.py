@@ -72,12 +72,12 @@ def changed(whole: Carriage, values: Mapping[str, float]) -> Carriage:
     check_fields(whole, list(values))
     new = whole
     for name, value in values.items():
-        head, place = split_field(name) or (name, "")
+        head, part = split_field(name) or (name, "")
         field = head.removeprefix(PREFIX)
         if head in OF_LOAD_CASE:
-            new = _in_cases(new, field, place, value)
+            new = _in_cases(new, field, part, value)
         elif head in OF_ROLLER:
-            new = _of_roller(new, field, place, value)
+            new = _of_roller(new, field, part, value)
         else:
             new = _OF_WHOLE[field](new, value)
     check_curves(new.cases, new.rollers)
@@ -99,15 +99,15 @@ def _has(whole: Carriage, field: str) -> bool:
     return {"payload": bool(whole.payloads), "drive": whole.drive is not None}.get(part, True)
 
 
-def _in_cases(whole: Carriage, field: str, place: str, value: float) -> Carriage:
-    """Return a carriage with a value of a load case, of each load case that states one if `place`
+def _in_cases(whole: Carriage, field: str, part: str, value: float) -> Carriage:
+    """Return a carriage with a value of a load case, of each load case that states one if `part`
     is ''.
     """
     own: dict[str, Any] = {field: math.radians(value) if field in ("gradient", "cant") else value}
 
     def new(case: LoadCase) -> LoadCase:
-        if place:
-            meant = word_of(case.name) == place
+        if part:
+            meant = word_of(case.name) == part
         else:
             meant = _states(case, field)
         return replace(case, **own) if meant else case
@@ -115,10 +115,10 @@ def _in_cases(whole: Carriage, field: str, place: str, value: float) -> Carriage
     return replace(whole, cases=tuple(map(new, whole.cases)))
 
 
-def _of_roller(whole: Carriage, field: str, place: str, value: float) -> Carriage:
+def _of_roller(whole: Carriage, field: str, part: str, value: float) -> Carriage:
     rollers = []
     for roller in whole.rollers:
-        if word_of(roller.name) == place:
+        if word_of(roller.name) == part:
             roller = replace(roller, at=_moved(roller.at, field, value))
         rollers.append(roller)
     return replace(whole, rollers=tuple(rollers))

@@ -319,7 +319,11 @@ def fulfils(springs: Springs, wrench: np.ndarray, state: Equilibrium) -> bool:
 
 
 def _searched(
-    springs: Springs, wrench: np.ndarray, size: float, place: np.ndarray, visited: list[np.ndarray]
+    springs: Springs,
+    wrench: np.ndarray,
+    size: float,
+    displacement: np.ndarray,
+    visited: list[np.ndarray],
 ) -> Equilibrium | None:
     """Return an equilibrium among the other sets of rollers, None if none is found.
 
@@ -327,13 +331,13 @@ def _searched(
     ----------
     springs, wrench, size
         The problem, and the size of its forces.
-    place : numpy.ndarray, shape (5,)
+    displacement : numpy.ndarray, shape (5,)
         Displacement at which the search begins.
     visited : list of numpy.ndarray of bool
         Sets of carrying rollers without an equilibrium, (n,) each.
     """
     if not springs.contact.any() and len(springs.radial) <= MOST_SPRINGS:
-        return _enumerated(springs, wrench, size, place)
+        return _enumerated(springs, wrench, size, displacement)
     for carries in _other_sets(springs, visited):
         if not _can_balance(springs, carries, wrench):
             continue
@@ -346,7 +350,7 @@ def _searched(
 
 
 def _enumerated(
-    springs: Springs, wrench: np.ndarray, size: float, place: np.ndarray
+    springs: Springs, wrench: np.ndarray, size: float, displacement: np.ndarray
 ) -> Equilibrium | None:
     """Return the equilibrium of linear springs, of all sets of loaded rollers that with most of
     them.
@@ -360,16 +364,18 @@ def _enumerated(
         for rows, own in ((springs.radial, stiffness), (springs.axial, of_axial))
     ]
     curve = np.tensordot(sets, shares[0] + shares[1], 1)
-    approach = springs.offset + springs.radial @ place
+    approach = springs.offset + springs.radial @ displacement
     residuals = wrench - (sets * (stiffness * approach)) @ springs.radial
-    residuals -= (sets * (of_axial * (springs.axial @ place))) @ springs.axial
+    residuals -= (sets * (of_axial * (springs.axial @ displacement))) @ springs.axial
     # where a set leaves the carriage free, it moves as little as possible
     damping = 1e-14 * np.trace(curve[-1])
     step = np.linalg.solve(curve + damping * np.eye(len(wrench)), residuals[:, :, None])[:, :, 0]
     forces = stiffness * (approach + step @ springs.radial.T)
     good = (np.where(sets, forces, -forces) >= -TOUCHES * size).all(axis=1)
     for i in np.flatnonzero(good)[np.argsort(-sets[good].sum(axis=1), kind="stable")]:
-        state = _state(springs, sets[i] & springs.locating, wrench, size, place + step[i], True)
+        state = _state(
+            springs, sets[i] & springs.locating, wrench, size, displacement + step[i], True
+        )
         if fulfils(springs, wrench, state):
             return state
     return None
@@ -406,7 +412,7 @@ def _stiff_place(
 
 
 def _from_start(
-    springs: Springs, carries: np.ndarray, wrench: np.ndarray, size: float, place: np.ndarray
+    springs: Springs, carries: np.ndarray, wrench: np.ndarray, size: float, displacement: np.ndarray
 ) -> Equilibrium:
     """Return the state that Powell's hybrid method reaches from a displacement.
 
@@ -415,10 +421,10 @@ def _from_start(
     """
     carries = carries | (springs.locating & (springs.contact > 0))
     at = _coupled_forces(springs, carries, wrench, UNLOADED)
-    scale = max(float(np.abs(place).max()), 1e-12)
+    scale = max(float(np.abs(displacement).max()), 1e-12)
     zero = root(
         lambda own: at(scale * own)[0] / size,
-        place / scale,
+        displacement / scale,
         jac=lambda own: at(scale * own)[1] * (scale / size),
         options={"xtol": 1e-14},
     )
@@ -463,19 +469,19 @@ def _settled(
         start = _minimum(
             springs.linear_at(size / radial.size), stiffness, wrench, np.zeros(len(wrench)), size
         )
-    place = start
+    displacement = start
     converged = not (carries.any() and springs.contact.any())
     for turn in range(MOST_PASSES):
-        place = _minimum(springs, stiffness, wrench, place, size)
+        displacement = _minimum(springs, stiffness, wrench, displacement, size)
         if converged or turn not in NEWTON:
             coupled = None
         else:
-            coupled = _coupled(springs, carries, wrench, place, size)
+            coupled = _coupled(springs, carries, wrench, displacement, size)
         if coupled is not None:
-            place = coupled
+            displacement = coupled
             converged = True
             break
-        new, _ = springs.force(springs.offset + springs.radial @ place)
+        new, _ = springs.force(springs.offset + springs.radial @ displacement)
         change = np.abs(new - radial).max()
         if turn < 12:
             radial = new
@@ -485,14 +491,14 @@ def _settled(
         converged = converged or bool(change <= 1e-9 * size)
         if converged:
             break
-    approach = springs.offset + springs.radial @ place
+    approach = springs.offset + springs.radial @ displacement
     radial, _ = springs.force(approach)
     radial[radial < 1e-12 * size] = 0.0
     axial = np.where(carries, springs.axial_stiffness(np.maximum(radial, least)), 0.0) * (
-        springs.axial @ place
+        springs.axial @ displacement
     )
     return Equilibrium(
-        *_balanced(springs, carries, wrench, radial, axial), approach, place, converged
+        *_balanced(springs, carries, wrench, radial, axial), approach, displacement, converged
     )
 
 
@@ -501,19 +507,21 @@ def _state(
     carries: np.ndarray,
     wrench: np.ndarray,
     size: float,
-    place: np.ndarray,
+    displacement: np.ndarray,
     converged: bool,
 ) -> Equilibrium:
     """Return the forces at a displacement, of which a roller that only touches its rail has
     none.
     """
-    approach = springs.offset + springs.radial @ place
+    approach = springs.offset + springs.radial @ displacement
     radial, _ = springs.force(approach)
     radial = np.where((radial < TOUCHES * size) & (springs.contact == 0), 0.0, radial)
     own = carries & (radial > 0)
     stiffness = springs.axial_stiffness(np.maximum(radial, UNLOADED))
-    axial = np.where(own, stiffness * (springs.axial @ place), 0.0)
-    return Equilibrium(*_balanced(springs, own, wrench, radial, axial), approach, place, converged)
+    axial = np.where(own, stiffness * (springs.axial @ displacement), 0.0)
+    return Equilibrium(
+        *_balanced(springs, own, wrench, radial, axial), approach, displacement, converged
+    )
 
 
 def _coupled_forces(
@@ -526,10 +534,10 @@ def _coupled_forces(
     `least`.
     """
 
-    def at(place: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        force, radial_stiffness = springs.force(springs.offset + springs.radial @ place)
+    def at(displacement: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        force, radial_stiffness = springs.force(springs.offset + springs.radial @ displacement)
         pressed = np.maximum(force, least)
-        slide = springs.axial @ place
+        slide = springs.axial @ displacement
         stiffness = np.where(carries, springs.axial_stiffness(pressed), 0.0)
         slope = np.where(
             carries & (force > least), springs.axial_slope(pressed) * radial_stiffness, 0.0
@@ -544,33 +552,33 @@ def _coupled_forces(
 
 
 def _coupled(
-    springs: Springs, carries: np.ndarray, wrench: np.ndarray, place: np.ndarray, size: float
+    springs: Springs, carries: np.ndarray, wrench: np.ndarray, displacement: np.ndarray, size: float
 ) -> np.ndarray | None:
     """Return the displacement (5,) at which forces and axial stiffness belong together, by Newton's
     method.
 
-    None if the method does not come closer from `place`.
+    None if the method does not come closer from `displacement`.
     """
     at = _coupled_forces(springs, carries, wrench, 1e-6 * size)
-    residual, curve = at(place)
+    residual, curve = at(displacement)
     norm = float(np.abs(residual).max())
     for _ in range(MOST_STEPS):
         if norm <= 1e-11 * size:
-            return place
+            return displacement
         try:
             step = np.linalg.solve(curve, -residual)
         except np.linalg.LinAlgError:
             return None
         for share in (1.0, 0.5, 0.25, 0.125):
-            residual, curve = at(place + share * step)
+            residual, curve = at(displacement + share * step)
             new = float(np.abs(residual).max())
             if new < (1 - 0.1 * share) * norm:
                 break
         else:
             if norm <= 1e-9 * size:  # rounding ends the decrease
-                return place
+                return displacement
             return None
-        place = place + share * step
+        displacement = displacement + share * step
         norm = new
     return None
 
@@ -579,27 +587,31 @@ def _minimum(
     springs: Springs,
     axial_stiffness: np.ndarray,
     wrench: np.ndarray,
-    place: np.ndarray,
+    displacement: np.ndarray,
     size: float,
 ) -> np.ndarray:
     """Return the displacement (5,) of least potential energy, by a damped Newton method."""
     of_axial = (springs.axial.T * axial_stiffness) @ springs.axial
 
-    def at(place: np.ndarray) -> tuple[float, np.ndarray, np.ndarray]:
-        approach = springs.offset + springs.radial @ place
+    def at(displacement: np.ndarray) -> tuple[float, np.ndarray, np.ndarray]:
+        approach = springs.offset + springs.radial @ displacement
         force, stiffness = springs.force(approach)
-        energy = springs.energy(approach, force) + 0.5 * place @ of_axial @ place - wrench @ place
-        slope = springs.radial.T @ force + of_axial @ place - wrench
+        energy = (
+            springs.energy(approach, force)
+            + 0.5 * displacement @ of_axial @ displacement
+            - wrench @ displacement
+        )
+        slope = springs.radial.T @ force + of_axial @ displacement - wrench
         return energy, slope, (springs.radial.T * stiffness) @ springs.radial + of_axial
 
-    energy, slope, curve = at(place)
+    energy, slope, curve = at(displacement)
     damping = 1e-12
     for _ in range(400):
         if np.abs(slope).max() <= 1e-12 * size or damping > 1e4:
             break
         scale = max(float(np.trace(curve)), 1e-6 * size)
         step = np.linalg.solve(curve + damping * scale * np.eye(len(slope)), -slope)
-        new = at(place + step)
+        new = at(displacement + step)
         better = new[0] <= energy + 1e-4 * float(slope @ step)
         flat = np.abs(new[1]).max() < 0.5 * np.abs(slope).max() and new[0] <= energy + 1e-12 * abs(
             energy
@@ -607,12 +619,12 @@ def _minimum(
         if not flat and abs(float(slope @ step)) <= 1e-15 * abs(energy):
             break
         if better or flat:  # close to the minimum, rounding hides the decrease of the energy
-            place = place + step
+            displacement = displacement + step
             energy, slope, curve = new
             damping = max(damping / 30, 1e-14)
         else:
             damping *= 10
-    return place
+    return displacement
 
 
 def _balanced(

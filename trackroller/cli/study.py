@@ -218,8 +218,8 @@ def print_status(study: str, results: Path, figures: bool) -> int:
     if figures:
         from trackroller.report.build import draw_solved  # heavy: matplotlib
 
-        place, names = draw_solved(folder)
-        print(f"figures   {len(names)} in {place}")
+        target, names = draw_solved(folder)
+        print(f"figures   {len(names)} in {target}")
     return int(bool(status.corrupt))
 
 

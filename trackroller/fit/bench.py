@@ -329,11 +329,11 @@ def _cases(rows: TestTable, base: Mapping[str, Any] | None) -> tuple[list[Case],
                     _check_empty(rows, row, case)
             except InputError as error:
                 if error.field in rows.rows[row]:
-                    place = error.field
+                    field = error.field
                 else:
-                    place = "base" if file else "case"
+                    field = "base" if file else "case"
                 raise (
-                    error.named(f"row {rows.lines[row]}, {place}") if rows.path is None else
+                    error.named(f"row {rows.lines[row]}, {field}") if rows.path is None else
                     error.at(rows.path, rows.lines[row])
                 ) from None  # fmt: skip
             cases.append(case)

@@ -142,22 +142,26 @@ class Group:
             return Interval(
                 *np.exp(self.line.interval_of_strength(math.log(self.at), 0.5, confidence)).tolist()
             )
-        place = next(key for key, output in OF_GROUP[self.kind].items() if output == name)
-        ends = self.line.interval(place, confidence)
-        if self.kind == "wear" and place == "level":  # a longer travel is a smaller coefficient
+        key_of_line = next(key for key, output in OF_GROUP[self.kind].items() if output == name)
+        ends = self.line.interval(key_of_line, confidence)
+        if (
+            self.kind == "wear" and key_of_line == "level"
+        ):  # a longer travel is a smaller coefficient
             return Interval(self.scale * math.exp(-ends.high), self.scale * math.exp(-ends.low))
-        return Interval(self._end(name, place, ends.low), self._end(name, place, ends.high))
+        return Interval(
+            self._end(name, key_of_line, ends.low), self._end(name, key_of_line, ends.high)
+        )
 
-    def _end(self, name: str, place: str, end: float) -> float:
+    def _end(self, name: str, key: str, end: float) -> float:
         """Return an end of the interval of a value in its unit; inf or 0 at a bound of the line's
-        value `place`.
+        value `key`.
         """
-        lower, upper = self.line.bounds[place]
+        lower, upper = self.line.bounds[key]
         if end >= upper:
             return math.inf
         if end <= lower:
             return 0.0
-        return float(self._of(name, self.line.best._replace(**{place: end})))
+        return float(self._of(name, self.line.best._replace(**{key: end})))
 
     def band(self, name: str, confidence: float = CONFIDENCE) -> tuple[float, float, float]:
         """Return low end, median and high end of a value by the posterior."""
@@ -506,29 +510,29 @@ class Fit:
                 "a material whose E, Poisson's ratio and R_m the new one takes",
                 remedy,
             )
-        place = posterior_path(file, self.name)
-        self._check_file(place)
+        path = posterior_path(file, self.name)
+        self._check_file(path)
         digest = ""
         if self.tests.digest:
             digest = f", sha256 {self.tests.digest[:16]}"
         under = "; ".join(f"{key} {value}" for key, value in self.given.items())
         source = f"fit of {len(self.tests)} tests, {self.tests.name}{digest}"
-        with all_or_none(place, own_file(file)):
-            write_whole(place, lambda beside: self.data.to_netcdf(beside, engine="netcdf4"))
+        with all_or_none(path, own_file(file)):
+            write_whole(path, lambda beside: self.data.to_netcdf(beside, engine="netcdf4"))
             # the material comes last: a killed process leaves no material without its range
             return add_material(
                 file, self.name, replace=replace, source=source, note=under, **entry
             )
 
-    def _check_file(self, place: Path) -> None:
+    def _check_file(self, path: Path) -> None:
         """Refuse a name whose posterior would take the place of that of another material."""
-        if not place.is_file():
+        if not path.is_file():
             return
-        with xr.open_dataset(place) as stored:
+        with xr.open_dataset(path) as stored:
             other = str(stored.attrs.get("title", ""))
         if other != self._title:
             wrong = (
-                f"has its posterior in {place.name}, where another material has its own ({other})"
+                f"has its posterior in {path.name}, where another material has its own ({other})"
             )
             raise InputError(
                 "name", self.name, "", "Choose a name that differs by a letter or digit.", wrong

@@ -518,17 +518,17 @@ class Line:
         """Return the largest ln L of lines whose fatigue limit at a failure probability is a
         stress.
         """
-        place = self.free.index("log_limit")
+        index = self.free.index("log_limit")
 
         def loss(others: np.ndarray) -> np.ndarray:
             limit = log_stress - np.exp(others[..., -1]) * float(ndtri(probability))
-            inside = (limit >= self.limits[place, 0]) & (limit <= self.limits[place, 1])
+            inside = (limit >= self.limits[index, 0]) & (limit <= self.limits[index, 1])
             return np.where(
-                inside, -self.log_likelihood(np.insert(others, place, limit, axis=-1)), LARGE
+                inside, -self.log_likelihood(np.insert(others, index, limit, axis=-1)), LARGE
             )
 
-        limits = np.delete(self.limits, place, axis=0)
-        return max(-least(loss, np.delete(start, place), limits)[1] for start in self.maxima)
+        limits = np.delete(self.limits, index, axis=0)
+        return max(-least(loss, np.delete(start, index), limits)[1] for start in self.maxima)
 
     def _goal(self, confidence: float) -> float:
         """Return the least ln L within an interval."""
@@ -573,16 +573,16 @@ class Line:
 
     def interval(self, name: str, confidence: float = 0.9) -> Interval:
         """Return the profile interval of one of the free values, by its name."""
-        place = self.free.index(name)
+        index = self.free.index(name)
         low, high = self.bounds[name]
-        begins = [(float(point[place]), point) for point in self._likely(confidence)]
-        ends = self._ends(begins, place, _itself, confidence)
+        begins = [(float(point[index]), point) for point in self._likely(confidence)]
+        ends = self._ends(begins, index, _itself, confidence)
         return Interval(max(ends.low, low), min(ends.high, high))
 
     def _ends(
         self,
         begins: Sequence[tuple[float, np.ndarray]],
-        place: int,
+        index: int,
         solved: Solved,
         confidence: float,
     ) -> Interval:
@@ -591,41 +591,41 @@ class Line:
 
         `begins` holds likely values with the points (p,) that have them, that of the estimate
         first: between two maxima of the likelihood the profile may lie below the cut-off, and the
-        interval holds both. `solved` returns the free value at `place` from the value in question
+        interval holds both. `solved` returns the free value at `index` from the value in question
         and the other free values.
         """
         if not self.tests.failed.any():
-            return self._without_failures(place, solved, confidence)
+            return self._without_failures(index, solved, confidence)
         goal = self._goal(confidence)
         bounds = -math.inf, math.inf
-        if place:
-            bounds = self.limits[place]
-        profile = self._profile(place, solved, goal)
+        if index:
+            bounds = self.limits[index]
+        profile = self._profile(index, solved, goal)
         low, high = math.inf, -math.inf
         for value, point in begins:
-            others = np.delete(point, place)
+            others = np.delete(point, index)
             if value < low:
                 low = _end(profile, value, others, goal, -1.0, bounds)
             if value > high:
                 high = _end(profile, value, others, goal, 1.0, bounds)
         return Interval(low, high)
 
-    def _profile(self, place: int, solved: Solved, goal: float) -> Profile:
+    def _profile(self, index: int, solved: Solved, goal: float) -> Profile:
         """Return the function of a value and a start that gives the largest ln L with that value,
         and its place.
 
         Where ln L stays below `goal`, Newton's method starts from other likely values as well.
         """
-        limits = np.delete(self.limits, place, axis=0)
+        limits = np.delete(self.limits, index, axis=0)
         further = np.empty((0, len(limits)))
         if self.knee:
             points = [np.array(self.maxima), self._points_by_limit.reshape(-1, len(self.free))]
-            further = np.clip(np.delete(np.concatenate(points), place, axis=1), *limits.T)
+            further = np.clip(np.delete(np.concatenate(points), index, axis=1), *limits.T)
 
         def profile(value: float, start: np.ndarray) -> tuple[float, np.ndarray]:
             def loss(others: np.ndarray) -> np.ndarray:
                 own = solved(value, others)
-                points = np.insert(others, place, np.where(np.isfinite(own), own, 0.0), axis=-1)
+                points = np.insert(others, index, np.where(np.isfinite(own), own, 0.0), axis=-1)
                 return np.where(np.isfinite(own), -self.log_likelihood(points), LARGE)
 
             if not len(start):
@@ -638,9 +638,9 @@ class Line:
 
         return profile
 
-    def _without_failures(self, place: int, solved: Solved, confidence: float) -> Interval:
+    def _without_failures(self, index: int, solved: Solved, confidence: float) -> Interval:
         """Return the one-sided bound of a level that no failure has bounded from above."""
-        if len(self.free) > 1 or place:
+        if len(self.free) > 1 or index:
             return Interval(-math.inf, math.inf)
         goal = math.log(0.5 - 0.5 * confidence)
         none = np.empty(0)

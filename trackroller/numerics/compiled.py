@@ -81,8 +81,8 @@ def can_cache(package: Path) -> bool:
         can_write = all(map(is_writable, beside)) or is_writable(users)
     if can_write:
         return True
-    place = temporary_cache("NUMBA_CACHE_DIR", "numba", given or users)
-    if place is None:
+    folder = temporary_cache("NUMBA_CACHE_DIR", "numba", given or users)
+    if folder is None:
         warnings.warn(
             "no folder for compiled functions can be written, so this run compiles them anew, "
             "which takes a minute. "
@@ -90,7 +90,9 @@ def can_cache(package: Path) -> bool:
             stacklevel=3,
         )
         return False
-    vars(numba.config)["CACHE_DIR"] = str(place)  # the environment was read when numba was imported
+    vars(numba.config)["CACHE_DIR"] = str(
+        folder
+    )  # the environment was read when numba was imported
     return True
 
 

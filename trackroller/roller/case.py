@@ -472,9 +472,9 @@ def _in_own_unit(name: str, variable: Any) -> np.ndarray:
     if values.dtype.kind == "O":
         kind = values.dtype
     converted = np.array(values, dtype=kind)
-    for place, value in np.ndenumerate(values):
+    for index, value in np.ndenumerate(values):
         if _is_number(value):
-            converted[place] = in_unit(float(value), unit, own.unit, name)
+            converted[index] = in_unit(float(value), unit, own.unit, name)
     return converted
 
 

@@ -81,9 +81,9 @@ def settle(
         rows = rows[_differ(before, warm)[rows]]  # equal values have equal results
         if not rows.size:
             break
-        place = np.arange(len(block))
-        place[rows] = len(block) + np.arange(rows.size)
-        block = join([block, solve(warm.take(rows))]).take(place)
+        newest_row = np.arange(len(block))
+        newest_row[rows] = len(block) + np.arange(rows.size)
+        block = join([block, solve(warm.take(rows))]).take(newest_row)
         reached = temperatures(table, block)
         rows = rows[np.fmax.reduce(np.abs(reached - used)[rows], axis=1) > TOLERANCE]
     if rows.size:

@@ -55,7 +55,7 @@ def meet(table: CaseTable, options: Options, solve: Callable[[CaseTable, Options
     if tolerance is None:
         return solve(table, options)
     blocks: list[Block] = []
-    place = np.full(len(table), -1)  # of the best result so far
+    row_of_best = np.full(len(table), -1)  # of the best result so far
     best = np.full(len(table), np.inf)  # its error
     unmet = np.arange(len(table))
     for rung in RUNGS:
@@ -70,12 +70,12 @@ def meet(table: CaseTable, options: Options, solve: Callable[[CaseTable, Options
         over = _over(table.take(rows), block, own, tolerance)
         block.values["error_over_tolerance"] = over
         known = np.where(np.isnan(over), np.inf, over)
-        better = (place[rows] < 0) | (known <= best[rows])
-        place[rows[better]] = sum(map(len, blocks)) + np.flatnonzero(better)
+        better = (row_of_best[rows] < 0) | (known <= best[rows])
+        row_of_best[rows[better]] = sum(map(len, blocks)) + np.flatnonzero(better)
         best[rows[better]] = known[better]
         blocks.append(block)
         unmet = unmet[~(best[unmet] <= 1.0)]
-    block_of_best = join(blocks).take(place)
+    block_of_best = join(blocks).take(row_of_best)
     missed = block_of_best.values["error_over_tolerance"] > 1.0
     block_of_best.bits |= np.where(missed, validity_bit("tolerance_missed"), 0).astype(
         block_of_best.bits.dtype

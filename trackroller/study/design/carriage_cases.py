@@ -278,10 +278,10 @@ def of_worst_rollers(
     row = cases[ROW].values[lives.first]
     order = np.lexsort((lives.rank, row))
     worst = order[np.unique(row[order], return_index=True)[1]]  # the first one of each row
-    place = np.full(design.size, -1)
-    place[row[worst]] = lives.ruling[worst]
-    has_worst = place >= 0
-    shown = solved.isel(case=np.maximum(place, 0)).copy(deep=True)
+    worst_case = np.full(design.size, -1)
+    worst_case[row[worst]] = lives.ruling[worst]
+    has_worst = worst_case >= 0
+    shown = solved.isel(case=np.maximum(worst_case, 0)).copy(deep=True)
     for name, values in lives.summed.items():
         full = shown[name].values
         full[row[worst]] = values[worst]
@@ -291,7 +291,7 @@ def of_worst_rollers(
     plain = build(config, design, materials)
     for name in (*PARAMETERS, *MATERIAL_FIELDS):
         if name in cases and not np.array_equal(cases[name].values, plain[name].values):
-            values = cases[name].values[np.maximum(place, 0)]
+            values = cases[name].values[np.maximum(worst_case, 0)]
             missing: Any = plain[name].values
             if values.dtype.kind == "f":
                 missing = np.nan
@@ -300,11 +300,11 @@ def of_worst_rollers(
         (ROLLER, "worst roller"),
         (LOAD_CASE, "load case that uses most of its life"),
     ):
-        values = np.where(has_worst, cases[name].values[np.maximum(place, 0)], "")
+        values = np.where(has_worst, cases[name].values[np.maximum(worst_case, 0)], "")
         plain = plain.assign_coords(
             {f"worst_{name.removeprefix('carriage_')}": ("case", values, {"long_name": label})}
         )
-    return plain.assign_coords(case=place), shown.assign_coords(case=place)
+    return plain.assign_coords(case=worst_case), shown.assign_coords(case=worst_case)
 
 
 def _without_results(shown: xr.Dataset, rows: np.ndarray, reasons: list[str]) -> None:

@@ -65,10 +65,10 @@ def _translated(detail: Mapping[str, Any]) -> InputError:
         return context
     where = ".".join(str(part) for part in detail["loc"]) or "study"
     if detail["type"] == "extra_forbidden":
-        place = str(detail["loc"][0])
+        room_name = str(detail["loc"][0])
         name = str(detail["loc"][-1])
-        if len(detail["loc"]) > 1 and place in ROOMS:
-            return unknown_name(place, name, ROOMS[place])
+        if len(detail["loc"]) > 1 and room_name in ROOMS:
+            return unknown_name(room_name, name, ROOMS[room_name])
         return unknown_name("study key", where, StudyFile.model_fields)
     if detail["type"] == "missing":
         *room, key = (str(part) for part in detail["loc"])

@@ -100,8 +100,8 @@ def _text(
     )
 
 
-def _entry(place: str, kind: str | list[str], **properties: Any) -> dict[str, Any]:
-    return {"@id": place, "@type": kind, **properties}
+def _entry(id_: str, kind: str | list[str], **properties: Any) -> dict[str, Any]:
+    return {"@id": id_, "@type": kind, **properties}
 
 
 def _references(names: Iterable[str]) -> list[dict[str, str]]:

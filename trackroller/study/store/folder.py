@@ -76,10 +76,10 @@ def _is_empty(root: Path) -> bool:
     """Return whether a folder holds no file and no link, at any level, but the empty mark of a
     killed process.
     """
-    for place, folders, names in os.walk(root):
-        if any(is_link(Path(place, name)) for name in folders):
+    for folder, folders, names in os.walk(root):
+        if any(is_link(Path(folder, name)) for name in folders):
             return False
-        for path in (Path(place, name) for name in names):
+        for path in (Path(folder, name) for name in names):
             if path != root / MARK or path.stat().st_size:
                 return False
     return True

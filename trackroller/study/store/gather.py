@@ -96,11 +96,11 @@ def collect(ledger: Ledger, solved: slice | np.ndarray = slice(None)) -> xr.Data
     solved : slice or numpy.ndarray of int, shape (n,)
         The wanted cases of the design, each of which is solved; all by default.
     """
-    place = ledger.state_number[solved]
+    state_number = ledger.state_number[solved]
     results: dict[Hashable, xr.Variable] = {}
     coords: dict[Hashable, xr.Variable] = {}
     attrs: dict[str, Any] = {}
-    file, row = (ledger.states[name].values[place] for name in ("file", "row"))
+    file, row = (ledger.states[name].values[state_number] for name in ("file", "row"))
     order = np.argsort(file, kind="stable")
     numbers, start = np.unique(file[order], return_index=True)
     for number, rows in zip(numbers, np.split(order, start[1:]), strict=True):
@@ -115,7 +115,7 @@ def collect(ledger: Ledger, solved: slice | np.ndarray = slice(None)) -> xr.Data
         for name, v in block.data_vars.items():
             known = results.get(name, v[:0].variable)
             # grids of different sizes
-            shape = (len(place), *np.maximum(known.shape[1:], v.shape[1:]))
+            shape = (len(state_number), *np.maximum(known.shape[1:], v.shape[1:]))
             if known.shape != shape:
                 room = _room(shape, v.dtype, ledger.folder.root)
                 room[tuple(map(slice, known.shape))] = known.values

@@ -116,10 +116,10 @@ class Manifest:
         """Return the temporary path at which this process makes a file or folder."""
         if not self.of_study:
             return scratch_name(path)
-        place = self.root / SCRATCH
-        for part in self.parts(place):
+        folder = self.root / SCRATCH
+        for part in self.parts(folder):
             refuse_link(part, WHAT)
-        return scratch_name(place / self.name_of(path).replace("/", "."))
+        return scratch_name(folder / self.name_of(path).replace("/", "."))
 
     def note(self, digests: Mapping[str, str]) -> None:
         """Write down what files are about to hold; the first line of a list names the list
@@ -327,14 +327,14 @@ def digests_of(path: Path) -> dict[str, str]:
 
 def remove_empty(root: Path) -> None:
     """Remove a folder and the folders in it, as far as no file is left in them."""
-    for place, _, _ in os.walk(root, topdown=False):
+    for folder, _, _ in os.walk(root, topdown=False):
         with contextlib.suppress(OSError):
-            os.rmdir(place)
+            os.rmdir(folder)
 
 
 def files_below(root: Path) -> list[Path]:
     """Return all files below a folder, in order."""
-    return sorted(Path(place, name) for place, _, names in os.walk(root) for name in names)
+    return sorted(Path(folder, name) for folder, _, names in os.walk(root) for name in names)
 
 
 def _is_inside(name: str) -> bool:

@@ -83,18 +83,20 @@ def room_files(last: str) -> list[Path]:
         holds public names and the version only.
     """
     rooms = ROOMS[: ROOMS.index(last) + 1]
-    places = [place for room in rooms for place in (PACKAGE / room, PACKAGE / f"{room}.py")]
-    return [path for place in places for path in files_of(place)]
+    paths_of_rooms = [
+        path_of_room for room in rooms for path_of_room in (PACKAGE / room, PACKAGE / f"{room}.py")
+    ]
+    return [path for path_of_room in paths_of_rooms for path in files_of(path_of_room)]
 
 
-def files_of(place: Path) -> list[Path]:
+def files_of(path_of_room: Path) -> list[Path]:
     """Return a file, or the source and data files of a folder, sorted; files that an editor leaves
     do not count.
     """
-    if place.is_dir():
-        files = sorted(place.rglob("*"))
+    if path_of_room.is_dir():
+        files = sorted(path_of_room.rglob("*"))
     else:
-        files = [place]
+        files = [path_of_room]
     return [
         path for path in files if path.suffix in CONTENT and path.is_file() and path.name[0] != "."
     ]

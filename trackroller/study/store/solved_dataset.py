@@ -115,8 +115,10 @@ def _labels(design: xr.Dataset, sizes: dict[str, int], grid: dict[str, Factor]) 
         add(name, *_varying(values.reshape(*sizes.values()), list(sizes)))
     for name in (PLACE, FACTOR):
         if name in design.variables:
-            place = design[name]
-            labels[name] = _variable(place.dims, place.values, place.attrs, coordinate=True)
+            coordinate = design[name]
+            labels[name] = _variable(
+                coordinate.dims, coordinate.values, coordinate.attrs, coordinate=True
+            )
     return labels
 
 
