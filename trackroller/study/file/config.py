@@ -167,9 +167,7 @@ _WithOptions = create_model(
 
 
 class StudyFile(_WithOptions):  # type: ignore[misc, valid-type]
-    """Content of a study file; see the descriptions of its fields. The options are those of
-    `OPTIONS`.
-    """
+    """Content of a study file; its fields have descriptions, and `OPTIONS` the options."""
 
     analysis: Analysis = Field(
         default_factory=lambda: Analysis.model_validate({}), description="what is analysed, and how"
