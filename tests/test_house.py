@@ -20,6 +20,7 @@ from trackroller.study.store.program_digest import ROOMS, room_files
 ROOT = Path(__file__).parents[1]
 PACKAGE = "trackroller"
 PLAIN = tuple(room for room in ROOMS if room not in ("results", "report"))  # a line says one thing
+VAGUE = ("said", "held", "more", "rest", "found", "aside", "told", "made", "seen", "kept", "asked", "wanted", "taken")
 PLAINER = tuple(room for room in PLAIN if room not in ("contact", "halfspace", "damage"))  # and calls hold no choice
 ORDER = (*ROOMS, "__init__")  # the top of the package holds public names and may import all rooms
 
@@ -211,6 +212,32 @@ def test_a_line_of_a_plain_room_says_one_thing():
 
 def test_a_call_of_a_plain_room_holds_no_choice():
     assert lines_of(PLAINER, calls_with_choices) == []
+
+
+def vague_names(tree: ast.AST) -> list[int]:
+    """Return the lines that give a value or a function a name that is no noun of the domain."""
+    lines = []
+    for node in ast.walk(tree):
+        name = ""
+        if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store):
+            name = node.id
+        elif isinstance(node, ast.arg):
+            name = node.arg
+        elif isinstance(node, ast.FunctionDef):
+            name = node.name
+        if name.strip("_") in VAGUE:
+            lines.append(node.lineno)
+    return sorted(lines)
+
+
+def test_names_of_a_plain_room_are_nouns():
+    assert lines_of(PLAINER, vague_names) == []
+
+
+@pytest.mark.parametrize("text", ["found = 1", "def f(said): pass", "def _held(): pass", "for rest in a: pass"])
+def test_a_vague_name_is_found(text):
+    assert vague_names(ast.parse(text)) == [1]
+    assert vague_names(ast.parse("f(found=1).told")) == []
 
 
 @pytest.mark.parametrize("text", ["f(1 if a else 2)", "f(x=1 if a else 2)", "f(2 * (1 if a else 2))"])

@@ -1,7 +1,7 @@
 """Parameter studies of locating-bearing track rollers: forces, tractions, stresses, fatigue life.
 
-`Case`, `solve` and `load_study` are the way in; `stress_from_tractions` serves any other contact. Heavy parts are
-imported when they are first used.
+`Case`, `solve` and `load_study` are the way in; `stress_from_tractions` serves any other contact.
+Heavy parts are imported when they are first used.
 """
 
 from __future__ import annotations
@@ -103,7 +103,9 @@ def _notebook_view(results: Any) -> str:
 
 
 _SHOWN_OF_FIT.update(report=_report)
-_SHOWN_OF_RESULTS.update(report=_report, explore=_explore, export=_workbook, _repr_html_=_notebook_view)
+_SHOWN_OF_RESULTS.update(
+    report=_report, explore=_explore, export=_workbook, _repr_html_=_notebook_view
+)
 
 
 def __dir__() -> list[str]:

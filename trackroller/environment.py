@@ -1,4 +1,6 @@
-"""The environment of this process and of the processes that it starts: what Python imports, and where caches stand."""
+"""The environment of this process and of the processes that it starts: what Python imports, and
+where caches stand.
+"""
 
 from __future__ import annotations
 
@@ -15,11 +17,13 @@ try:  # before a page takes a temporary folder of its own, which is deleted at i
     TEMPORARY: Path | None = Path(tempfile.gettempdir())
 except OSError:
     TEMPORARY = None
-SAFE_PATH = "PYTHONSAFEPATH"  # Python puts neither the working folder nor the folder of a script on its path
+# Python puts neither the working folder nor the folder of a script on its path
+SAFE_PATH = "PYTHONSAFEPATH"
 
 
 def python(module: str, *words: str) -> list[str]:
-    """Return the words that run a module in a Python of its own, which imports nothing from the working folder.
+    """Return the words that run a module in a Python of its own, which imports nothing from the
+    working folder.
 
     Examples
     --------
@@ -30,7 +34,8 @@ def python(module: str, *words: str) -> list[str]:
 
 
 def forget_working_folder() -> None:
-    """Remove the working folder from the path if `python -m` has put it there, so that no file of it is imported.
+    """Remove the working folder from the path if `python -m` has put it there, so that no file of
+    it is imported.
 
     The folder stays if this package itself was imported from it.
     """
@@ -41,14 +46,22 @@ def forget_working_folder() -> None:
 def import_nothing_from(folder: Path) -> None:
     """Let neither this process nor those that it starts import Python files from a folder.
 
-    The folder is about to become the working folder, and relative entries of a path would name it. The folder stays on
-    the path if this package itself was imported from it.
+    The folder is about to become the working folder, and relative entries of a path would name it.
+    The folder stays on the path if this package itself was imported from it.
     """
     banned = {folder.resolve()} - {OWN}
-    sys.path[:] = [entry for entry in map(os.path.abspath, sys.path) if Path(entry).resolve() not in banned]
-    entries = [os.path.abspath(entry) for entry in os.environ.get("PYTHONPATH", "").split(os.pathsep) if entry]
+    sys.path[:] = [
+        entry for entry in map(os.path.abspath, sys.path) if Path(entry).resolve() not in banned
+    ]
+    entries = [
+        os.path.abspath(entry)
+        for entry in os.environ.get("PYTHONPATH", "").split(os.pathsep)
+        if entry
+    ]
     if entries:
-        os.environ["PYTHONPATH"] = os.pathsep.join(e for e in entries if Path(e).resolve() not in banned)
+        os.environ["PYTHONPATH"] = os.pathsep.join(
+            e for e in entries if Path(e).resolve() not in banned
+        )
     else:
         os.environ.pop("PYTHONPATH", None)
     os.environ[SAFE_PATH] = "1"
@@ -67,13 +80,17 @@ def is_writable(folder: str | Path) -> bool:
 
 
 def let_matplotlib_cache() -> None:
-    """Name a temporary folder for Matplotlib if it cannot keep its list of fonts where it usually does."""
+    """Name a temporary folder for Matplotlib if it cannot keep its list of fonts where it usually
+    does.
+    """
     given = os.environ.get("MPLCONFIGDIR")
     home = os.path.expanduser("~")
     usual = [os.path.join(home, ".matplotlib")]
     if sys.platform.startswith(("linux", "freebsd")):
         kinds = {"XDG_CONFIG_HOME": ".config", "XDG_CACHE_HOME": ".cache"}
-        places = [os.environ.get(name) or os.path.join(home, folder) for name, folder in kinds.items()]
+        places = [
+            os.environ.get(name) or os.path.join(home, folder) for name, folder in kinds.items()
+        ]
         usual = [os.path.join(place, "matplotlib") for place in places]
     if given:
         usual = [given]
@@ -111,23 +128,30 @@ def temporary_cache(variable: str, name: str, instead: str) -> Path | None:
 
 
 def _temporary_folder() -> Path | None:
-    """Return a folder for caches that nobody else can write, the same for each process of a user; None without one.
+    """Return a folder for caches that nobody else can write, the same for each process of a user;
+    None without one.
 
-    Caches hold compiled code, so a folder that another user prepared under this name is not taken. The working folder,
-    which Python takes where the system has no temporary folder, may hold files of other people.
+    Caches hold compiled code, so a folder that another user prepared under this name is not taken.
+    The working folder, which Python takes where the system has no temporary folder, may hold files
+    of other people.
     """
     if TEMPORARY is None:
         return None
     with contextlib.suppress(OSError):
-        if TEMPORARY.resolve() == Path.cwd().resolve() and not TEMPORARY.stat().st_mode & stat.S_ISVTX:
+        if (
+            TEMPORARY.resolve() == Path.cwd().resolve()
+            and not TEMPORARY.stat().st_mode & stat.S_ISVTX
+        ):
             return None
         user = os.getuid() if hasattr(os, "getuid") else None
-        place = TEMPORARY / f"trackroller-{'cache' if user is None else user}"
+        folder = TEMPORARY / f"trackroller-{'cache' if user is None else user}"
         with contextlib.suppress(FileExistsError):
-            place.mkdir(mode=0o700)
-        seen = place.lstat()
-        own = stat.S_ISDIR(seen.st_mode) and (user is None or (seen.st_uid == user and not seen.st_mode & 0o022))
-        if own and is_writable(place):
-            return place
+            folder.mkdir(mode=0o700)
+        state = folder.lstat()
+        own = stat.S_ISDIR(state.st_mode) and (
+            user is None or (state.st_uid == user and not state.st_mode & 0o022)
+        )
+        if own and is_writable(folder):
+            return folder
         return Path(tempfile.mkdtemp(prefix="trackroller-", dir=TEMPORARY))
     return None

@@ -10,7 +10,8 @@ from typing import Any
 
 
 class InputError(ValueError):
-    """Bad input: says what is wrong with which value of which field, what is allowed, and what to do.
+    """Bad input: says what is wrong with which value of which field, what is allowed, and what to
+    do.
 
     Parameters
     ----------
@@ -23,18 +24,21 @@ class InputError(ValueError):
     remedy : str
         What the user can do about it.
     wrong : str
-        What is wrong with the value, as the end of a sentence that begins with field and value; by default that it is
-        not usable, or missing if the value is None.
+        What is wrong with the value, as the end of a sentence that begins with field and value; by
+        default that it is not usable, or missing if the value is None.
 
     Examples
     --------
     >>> print(InputError("slip", -1, "a number >= 0", "Leave slip out."))
     slip = -1 is not usable. Allowed: a number >= 0. Leave slip out.
-    >>> print(InputError("case file", "x.yaml", "the path of a file", "Check the path.", wrong="does not exist"))
+    >>> wrong = "does not exist"
+    >>> print(InputError("case file", "x.yaml", "the path of a file", "Check the path.", wrong))
     case file = 'x.yaml' does not exist. Allowed: the path of a file. Check the path.
     """
 
-    def __init__(self, field: str, value: object, allowed: str, remedy: str = "", wrong: str = "") -> None:
+    def __init__(
+        self, field: str, value: object, allowed: str, remedy: str = "", wrong: str = ""
+    ) -> None:
         self.field = field
         self.value = value
         self.allowed = allowed
@@ -42,12 +46,21 @@ class InputError(ValueError):
         self.wrong = wrong
         self.file: str | None = None  # a file that another file or the command names
         self.line: int | None = None  # of the file, the first line being 1
-        self.path: tuple[str, ...] = ()  # of the entry in the file, as far as `field` does not say it
+        # of the entry in the file, as far as `field` does not say it
+        self.path: tuple[str, ...] = ()
         if value is None:
-            parts = [f"{field} {wrong or 'is missing or empty'}", allowed and f"Needed: {allowed}", remedy]
+            parts = [
+                f"{field} {wrong or 'is missing or empty'}",
+                allowed and f"Needed: {allowed}",
+                remedy,
+            ]
         else:
             shown = f"{field} = {shortened(repr(value))}"
-            parts = [f"{shown} {wrong or 'is not usable'}", allowed and f"Allowed: {allowed}", remedy]
+            parts = [
+                f"{shown} {wrong or 'is not usable'}",
+                allowed and f"Allowed: {allowed}",
+                remedy,
+            ]
         super().__init__(escaped(". ".join(part for part in parts if part)))
 
     @property
@@ -98,11 +111,15 @@ def shortened(text: str) -> str:
 
 _CONTROL = r"\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\ud800-\udfff"  # also halves of surrogate pairs
 _MARKS = r"\u061c\u200e\u200f\u2028\u2029\u202a-\u202e\u2066-\u2069"  # directions, and line ends
-_REFUSED_IN = {True: re.compile(f"[{_CONTROL}{_MARKS}]"), False: re.compile(f"[\t\n\r{_CONTROL}{_MARKS}]")}
+_REFUSED_IN = {
+    True: re.compile(f"[{_CONTROL}{_MARKS}]"),
+    False: re.compile(f"[\t\n\r{_CONTROL}{_MARKS}]"),
+}
 
 
 def checked_text(text: str, field: str, lines: bool = False) -> str:
-    r"""Return a text of a user as it is: the one check of names, descriptions and cells where they are read.
+    r"""Return a text of a user as it is: the one check of names, descriptions and cells where they
+    are read.
 
     Parameters
     ----------
@@ -116,8 +133,8 @@ def checked_text(text: str, field: str, lines: bool = False) -> str:
     Raises
     ------
     InputError
-        If the text holds a control character, which a terminal obeys, or a mark of direction, with which a text shows
-        another one than it is. The message shows such a character escaped.
+        If the text holds a control character, which a terminal obeys, or a mark of direction, with
+        which a text shows another one than it is. The message shows such a character escaped.
 
     Examples
     --------
@@ -133,21 +150,24 @@ def checked_text(text: str, field: str, lines: bool = False) -> str:
 
 
 def escaped(text: str) -> str:
-    r"""Return a text in which the characters that `checked_text` refuses stand as escapes, such as \x1b.
+    r"""Return a text in which the characters that `checked_text` refuses stand as escapes, such as
+    \x1b.
 
     Examples
     --------
     >>> escaped("a\x1b[2J")
     'a\\x1b[2J'
     """
-    return _REFUSED_IN[True].sub(lambda found: ascii(found[0])[1:-1], text)
+    return _REFUSED_IN[True].sub(lambda match: ascii(match[0])[1:-1], text)
 
 
 MOST_SHOWN = 30  # errors of a file that a message names
 
 
 class InputErrors(InputError):
-    """All errors of one file or mapping; field, value, what is allowed and remedy are those of the first."""
+    """All errors of one file or mapping; field, value, what is allowed and remedy are those of the
+    first.
+    """
 
     def __init__(self, errors: Iterable[InputError]) -> None:
         self._errors = tuple(errors)
@@ -160,9 +180,13 @@ class InputErrors(InputError):
         return self._errors
 
     def named(self, field: str) -> InputError:
-        """Return these errors with another name of the field; one of another field keeps its name behind it."""
+        """Return these errors with another name of the field; one of another field keeps its name
+        behind it.
+        """
         new = {self.field: field}
-        return InputErrors([one.named(new.get(one.field, f"{field}: {one.field}")) for one in self._errors])
+        return InputErrors(
+            [one.named(new.get(one.field, f"{field}: {one.field}")) for one in self._errors]
+        )
 
     @property
     def shown(self) -> list[str]:
@@ -198,7 +222,9 @@ class Collector:
 
     @contextmanager
     def part(self, *path: str) -> Iterator[None]:
-        """Keep the input errors of one part, which stands at `path` in its file, instead of raising them."""
+        """Keep the input errors of one part, which stands at `path` in its file, instead of raising
+        them.
+        """
         try:
             yield
         except InputError as error:
@@ -213,13 +239,15 @@ class Collector:
 
 def raise_all(errors: Iterable[InputError]) -> None:
     """Raise errors together, if there are any; a single one as it is, and equal ones once."""
-    different = list({str(error): error for error in errors}.values())  # two checks may read one table
+    # two checks may read one table
+    different = list({str(error): error for error in errors}.values())
     if different:
         raise different[0] if len(different) == 1 else InputErrors(different)
 
 
 def collected(entries: Any, checked: Callable[[Any, Any], Any]) -> Any:
-    """Return the checked value of each entry of a mapping; raise the errors of all of them together.
+    """Return the checked value of each entry of a mapping; raise the errors of all of them
+    together.
 
     What is no mapping is returned as it is: the type of the field refuses it.
     """
@@ -245,7 +273,8 @@ class WorkError(RuntimeError):
     """Report that the work failed for a reason outside the input, and what to do about it."""
 
 
-CLOSE, CLOSE_SHORT = 0.8, 0.6  # similarity from which on a name, or one of at most four letters, counts as misspelt
+# similarity from which on a name, or one of at most four letters, counts as misspelt
+CLOSE, CLOSE_SHORT = 0.8, 0.6
 MEANS = {  # names that a word of a designer stands for, the likeliest first
     "outer diameter": "outer_radius axis_distance guide_profile_radius roller_profile_radius",
     "groove": "roller_profile_radius groove_depth",
@@ -280,7 +309,9 @@ _MEANS = {word: names.split() for words, names in MEANS.items() for word in word
 
 
 def nearest(name: str, options: Iterable[str]) -> str | None:
-    """Return the option that a name misspells or abbreviates by whole words, or None if there is no such option."""
+    """Return the option that a name misspells or abbreviates by whole words, or None if there is no
+    such option.
+    """
     options = list(options)
     longer = [option for option in options if _words(name) <= _words(option)]
     other = [option for word in _words(name) for option in _MEANS.get(word, ())]
@@ -303,20 +334,29 @@ def _words(name: object) -> set[str]:
 
 
 def likeliest(name: str, options: Iterable[str]) -> list[str]:
-    """Return at most three options that a name stands for by the meaning of its words, the likeliest first."""
+    """Return at most three options that a name stands for by the meaning of its words, the
+    likeliest first.
+    """
     options = list(options)
     words = str(name).lower().split("_")
     plain = [word if word in _MEANS else word.removesuffix("s") for word in words]
     meant = [option for word in plain for option in _MEANS.get(word, ()) if option in options]
-    akin = [o for o in options if any(difflib.get_close_matches(word, _words(o), cutoff=CLOSE) for word in words)]
+    akin = [
+        o
+        for o in options
+        if any(difflib.get_close_matches(word, _words(o), cutoff=CLOSE) for word in words)
+    ]
     return list(dict.fromkeys([*meant, *akin]))[:3]
 
 
 MOST_LISTED = 16  # names that a message lists; of more names it proposes three
 
 
-def unknown_name(kind: str, name: str, options: Iterable[str], elsewhere: Iterable[str] = ()) -> InputError:
-    """Return the error for a name that is not among `options`; it proposes the names that are meant most likely.
+def unknown_name(
+    kind: str, name: str, options: Iterable[str], elsewhere: Iterable[str] = ()
+) -> InputError:
+    """Return the error for a name that is not among `options`; it proposes the names that are meant
+    most likely.
 
     Names `elsewhere` in the file are proposed, too, if the name means one of them.
     """
@@ -336,17 +376,25 @@ def unknown_name(kind: str, name: str, options: Iterable[str], elsewhere: Iterab
 
 
 def contained(name: str, options: Iterable[str]) -> list[str]:
-    """Return the options that a longer or otherwise written name contains, or stands for by one of its words.
+    """Return the options that a longer or otherwise written name contains, or stands for by one of
+    its words.
 
     Examples
     --------
-    >>> contained("Radial_Force (measured)", ["radial_force", "axial_force"]), contained("F_a", ["axial_force"])
-    (['radial_force'], ['axial_force'])
+    >>> contained("Radial_Force (measured)", ["radial_force", "axial_force"])
+    ['radial_force']
+    >>> contained("F_a", ["axial_force"])
+    ['axial_force']
     """
     words = [word for word in re.split(r"[^\w]|_", name.lower()) if word]
     whole = "_".join(words)
     options = list(options)
-    meant = [option for word in (*words, "".join(words)) for option in _MEANS.get(word, ()) if option in options]
+    meant = [
+        option
+        for word in (*words, "".join(words))
+        for option in _MEANS.get(word, ())
+        if option in options
+    ]
     return list(dict.fromkeys([*(o for o in options if f"_{o}_" in f"_{whole}_"), *meant]))[:3]
 
 

@@ -34,45 +34,55 @@ STUDY_MARK = "plan.json"  # stands in the folder of a study, beside its finished
 MAX_BYTES = 5_000_000  # bytes; a larger table of cases belongs into a CSV file
 Reads = dict[Path, tuple[str, str]]  # kind and SHA-256 of each file that was read
 _beside: ContextVar[Path | None] = ContextVar("beside", default=None)
-_noted: ContextVar[Reads | None] = ContextVar("noted", default=None)
+_reads: ContextVar[Reads | None] = ContextVar("noted", default=None)
 _confined: list[Path] = []  # what this process may read and write; everything if empty
 
 
 def confine(folder: Path) -> None:
-    """Let this process read users' files and write files below one folder only, and read the user's materials.
+    """Let this process read users' files and write files below one folder only, and read the user's
+    materials.
 
-    Links are followed before the check, so a link that leads out of the folder is refused. Temporary files, such as
-    the figures of a sheet before they stand in its page, have a folder that is deleted with the process.
+    Links are followed before the check, so a link that leads out of the folder is refused.
+    Temporary files, such as the figures of a sheet before they stand in its page, have a folder
+    that is deleted with the process.
     """
     materials = os.environ.get(MATERIALS)
     own = tempfile.mkdtemp(prefix="trackroller-")
     atexit.register(shutil.rmtree, own, ignore_errors=True)
     tempfile.tempdir = own
-    places = [folder, Path(own)]
+    folders = [folder, Path(own)]
     if materials:
-        places.append(Path(os.path.expanduser(materials)))
-    _confined[:] = [place.resolve() for place in places]
+        folders.append(Path(os.path.expanduser(materials)))
+    _confined[:] = [place.resolve() for place in folders]
 
 
 def _check_confined(path: Path, what: str) -> None:
     """Refuse a path outside the folder that `confine` names."""
-    if _confined and not any(path.resolve().is_relative_to(place) for place in _confined):
+    if _confined and not any(path.resolve().is_relative_to(folder) for folder in _confined):
         wrong = "leads out of the folder of the page, by itself or by a link in it"
-        raise InputError(what, str(path), f"a file below {_confined[0]}", "Copy the file into the folder.", wrong)
+        raise InputError(
+            what, str(path), f"a file below {_confined[0]}", "Copy the file into the folder.", wrong
+        )
 
 
 def check_utf_8(path: Path | str, what: str) -> None:
-    """Refuse a path whose bytes are not UTF-8: neither netCDF, YAML nor a page can hold such a name."""
+    """Refuse a path whose bytes are not UTF-8: neither netCDF, YAML nor a page can hold such a
+    name.
+    """
     try:
         str(path).encode()
     except UnicodeEncodeError:
         shown = os.fsencode(path).decode("utf-8", "replace")
         remedy = "Rename the file or folder, or a folder above it."
-        raise InputError(what, shown, "names in UTF-8", remedy, "has a name that is not UTF-8") from None
+        raise InputError(
+            what, shown, "names in UTF-8", remedy, "has a name that is not UTF-8"
+        ) from None
 
 
 def check_place(path: Path, what: str) -> None:
-    """Refuse to write a path that is not UTF-8, or that leads out of the folder that `confine` names."""
+    """Refuse to write a path that is not UTF-8, or that leads out of the folder that `confine`
+    names.
+    """
     check_utf_8(path, what)
     _check_confined(path.parent, what)
 
@@ -90,42 +100,53 @@ def refuse_link(path: Path, what: str) -> None:
 
 
 def refuse_links(root: Path, what: str, inside: bool = False) -> None:
-    """Refuse a folder that holds a link, at any depth, and one that is a link unless only what is `inside` counts."""
+    """Refuse a folder that holds a link, at any depth, and one that is a link unless only what is
+    `inside` counts.
+    """
     if not inside:
         refuse_link(root, what)
-    for place, folders, names in os.walk(root):
+    for folder, folders, names in os.walk(root):
         for name in (*folders, *names):
-            refuse_link(Path(place, name), what)
+            refuse_link(Path(folder, name), what)
 
 
 @contextmanager
 def noted_reads() -> Iterator[Reads]:
-    """Note the kind and the SHA-256 of each file that `read_text` reads; an inner context adds to the outer one."""
-    outer = _noted.get()
-    noted: Reads = {} if outer is None else outer
-    token = _noted.set(noted)
+    """Note the kind and the SHA-256 of each file that `read_text` reads; an inner context adds to
+    the outer one.
+    """
+    outer = _reads.get()
+    reads: Reads = {} if outer is None else outer
+    token = _reads.set(reads)
     try:
-        yield noted
+        yield reads
     finally:
-        _noted.reset(token)
+        _reads.reset(token)
 
 
 def read_bytes(path: Path | str, what: str, most: float = MAX_BYTES) -> bytes:
-    """Return the content of a user's file, see `read_text`, and note its digest for `noted_reads`."""
+    """Return the content of a user's file, see `read_text`, and note its digest for
+    `noted_reads`.
+    """
     path = Path(path)
     with opened(path, what, most) as stream:
         content = stream.read()
-    noted = _noted.get()
-    if noted is not None:
-        noted[path.resolve()] = what, hashlib.sha256(content).hexdigest()
+    reads = _reads.get()
+    if reads is not None:
+        reads[path.resolve()] = what, hashlib.sha256(content).hexdigest()
     return content
 
 
 @contextmanager
 def opened(
-    path: Path | str, what: str, most: float, remedy: str = "Put many cases into a CSV file and use design: table."
+    path: Path | str,
+    what: str,
+    most: float,
+    remedy: str = "Put many cases into a CSV file and use design: table.",
 ) -> Iterator[IO[bytes]]:
-    """Open a user's file to read its bytes; refuse a file as `read_text` does, a large one with a remedy of its own."""
+    """Open a user's file to read its bytes; refuse a file as `read_text` does, a large one with a
+    remedy of its own.
+    """
     path = Path(path)
     try:
         check_utf_8(path, what)
@@ -133,16 +154,26 @@ def opened(
         if path.is_dir():
             raise InputError(what, str(path), "a file", "Give the path of a file.", "is a folder")
         if path.exists() and not path.is_file():
-            raise InputError(what, str(path), "a regular file", "Give the path of a file.", "is a device or a pipe")
+            raise InputError(
+                what,
+                str(path),
+                "a regular file",
+                "Give the path of a file.",
+                "is a device or a pipe",
+            )
         if path.stat().st_size > most:
             allowed = f"a file of at most {most / 1e6:,.0f} MB"
-            raise InputError(what, str(path), allowed, remedy, f"has {path.stat().st_size / 1e6:,.0f} MB")
+            raise InputError(
+                what, str(path), allowed, remedy, f"has {path.stat().st_size / 1e6:,.0f} MB"
+            )
         with open(path, "rb") as stream:
             yield stream
     except InputError:
         raise
     except FileNotFoundError:
-        raise InputError(what, str(path), "the path of a file", "Check the path.", "does not exist") from None
+        raise InputError(
+            what, str(path), "the path of a file", "Check the path.", "does not exist"
+        ) from None
     except (OSError, ValueError) as exc:
         too_long = None
         if isinstance(exc, OSError):
@@ -153,7 +184,9 @@ def opened(
         if isinstance(exc, OSError) and exc.strerror:
             why = exc.strerror
         wrong = f"cannot be read ({why})"
-        raise InputError(what, str(path), "a file that can be read", "Check path and rights.", wrong) from None
+        raise InputError(
+            what, str(path), "a file that can be read", "Check path and rights.", wrong
+        ) from None
 
 
 def read_text(path: Path | str, what: str, most: float = MAX_BYTES) -> str:
@@ -176,7 +209,8 @@ def read_text(path: Path | str, what: str, most: float = MAX_BYTES) -> str:
     Raises
     ------
     InputError
-        If the file is missing, no regular file, too large, unreadable or neither UTF-8 nor UTF-16 with its mark.
+        If the file is missing, no regular file, too large, unreadable or neither UTF-8 nor UTF-16
+        with its mark.
     """
     return text_of(read_bytes(path, what, most), path, what)
 
@@ -185,7 +219,9 @@ UTF_16 = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)  # the marks at the beginnin
 
 
 def _with_mark(content: bytes) -> bytes:
-    """Return the content of a file; UTF-16 without its mark, of which every other byte is 0, gets the mark."""
+    """Return the content of a file; UTF-16 without its mark, of which every other byte is 0, gets
+    the mark.
+    """
     even, odd = (content[start::2].count(0) for start in (0, 1))
     if max(even, odd) <= 0.3 * len(content) or min(even, odd) > 0:
         return content
@@ -204,8 +240,8 @@ def text_of(content: bytes, path: Path | str, what: str, western: bool = False) 
     path, what
         See `read_text`.
     western : bool
-        Whether UTF-16 without its mark and the encoding of Windows in western countries are read too, as instruments
-        write them.
+        Whether UTF-16 without its mark and the encoding of Windows in western countries are read
+        too, as instruments write them.
     """
     if western and not content.startswith(UTF_16):
         content = _with_mark(content)
@@ -220,18 +256,28 @@ def text_of(content: bytes, path: Path | str, what: str, western: bool = False) 
             return text_of(content.decode("cp1252", "replace").encode(), path, what)
         remedy = "Save the file as UTF-8; in Excel choose 'CSV UTF-8'."
         wrong = f"is not {exc.encoding.upper()} text at byte {exc.start}"
-        error = InputError(what, str(path), "text in UTF-8, or in UTF-16 with its mark", remedy, wrong)
+        error = InputError(
+            what, str(path), "text in UTF-8, or in UTF-16 with its mark", remedy, wrong
+        )
         if not utf_16:
             error = error.at(path, content.count(b"\n", 0, exc.start) + 1)
         raise error from None
     if "\0" in text:
-        raise InputError(what, str(path), "a text", "Save the file as UTF-8.", "holds zero bytes, so it is no text")
+        raise InputError(
+            what,
+            str(path),
+            "a text",
+            "Save the file as UTF-8.",
+            "holds zero bytes, so it is no text",
+        )
     return text
 
 
 @contextmanager
 def files_beside(path: Path | str | None) -> Iterator[None]:
-    """Look for files in the folder of the case or study file `path` first, while that file is read."""
+    """Look for files in the folder of the case or study file `path` first, while that file is
+    read.
+    """
     folder = None
     if path is not None:
         folder = Path(path).parent
@@ -243,7 +289,8 @@ def files_beside(path: Path | str | None) -> Iterator[None]:
 
 
 def find_beside(name: Any, field: str) -> Path:
-    """Return the path of a file that a case, study or spectrum file names: the one rule for every such path.
+    """Return the path of a file that a case, study or spectrum file names: the one rule for every
+    such path.
 
     Parameters
     ----------
@@ -261,7 +308,12 @@ def find_beside(name: Any, field: str) -> Path:
     where = " or ".join(dict.fromkeys(f"below {folder.resolve()}" for folder in folders))
     remedy = f"Put the file {where} and give its path from there."
     path = Path(str(name))
-    if not isinstance(name, (str, Path)) or path.is_absolute() or ".." in path.parts or not str(name).strip():
+    if (
+        not isinstance(name, (str, Path))
+        or path.is_absolute()
+        or ".." in path.parts
+        or not str(name).strip()
+    ):
         wrong = "is not a path within the folder"
         raise InputError(field, str(name), "a relative path without '..'", remedy, wrong)
     linked = None
@@ -272,52 +324,71 @@ def find_beside(name: Any, field: str) -> Path:
         linked = linked or (here if here.is_file() else None)
     if linked is not None:
         wrong = f"is a link that leads out of the folder, to {linked.resolve()}"
-        raise InputError(field, str(name), f"a file {where}", "Copy the file to the place of the link.", wrong)
-    raise InputError(field, str(name), f"a file {where}", "Check its name, or put it there.", "is not there")
+        raise InputError(
+            field, str(name), f"a file {where}", "Copy the file to the place of the link.", wrong
+        )
+    raise InputError(
+        field, str(name), f"a file {where}", "Check its name, or put it there.", "is not there"
+    )
 
 
-FAILED_WRITES = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS)  # no other system call fails for these reasons
+# no other system call fails for these reasons
+FAILED_WRITES = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS)
 
 
 def long_name(exc: OSError) -> InputError | None:
-    """Return the message for a path with a name that the system refuses for its length; None for another error."""
+    """Return the message for a path with a name that the system refuses for its length; None for
+    another error.
+    """
     if exc.errno != errno.ENAMETOOLONG:
         return None
     path = str(exc.filename or "")
     longest = max((len(os.fsencode(part)) for part in Path(path).parts), default=0)
     allowed = "names of files and folders of at most 255 bytes, and paths of at most 4095"
-    return InputError("path", path, allowed, "Give a shorter name.", f"is too long: a name in it has {longest} bytes")
+    return InputError(
+        "path",
+        path,
+        allowed,
+        "Give a shorter name.",
+        f"is too long: a name in it has {longest} bytes",
+    )
 
 
 def disk_error(exc: OSError, path: Path) -> WorkError:
     """Return the message for a failed write, with the remedy."""
     exc = _true_cause(exc, path)
     if exc.errno in (errno.ENOSPC, errno.EDQUOT):
-        what = "the disk is full"
+        cause = "the disk is full"
         remedy = "Free some space"
     elif exc.errno in (errno.EROFS, errno.EACCES, errno.EPERM):
-        what = f"it cannot be written ({exc.strerror})"
+        cause = f"it cannot be written ({exc.strerror})"
         remedy = "Change its permissions (or choose another --results)"
     else:
-        what = f"writing failed ({why_not(exc, path)})"
+        cause = f"writing failed ({why_not(exc, path)})"
         remedy = "Repair the folder or the disk"
     of_study = any((place / STUDY_MARK).is_file() for place in (path, *path.parents))
-    kept = ""
+    assurance = ""
     if of_study:
-        kept = ": every finished case is kept"
-    return WorkError(f"{path}: {what}. {remedy}, then start again{kept}.")
+        assurance = ": every finished case is kept"
+    return WorkError(f"{path}: {cause}. {remedy}, then start again{assurance}.")
 
 
 def why_not(exc: OSError, path: Path) -> str:
-    """Return in words why a path cannot be made: the system says of a link that leads nowhere that a file exists."""
-    lost = next((place for place in (path, *path.parents) if is_link(place) and not place.exists()), None)
+    """Return in words why a path cannot be made: the system says of a link that leads nowhere that
+    a file exists.
+    """
+    lost = next(
+        (place for place in (path, *path.parents) if is_link(place) and not place.exists()), None
+    )
     if lost is None:
         return str(exc.strerror or exc)
     return f"{lost} is a link to something that does not exist"
 
 
 def _true_cause(exc: OSError, path: Path) -> OSError:
-    """Return why a file could not be written: a library may report a full disk as a lack of rights."""
+    """Return why a file could not be written: a library may report a full disk as a lack of
+    rights.
+    """
     if exc.errno in (errno.EACCES, errno.EPERM):
         folder = next((place for place in path.parents if place.is_dir()), Path())
         try:
@@ -334,7 +405,9 @@ _TOKEN = secrets.token_hex(8)  # tells the temporary files of this process from 
 
 
 def scratch_name(path: Path) -> Path:
-    """Return the temporary path beside a file or folder under which this process makes it; no one else has it."""
+    """Return the temporary path beside a file or folder under which this process makes it; no one
+    else has it.
+    """
     return path.with_name(f".{path.name}.{os.getpid()}-{_TOKEN}.tmp")
 
 
@@ -348,7 +421,8 @@ def disk_errors(path: Path) -> Iterator[None]:
     except (OSError, RuntimeError) as exc:
         if isinstance(exc, OSError) and (exc.errno or 0) > 0:
             raise disk_error(exc, path) from exc
-        full = shutil.disk_usage(path.parent).free < 16_000_000  # the netCDF library hides the system's error
+        # the netCDF library hides the system's error
+        full = shutil.disk_usage(path.parent).free < 16_000_000
         code = errno.ENOSPC if full else errno.EIO
         raise disk_error(OSError(code, str(exc)), path) from exc
 
@@ -390,7 +464,8 @@ def write_whole(path: Path, write: Callable[[Path], object], beside: Path | None
 
 @contextmanager
 def all_or_none(*paths: Path) -> Iterator[None]:
-    """Write several files together: if one of them fails, each is again what it was before, or is away again.
+    """Write several files together: if one of them fails, each is again what it was before, or is
+    away again.
 
     Parameters
     ----------
@@ -399,7 +474,8 @@ def all_or_none(*paths: Path) -> Iterator[None]:
 
     Notes
     -----
-    The previous content stands in a copy beside each file, so that putting it back needs no space on the disk.
+    The previous content stands in a copy beside each file, so that putting it back needs no space
+    on the disk.
     """
     copies: dict[Path, Path] = {}
     lacking = [folder for path in paths for folder in path.parents if not folder.exists()]
@@ -438,7 +514,9 @@ def write_text(path: Path, text: str) -> None:
 
 
 def write_private(path: Path, text: str) -> None:
-    """Write a text file that only its owner can read, whatever file stood there; see `write_whole`."""
+    """Write a text file that only its owner can read, whatever file stood there; see
+    `write_whole`.
+    """
 
     def write(beside: Path) -> None:
         beside.unlink(missing_ok=True)
@@ -451,21 +529,31 @@ def write_private(path: Path, text: str) -> None:
 
 def open_here(path: Path | str, mode: str) -> IO[Any]:
     """Open a file, but no link: where a system cannot refuse links, the check before has to do."""
-    return open(path, mode, opener=lambda name, flags: os.open(name, flags | getattr(os, "O_NOFOLLOW", 0), 0o666))
+    return open(
+        path,
+        mode,
+        opener=lambda name, flags: os.open(name, flags | getattr(os, "O_NOFOLLOW", 0), 0o666),
+    )
 
 
 def _interrupt(number: int, frame: FrameType | None) -> None:
-    """Raise `KeyboardInterrupt`, but try again in 20 ms where Python or a library would not pass it on as it is.
+    """Raise `KeyboardInterrupt`, but try again in 20 ms where Python or a library would not pass it
+    on as it is.
 
-    The libraries of netCDF files hold a lock, which an interrupt would leave held, so that the next access would wait
-    forever. Python drops an exception that is raised while it disposes of an object. A compiled module that is
-    interrupted while it is imported raises `ImportError` instead.
+    The libraries of netCDF files hold a lock, which an interrupt would leave held, so that the next
+    access would wait forever. Python drops an exception that is raised while it disposes of an
+    object. A compiled module that is interrupted while it is imported raises `ImportError` instead.
     """
     while frame is not None:
         module = str(frame.f_globals.get("__name__"))
         imported = frame.f_locals.get("self")
-        waits = module.startswith(("netCDF4", "xarray.backends", "weakref")) or frame.f_code.co_name == "__del__"
-        if waits or (module == "importlib._bootstrap_external" and isinstance(imported, ExtensionFileLoader)):
+        waits = (
+            module.startswith(("netCDF4", "xarray.backends", "weakref"))
+            or frame.f_code.co_name == "__del__"
+        )
+        if waits or (
+            module == "importlib._bootstrap_external" and isinstance(imported, ExtensionFileLoader)
+        ):
             signal.setitimer(signal.ITIMER_REAL, 0.02)
             return
         frame = frame.f_back
@@ -474,12 +562,17 @@ def _interrupt(number: int, frame: FrameType | None) -> None:
 
 @contextmanager
 def interrupts_wait_for_files() -> Iterator[None]:
-    """Let Ctrl-C wait while a netCDF file is read or written; a thread beside the main one is left as it is."""
-    main = threading.current_thread() is threading.main_thread() and hasattr(signal, "setitimer")  # not on Windows
+    """Let Ctrl-C wait while a netCDF file is read or written; a thread beside the main one is left
+    as it is.
+    """
+    # not on Windows
+    main = threading.current_thread() is threading.main_thread() and hasattr(signal, "setitimer")
     if not main or signal.getsignal(signal.SIGINT) is not signal.default_int_handler:
         yield
         return
-    before = {number: signal.signal(number, _interrupt) for number in (signal.SIGINT, signal.SIGALRM)}
+    before = {
+        number: signal.signal(number, _interrupt) for number in (signal.SIGINT, signal.SIGALRM)
+    }
     try:
         yield
     finally:
@@ -525,7 +618,8 @@ def reserve(file: IO[bytes], size: int) -> None:
 
 
 def inert_cell(value: Any) -> Any:
-    """Return a cell of a table with an apostrophe before a text that a spreadsheet would run as a formula.
+    """Return a cell of a table with an apostrophe before a text that a spreadsheet would run as a
+    formula.
 
     Numbers stay as they are, as texts too. No name is refused for its first sign, because `+20 N` may name a load case:
     each table that is written has inert cells, and each that is read has them as they were, see `cell_as_meant`.
@@ -555,7 +649,9 @@ def sha256(path: Path) -> str:
 
 
 def cores() -> int:
-    """Return the number of processors that this process may use; of the machine where the system does not say."""
+    """Return the number of processors that this process may use; of the machine where the system
+    does not say.
+    """
     if hasattr(os, "sched_getaffinity"):
         return len(os.sched_getaffinity(0))
     return os.cpu_count() or 1
@@ -572,7 +668,8 @@ def memory() -> float:
 def try_lock(stream: IO[bytes], shared: bool = False) -> bool:
     """Take or convert the lock of an open file, unless another process holds a conflicting lock.
 
-    Return True on a file system without locks, where two processes may solve the same case and no result is lost.
+    Return True on a file system without locks, where two processes may solve the same case and no
+    result is lost.
     """
     try:
         portalocker.lock(stream, LOCK[shared] | portalocker.LockFlags.NON_BLOCKING)
@@ -583,7 +680,9 @@ def try_lock(stream: IO[bytes], shared: bool = False) -> bool:
     return True
 
 
-def wait_for_lock(stream: IO[bytes], shared: bool = False, tell: Callable[[str], object] | None = None) -> None:
+def wait_for_lock(
+    stream: IO[bytes], shared: bool = False, tell: Callable[[str], object] | None = None
+) -> None:
     """Wait until `try_lock` succeeds; call `tell` once if another process holds the lock."""
     if try_lock(stream, shared):
         return
@@ -594,10 +693,14 @@ def wait_for_lock(stream: IO[bytes], shared: bool = False, tell: Callable[[str],
 
 
 @contextmanager
-def locked(path: Path, shared: bool = False, tell: Callable[[str], object] | None = None) -> Iterator[None]:
-    """Hold the lock of an empty file; the system releases the lock when the process ends, however it ends.
+def locked(
+    path: Path, shared: bool = False, tell: Callable[[str], object] | None = None
+) -> Iterator[None]:
+    """Hold the lock of an empty file; the system releases the lock when the process ends, however
+    it ends.
 
-    A file with content is never locked: on Windows a lock keeps every reader out, even the process that holds it.
+    A file with content is never locked: on Windows a lock keeps every reader out, even the process
+    that holds it.
     """
     with open_here(path, "ab") as stream:
         wait_for_lock(stream, shared, tell)

@@ -1,9 +1,9 @@
 """Read and write the YAML files of users: one guarded loader for every such file of the program.
 
-ruamel.yaml reads the text as YAML 1.2 with the rules of `_Resolver`. A scalar without quotes that YAML 1.1 reads
-differently, such as `030`, `1:30`, `3_0` or `yes`, is refused; the message says what to write instead. Nesting and
-aliases are counted on the events of the parser first, so that a small file can neither grow into millions of values nor
-end the process.
+ruamel.yaml reads the text as YAML 1.2 with the rules of `_Resolver`. A scalar without quotes that
+YAML 1.1 reads differently, such as `030`, `1:30`, `3_0` or `yes`, is refused; the message says what
+to write instead. Nesting and aliases are counted on the events of the parser first, so that a small
+file can neither grow into millions of values nor end the process.
 """
 
 from __future__ import annotations
@@ -40,17 +40,23 @@ _PLAIN = {  # what a scalar without quotes is, in the order in which the pattern
     "bool": r"true|True|TRUE|false|False|FALSE",
     "merge": r"<<",
     "int": r"[-+]?(?:0|[1-9][0-9]{0,39})",
-    "ambiguous": r"[-+]?0[0-9]+|[-+]?0[xob][0-9a-fA-F_]+|[-+]?[0-9]{41,}"  # octal, other bases, too long
+    # octal, other bases, too long
+    "ambiguous": r"[-+]?0[0-9]+|[-+]?0[xob][0-9a-fA-F_]+|[-+]?[0-9]{41,}"
     r"|[-+]?[0-9][0-9_]*(?::[0-5]?[0-9])+(?:\.[0-9_]*)?"  # a number to base 60 in YAML 1.1
-    r"|[-+]?[0-9][0-9_]*_[0-9_.]*(?:[eE][-+]?[0-9]+)?"  # a number in YAML 1.1 and a text in YAML 1.2
-    r"|yes|Yes|YES|no|No|NO|on|On|ON|off|Off|OFF"  # a truth value in YAML 1.1 and a text in YAML 1.2
+    # a number in YAML 1.1 and a text in YAML 1.2
+    r"|[-+]?[0-9][0-9_]*_[0-9_.]*(?:[eE][-+]?[0-9]+)?"
+    # a truth value in YAML 1.1 and a text in YAML 1.2
+    r"|yes|Yes|YES|no|No|NO|on|On|ON|off|Off|OFF"
     r"|(?=.*[^\x00-\x7f])[-+]?[\d.]+(?:[eE][-+]?\d+)?",  # digits of another script
-    "float": rf"[-+]?(?:\.[0-9]+|[0-9]+(?:\.[0-9]*)?)(?:[eE][-+]?[0-9]+)?|{_INFINITY}|\.(?:nan|NaN|NAN)",
+    "float": r"[-+]?(?:\.[0-9]+|[0-9]+(?:\.[0-9]*)?)(?:[eE][-+]?[0-9]+)?"
+    rf"|{_INFINITY}|\.(?:nan|NaN|NAN)",
 }
 
 
 class _Resolver(BaseResolver):
-    """Says what a scalar without quotes is: YAML 1.2, and nothing that YAML 1.1 reads differently."""
+    """Says what a scalar without quotes is: YAML 1.2, and nothing that YAML 1.1 reads
+    differently.
+    """
 
     def __init__(self, version: Any = None, loadumper: Any = None) -> None:
         super().__init__(loadumper)  # without the patterns of a version, which `YAML` would add
@@ -75,7 +81,9 @@ class _Constructor(SafeConstructor):
 
     def text(self, node: Any) -> str:
         """Return a text without control characters."""
-        return checked_text(str(self.construct_scalar(node)), f"line {node.start_mark.line + 1}", lines=True)
+        return checked_text(
+            str(self.construct_scalar(node)), f"line {node.start_mark.line + 1}", lines=True
+        )
 
     def refused(self, node: Any) -> InputError:
         """Return the error for an ambiguous scalar, or one that no number can hold."""
@@ -83,7 +91,9 @@ class _Constructor(SafeConstructor):
             shown = node.value
         else:
             shown = f"{node.value[:57]}..."
-        allowed = "an unambiguous value; YAML 1.1 and YAML 1.2 differ here, or the number is too large"
+        allowed = (
+            "an unambiguous value; YAML 1.1 and YAML 1.2 differ here, or the number is too large"
+        )
         remedy = "Write a plain decimal number, true or false; or put a text in quotes."
         return InputError(f"line {node.start_mark.line + 1}", shown, allowed, remedy)
 
@@ -99,7 +109,8 @@ class _Constructor(SafeConstructor):
         return super().construct_mapping(node, deep)
 
 
-for _tag in (None, *(f"{TAG}{_name}" for _name in ("null", "bool", "seq", "map"))):  # None refuses other tags
+# None refuses other tags
+for _tag in (None, *(f"{TAG}{_name}" for _name in ("null", "bool", "seq", "map"))):
     _Constructor.add_constructor(_tag, SafeConstructor.yaml_constructors[_tag])
 _Constructor.add_constructor(f"{TAG}str", _Constructor.text)
 _Constructor.add_constructor(f"{TAG}int", lambda self, node: int(node.value))
@@ -108,7 +119,9 @@ _Constructor.add_constructor(AMBIGUOUS, _Constructor.ambiguous)
 
 
 def _check_size(text: str, what: str) -> None:
-    """Refuse nesting that is too deep, more values than `MAX_VALUES`, and an alias of a value that contains it."""
+    """Refuse nesting that is too deep, more values than `MAX_VALUES`, and an alias of a value that
+    contains it.
+    """
     open_sizes = [0]
     names = [None]
     anchors: dict[str | None, int] = {}
@@ -126,13 +139,23 @@ def _check_size(text: str, what: str) -> None:
         elif isinstance(event, AliasEvent):
             if event.anchor in names:
                 where = f"{what}, line {event.start_mark.line + 1}"
-                raise InputError(where, f"*{event.anchor}", "a value that does not contain itself", "Remove the alias.")
+                raise InputError(
+                    where,
+                    f"*{event.anchor}",
+                    "a value that does not contain itself",
+                    "Remove the alias.",
+                )
             size = anchors.get(event.anchor, 0)
         open_sizes[-1] += size
         if len(open_sizes) > MAX_DEPTH or open_sizes[-1] > MAX_VALUES:
-            allowed = f"YAML of at most {MAX_DEPTH} levels and {MAX_VALUES} values, aliases counted in full"
+            allowed = (
+                f"YAML of at most {MAX_DEPTH} levels and {MAX_VALUES} values, aliases "
+                "counted in full"
+            )
             remedy = "Put many cases into a CSV file, and nest lists and mappings less deeply."
-            raise InputError(f"{what}, line {event.start_mark.line + 1}", "too much", allowed, remedy)
+            raise InputError(
+                f"{what}, line {event.start_mark.line + 1}", "too much", allowed, remedy
+            )
 
 
 def parse_yaml(text: str, what: str) -> Any:
@@ -152,8 +175,8 @@ def parse_yaml(text: str, what: str) -> Any:
     Raises
     ------
     InputError
-        With the line, if the text is not YAML, is ambiguous, holds a key twice, an unknown tag, too many values or
-        too deep a nesting.
+        With the line, if the text is not YAML, is ambiguous, holds a key twice, an unknown tag, too
+        many values or too deep a nesting.
     """
     loader = YAML(typ="safe")
     loader.Resolver = _Resolver
@@ -171,18 +194,28 @@ def parse_yaml(text: str, what: str) -> Any:
         reason = " ".join(str(exc.problem or exc).split())
         if isinstance(exc, DuplicateKeyError):
             raise InputError(
-                f"{what}, {where}", reason, "each key once", "Remove one of the two lines.", "holds a key twice"
+                f"{what}, {where}",
+                reason,
+                "each key once",
+                "Remove one of the two lines.",
+                "holds a key twice",
             ) from None
         allowed = "one document of plain YAML, without tags"
         remedy = "Mend the line; texts with ': ' or ' #' need quotes."
-        raise InputError(f"{what}, {where}", None, allowed, remedy, f"is not YAML: {reason}") from None
+        raise InputError(
+            f"{what}, {where}", None, allowed, remedy, f"is not YAML: {reason}"
+        ) from None
     except (YAMLError, ValueError, RecursionError) as exc:
         reason = " ".join(str(exc).split())[:200]
-        raise InputError(what, None, "YAML", "Save it as plain UTF-8 text.", f"is not YAML: {reason}") from None
+        raise InputError(
+            what, None, "YAML", "Save it as plain UTF-8 text.", f"is not YAML: {reason}"
+        ) from None
 
 
 def lines_of(text: str) -> dict[tuple[str, ...], int]:
-    """Return the line of each key of a YAML text by its path, the first line being 1; entries of lists have numbers."""
+    """Return the line of each key of a YAML text by its path, the first line being 1; entries of
+    lists have numbers.
+    """
     lines: dict[tuple[str, ...], int] = {}
 
     def visit(node: Any, path: tuple[str, ...]) -> None:
@@ -203,7 +236,10 @@ def lines_of(text: str) -> dict[tuple[str, ...], int]:
 
 @contextmanager
 def errors_by_line(
-    text: str, elsewhere: Collection[str] = (), file: str | None = None, aliases: Mapping[str, str] | None = None
+    text: str,
+    elsewhere: Collection[str] = (),
+    file: str | None = None,
+    aliases: Mapping[str, str] | None = None,
 ) -> Iterator[None]:
     """Give the input errors of a file their lines in the text, and raise them in this order.
 
@@ -225,7 +261,9 @@ def errors_by_line(
         with suppress(YAMLError):  # the two parsers of ruamel.yaml differ in odd texts
             lines = {_parts(".".join(path)): line for path, line in lines_of(text).items()}
         known = aliases or {}
-        named = {path: (*path[:-1], known[path[-1]]) for path in lines if path and path[-1] in known}
+        named = {
+            path: (*path[:-1], known[path[-1]]) for path in lines if path and path[-1] in known
+        }
         lines |= {other: lines[path] for path, other in named.items() if other not in lines}
         for one in error.errors:
             if one.file is None:  # an error of another file has its line already
@@ -237,15 +275,23 @@ def _parts(text: str) -> tuple[str, ...]:
     return tuple(part for part in re.split(r"[.\[\]\s:]+", text) if part)
 
 
-def _line_of(error: InputError, lines: Mapping[tuple[str, ...], int], elsewhere: Collection[str]) -> int | None:
-    """Return the line of the entry of an error: the longest part of its field, or of its value, that is a key there."""
+def _line_of(
+    error: InputError, lines: Mapping[tuple[str, ...], int], elsewhere: Collection[str]
+) -> int | None:
+    """Return the line of the entry of an error: the longest part of its field, or of its value,
+    that is a key there.
+    """
     parts = _parts(error.field)
     value = _parts(str(error.value)[:200])
-    slices = [parts[i : i + n] for n in range(len(parts), -1, -1) for i in range(len(parts) - n + 1)]
+    slices = [
+        parts[i : i + n] for n in range(len(parts), -1, -1) for i in range(len(parts) - n + 1)
+    ]
     before = _parts(".".join(error.path))
     paths = [(*before, *some, *own) for some in slices for own in (value, ())]
     own = (path for path in paths if path and path in lines and path[0] not in elsewhere)
-    named = (line for path, line in lines.items() if path and parts and path[-1] == parts[-1] != path[0])
+    named = (
+        line for path, line in lines.items() if path and parts and path[-1] == parts[-1] != path[0]
+    )
     return next((lines[path] for path in own), next(named, None))
 
 
@@ -260,7 +306,10 @@ def parse_mapping(text: str, what: str) -> dict[str, Any]:
     data = parse_yaml(text, what)
     if not isinstance(data, dict):
         raise InputError(
-            what, type(data).__name__, "a mapping of keys to values", "Write lines of the form 'key: value'."
+            what,
+            type(data).__name__,
+            "a mapping of keys to values",
+            "Write lines of the form 'key: value'.",
         )
     for key in data:
         if not isinstance(key, str):
@@ -285,7 +334,9 @@ def write_yaml(data: Mapping[str, Any]) -> str:
     return out.getvalue()
 
 
-def change_yaml(text: str, changes: Iterable[tuple[Sequence[str | int], str | None]], what: str) -> str:
+def change_yaml(
+    text: str, changes: Iterable[tuple[Sequence[str | int], str | None]], what: str
+) -> str:
     r"""Return a YAML text with some values changed; its comments and its other lines stay.
 
     Parameters
@@ -293,8 +344,9 @@ def change_yaml(text: str, changes: Iterable[tuple[Sequence[str | int], str | No
     text : str
         One YAML document, a mapping.
     changes : iterable of (path, value)
-        Keys and numbers of list entries that lead to a value, and the value as it is typed; None removes the entry. A
-        mapping that is not there is added, and a number one behind the last entry of a list adds an entry.
+        Keys and numbers of list entries that lead to a value, and the value as it is typed; None
+        removes the entry. A mapping that is not there is added, and a number one behind the last
+        entry of a list adds an entry.
     what : str
         Kind of text, for messages.
 
@@ -305,7 +357,8 @@ def change_yaml(text: str, changes: Iterable[tuple[Sequence[str | int], str | No
 
     Examples
     --------
-    >>> change_yaml("mass: {at: [0, 0, 60]} # empty\n", [(["mass", "at", 2], "70"), (["name"], "cart")], "file")
+    >>> changes = [(["mass", "at", 2], "70"), (["name"], "cart")]
+    >>> change_yaml("mass: {at: [0, 0, 60]} # empty\n", changes, "file")
     'mass: {at: [0, 0, 70]} # empty\nname: cart\n'
     """
     parse_mapping(text, what)

@@ -10,9 +10,9 @@ SLIP = ("contact/test_slip.py", "contact/test_sliding.py", "contact/test_slip_te
 GEOMETRY = ("roller/test_geometry.py", "roller/test_equilibrium.py", "roller/test_solver.py")
 ANSWER = ("results/test_answer.py",)
 WEAR = ("damage/test_wear.py",)
-SOBOL = ("results/test_sensitivity.py",)
+SOBOL = ("methods/test_indices.py", "results/test_sensitivity.py")
 TABLE = ("contact/test_kalker_table.py",)
-CONVERGENCE = (BORDERS, "results/test_sensitivity.py", "results/test_given_data.py")
+CONVERGENCE = (BORDERS, "methods/test_indices.py", "results/test_sensitivity.py", "methods/test_given_data.py")
 WORDS = (
     BORDERS,
     "report/test_sentences.py",
@@ -156,7 +156,12 @@ DECISIONS = {
         '== "max", 1.0, -1.0',
         ("results/test_best.py", "results/test_optimum.py"),
     ),
-    "told-peaks": ("roller/stages/stress.py", "(peak.error + ", "(0.5 * peak.error + ", ("roller/test_tolerance.py",)),
+    "told-peaks": (
+        "roller/stages/stress.py",
+        "peak.error + results",
+        "0.5 * peak.error + results",
+        ("roller/test_tolerance.py",),
+    ),
     "told-forces": (
         "roller/stages/mechanics.py",
         "error = scene.model.force_error(scene.n)",

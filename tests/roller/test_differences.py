@@ -37,7 +37,7 @@ def test_noise_of_a_vanishing_force_is_no_difference(solved, name):
     """Values that are zero by symmetry are compared with the load, not with themselves."""
     noise = 1e-12 * solved["radial_force"] * (1.0 if "force" in name else solved["axis_distance"])
     found = compare(solved, altered(solved, name, noise))[name]
-    assert 0.0 < found.apart < 1e-11 and not found.found
+    assert 0.0 < found.apart < 1e-11 and not found.exceeds_rounding
     assert "load" in found.scale
 
 
@@ -54,14 +54,14 @@ def test_a_changed_number_is_found(solved, name):
     """A change of a hundredth per cent of its scale is a difference in each variable."""
     assert np.isfinite(solved[name]).any()
     change = 1e-4 * scale(solved, name) * (20.0 if allowed(name) > ROUNDING else 1.0)
-    assert compare(solved, altered(solved, name, change))[name].found
+    assert compare(solved, altered(solved, name, change))[name].exceeds_rounding
 
 
 @pytest.mark.parametrize("name", ["peak_stress", "life_cycles", "life_hours", "peak_x", "error_estimate", "pressure"])
 def test_what_a_search_finds_may_differ_as_far_as_the_search_stops_early(solved, name):
     known = scale(solved, name)
-    assert not compare(solved, altered(solved, name, 0.5 * allowed(name) * known))[name].found
-    assert compare(solved, altered(solved, name, 2.0 * allowed(name) * known))[name].found
+    assert not compare(solved, altered(solved, name, 0.5 * allowed(name) * known))[name].exceeds_rounding
+    assert compare(solved, altered(solved, name, 2.0 * allowed(name) * known))[name].exceeds_rounding
 
 
 def test_a_lost_value_a_new_word_and_a_lost_variable_are_found(solved):
@@ -70,10 +70,10 @@ def test_a_lost_value_a_new_word_and_a_lost_variable_are_found(solved):
     )
     assert compare(solved, lost)["slip"].apart == np.inf
     other = solved.assign(regime=solved["regime"] + 1)
-    assert compare(solved, other)["regime"].found
+    assert compare(solved, other)["regime"].exceeds_rounding
     fewer = solved.drop_vars("slip")
-    assert compare(solved, fewer)["slip"].found
-    assert np.isnan(compare(fewer, solved)["slip"].apart) and not compare(fewer, solved)["slip"].found
+    assert compare(solved, fewer)["slip"].exceeds_rounding
+    assert np.isnan(compare(fewer, solved)["slip"].apart) and not compare(fewer, solved)["slip"].exceeds_rounding
 
 
 def test_the_residual_in_a_reason_is_no_difference(solved):
@@ -82,7 +82,7 @@ def test_the_residual_in_a_reason_is_no_difference(solved):
         for words in ("no convergence, residual 3e-09", "no convergence, residual 8e-10", "no solution, residual 3e-09")
     )
     assert compare(one, two)["reason"] == Difference(0.0, 0.0, "")
-    assert compare(one, three)["reason"].found
+    assert compare(one, three)["reason"].exceeds_rounding
 
 
 def test_scales_need_neither_patches_nor_loads(solved):
@@ -92,7 +92,7 @@ def test_scales_need_neither_patches_nor_loads(solved):
         assert all(np.isfinite(scale(few, name)[np.isfinite(few[name].values)]).all() for name in kept)
     bare = solved[["slip", "spin_moment"]].drop_vars(list(LOADS))
     changed = altered(bare, "spin_moment", 1e-3 * bare["spin_moment"])
-    assert compare(bare, changed)["spin_moment"].found
+    assert compare(bare, changed)["spin_moment"].exceeds_rounding
 
 
 def test_every_number_of_the_program_has_a_scale_in_words():

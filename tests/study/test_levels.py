@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+
 import pytest
 
 from trackroller.parameters import OUTPUT_GROUPS
@@ -99,3 +101,13 @@ def test_a_plan_knows_time_and_size_of_every_group_of_outputs():
         both = tuple(dict.fromkeys(("forces", group)))
         assert bytes_a_case(both) >= bytes_a_case(("forces",)) and rate({"outputs": both}) <= rate({})
     assert rate({"outputs": ("forces", "multiaxial")}) < 0.5 * rate({})
+
+
+def test_friction_laws_and_profiles_are_told_in_a_few_words():
+    law = json.dumps({"kind": "linear", "speed": 50, "lowest": 0.3})
+    assert short("friction_law", law) == "linear to 0.3 at 50 mm/s"
+    assert short("friction_law", "") == "constant"
+    assert short("roller_profile", '{"arc":-7.0,"width":9}') == "arc −7 mm, 9 mm wide"
+    drawn = [json.dumps({"points": [[0, 0], [1, z]], "frame": "section"}) for z in (1, 2)]
+    assert len({short("guide_profile", text) for text in drawn}) == 2
+    assert len(short("friction_law", "{" + "x" * 200)) <= 40

@@ -8,7 +8,6 @@ from trackroller.errors import InputError
 from trackroller.methods import METHODS, saltelli
 from trackroller.methods import arrays as designs
 from trackroller.methods.factor import Factor, parse
-from trackroller.parameters.expressions import comparisons, condition, evaluate, names
 from trackroller.study.design.sampling import sample
 
 MIXED = {
@@ -161,42 +160,6 @@ def test_table_of_own_cases_is_taken_with_a_derived_column(tmp_path):
         sample({}, "table", 1, 1, table=path)
 
 
-def test_expressions_compute_what_they_say():
-    """Arithmetic, functions, comparisons with texts, constants."""
-    columns = {"a": np.array([1.0, 4.0]), "mode": np.array(["free", "driven"], dtype=object)}
-    np.testing.assert_allclose(evaluate("2 * a ** 2 - sqrt(a) + max(a, 2)", columns), [2 - 1 + 2, 32 - 2 + 4])
-    np.testing.assert_allclose(evaluate("where(mode == 'free', 0, -30)", columns), [0, -30])
-    np.testing.assert_allclose(evaluate("where(a >= 2, cos(pi), +a)", columns), [1, -1])
-    assert names("sin(a) + b * pi") == {"a", "b"}
-
-
-@pytest.mark.parametrize(
-    ("text", "says"),
-    [
-        ("__import__('os').system('true')", "character 1"),
-        ("a.real", "names joined by a point at character 1"),
-        ("a[0]", "neither arithmetic nor a comparison"),
-        ("(lambda: a)()", "character 1"),
-        ("[x for x in a]", "neither arithmetic nor a comparison at character 1"),
-        ("a if a else a", "if and else at character 1"),
-        ("open('f')", "character 1"),
-        ("a +", "syntax error"),
-        ("a + True", "character 5"),
-        ("a + 'x'", "text"),
-        ("sqrt(a, a)", "takes 1"),
-        ("10 * tan(contact_angle)", r"contact_angle is in degrees. Write tan\(radians\(contact_angle\)\)"),
-        ("9**9**9**9 * aa", "Did you mean 'a'"),
-        ("(" * 400, "syntax error|nested"),
-        ("a" * 600, "500 characters"),
-        (3, "text"),
-    ],
-)
-def test_unsafe_or_wrong_expressions_are_refused_with_their_place(text, says):
-    """Nothing but arithmetic is evaluated; the message tells where."""
-    with pytest.raises(InputError, match=says):
-        evaluate(text, {"a": np.array([1.0, 2.0])})
-
-
 @pytest.mark.parametrize(
     ("factors", "method", "says"),
     [
@@ -240,26 +203,3 @@ def test_quantiles_of_listed_values_fall_into_equal_bins():
     """from_unit at the ends and the middle of [0, 1]."""
     factor = Factor("c", "values", levels=("a", "b", "c"))
     assert list(factor.from_unit(np.array([0.0, 0.3, 0.34, 0.99, 1.0]))) == ["a", "a", "b", "c", "c"]
-
-
-def test_one_parser_serves_factors_constraints_and_stop_conditions():
-    """A condition splits into comparisons; NaN meets no condition, not even !=."""
-    assert names("peak_stress_roller_1 > 2 * R_m or slip < pi") == {"peak_stress_roller_1", "R_m", "slip"}
-    parts = comparisons("peak_stress_roller_1 > 2 * R_m or regime == full_slip", "stop_if")
-    assert [(p.name, p.symbol, p.limit) for p in parts] == [
-        ("peak_stress_roller_1", ">", "2 * R_m"),
-        ("regime", "==", "full_slip"),
-    ]
-    values = {"slip": np.array([0.1, np.nan, 0.3]), "max_pressure_1": np.array([[1.0], [2.0]])}
-    found = condition("slip != 0.3 and max_pressure_1 < 2", values)
-    np.testing.assert_array_equal(found, [[True, False, False], [False, False, False]])
-    with pytest.raises(InputError, match="joined by 'or'"):
-        comparisons("slip > 0.1 and slip < 0.2", "stop_if")
-    with pytest.raises(InputError, match="neither arithmetic nor a comparison"):
-        evaluate("(slip + 1)[1]", values)
-
-
-def test_a_chain_of_comparisons_may_mix_constants_and_columns():
-    columns = {"a": np.array([-1.0, 0.5, 3.0, 9.0]), "b": np.array([1.0, 1.0, 0.2, 1.0])}
-    assert condition("0 < a < 10 * b", columns).tolist() == [False, True, False, True]
-    assert condition("0 < 1 < a and 2 > 1", columns).tolist() == [False, False, True, True]

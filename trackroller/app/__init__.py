@@ -1,4 +1,5 @@
-"""The live page: one roller to play with, studies that start from it, and the server of both on this machine.
+"""The live page: one roller to play with, studies that start from it, and the server of both on
+this machine.
 
 The module itself can be called: `tr.app(case)` shows the page in a notebook.
 """
@@ -34,7 +35,10 @@ class Frame:
 
     def _repr_html_(self) -> str:
         style = f'width="100%" height="{self.height}" style="border: 0"'
-        return f'<iframe src="{escape(self.address)}" title="trackroller" allow="clipboard-write" {style}></iframe>'
+        return (
+            f'<iframe src="{escape(self.address)}" title="trackroller" allow="clipboard-write" '
+            f"{style}></iframe>"
+        )
 
 
 def frame(
@@ -79,7 +83,8 @@ def frame(
     True
     >>> page.close()
     """
-    from trackroller.roller.case import Case  # the worker of a study starts faster without the solver
+    # the worker of a study starts faster without the solver
+    from trackroller.roller.case import Case
     from trackroller.roller.stored_inputs import given_inputs, setting_text
 
     if isinstance(case, Case):
@@ -99,7 +104,9 @@ def frame(
     if process.stdout:
         line = process.stdout.readline()
     if "http://" not in line:
-        raise WorkError("the server of the page does not start; `trackroller app` says why in a terminal")
+        raise WorkError(
+            "the server of the page does not start; `trackroller app` says why in a terminal"
+        )
     address = line[line.index("http://") :].split()[0]
     if case is not None:
         address += f"#{urllib.parse.urlencode(words or {'tab': 'roller'})}"

@@ -1,7 +1,8 @@
-"""Carriages of the live page: the loads of a text at once, its lives and margins later, and the files of the folder.
+"""Carriages of the live page: the loads of a text at once, its lives and margins later, and the
+files of the folder.
 
-The text of a carriage file is what the page keeps. Fields and the picture send changes of it, and the answer holds the
-changed text, so that fields, picture and text show the same carriage.
+The text of a carriage file is what the page keeps. Fields and the picture send changes of it, and
+the answer holds the changed text, so that fields, picture and text show the same carriage.
 """
 
 from __future__ import annotations
@@ -34,7 +35,8 @@ from trackroller.yaml_file import change_yaml, errors_by_line, parse_mapping, wr
 LONGEST = 200_000  # bytes of a file that the list looks into
 HEADS = tuple(re.compile(rf"^{key}\s*:", re.M) for key in ("mass", "rollers", "cases"))
 WHAT = "carriage file"
-RESERVED = ("materials.yaml", "materials.yml", "config.yaml", "mkdocs.yml", "workflow", "profiles")  # of others
+# of others
+RESERVED = ("materials.yaml", "materials.yml", "config.yaml", "mkdocs.yml", "workflow", "profiles")
 
 
 class Change(pydantic.BaseModel):
@@ -46,7 +48,9 @@ class Change(pydantic.BaseModel):
 
 def carriage_files() -> dict[str, Any]:
     """Return the carriage files of the folder, and the example with which the page begins."""
-    paths = sorted(path.as_posix() for pattern in ("*.y*ml", "*/*.y*ml") for path in Path().glob(pattern))
+    paths = sorted(
+        path.as_posix() for pattern in ("*.y*ml", "*/*.y*ml") for path in Path().glob(pattern)
+    )
     return {"files": [name for name in paths if _is_carriage(Path(name))], "example": EXAMPLE}
 
 
@@ -68,11 +72,19 @@ def _check_kind(text: str, path: Path) -> None:
     """Refuse a text that is no carriage file, which may be a file of another kind."""
     if not _has_heads(text):
         allowed = "a carriage file, with mass, rollers and cases at the beginning of lines"
-        raise InputError("file", path.as_posix(), allowed, "Give the name of a carriage file.", "is no carriage file")
+        raise InputError(
+            "file",
+            path.as_posix(),
+            allowed,
+            "Give the name of a carriage file.",
+            "is no carriage file",
+        )
 
 
 def open_carriage(file: str) -> dict[str, Any]:
-    """Return the text of a carriage file of the folder, which the page may save under this name again."""
+    """Return the text of a carriage file of the folder, which the page may save under this name
+    again.
+    """
     path = _place(file, "file")
     text = read_text(path, WHAT)
     _check_kind(text, path)
@@ -80,7 +92,9 @@ def open_carriage(file: str) -> dict[str, Any]:
     return {"text": text}
 
 
-def carriage_loads(text: str, file: str = "", changes: list[Change] | None = None) -> dict[str, Any]:
+def carriage_loads(
+    text: str, file: str = "", changes: list[Change] | None = None
+) -> dict[str, Any]:
     """Change the text of a carriage, and return the loads of its rollers by statics alone.
 
     Parameters
@@ -95,10 +109,16 @@ def carriage_loads(text: str, file: str = "", changes: list[Change] | None = Non
     Returns
     -------
     dict
-        `text` and its `values`; `errors` with field, line and message; `places` of rollers and masses, and `loads`,
-        each None while the text is wrong.
+        `text` and its `values`; `errors` with field, line and message; `places` of rollers and
+        masses, and `loads`, each None while the text is wrong.
     """
-    out: dict[str, Any] = {"text": text, "values": None, "errors": [], "places": None, "loads": None}
+    out: dict[str, Any] = {
+        "text": text,
+        "values": None,
+        "errors": [],
+        "places": None,
+        "loads": None,
+    }
     try:
         out["text"] = text
         if changes:
@@ -133,17 +153,24 @@ def _places(whole: Carriage) -> dict[str, Any]:
         {"name": r.name, "at": r.at.tolist(), "pushes": r.pushes.tolist(), "axis": r.axis.tolist()}
         for r in whole.rollers
     ]
-    masses = [{"at": mass.at.tolist(), "value": mass.value} for mass in (whole.mass, *whole.payloads)]
+    masses = [
+        {"at": mass.at.tolist(), "value": mass.value} for mass in (whole.mass, *whole.payloads)
+    ]
     return {"rollers": rollers, "masses": masses, "cases": [case.name for case in whole.cases]}
 
 
 def _loads(ds: xr.Dataset) -> dict[str, Any]:
-    """Return the forces as numbers by load case and roller, and as a table with a row for each roller."""
+    """Return the forces as numbers by load case and roller, and as a table with a row for each
+    roller.
+    """
     radial, axial = (ds[name].values for name in ("radial_force", "axial_force"))
     rows = []
     for name, radials, axials in zip(ds["roller"].values, radial.T, axial.T, strict=True):
         rows.append([str(name), *map(_force_cell, radials, axials)])
-    note = "Radial forces below 0 press the roller on its rail; axial forces act on the roller along its own axis x_R."
+    note = (
+        "Radial forces below 0 press the roller on its rail; axial forces act on the roller "
+        "along its own axis x_R."
+    )
     table = {
         "title": "Radial / axial force of the rollers by load case [N]",
         "heads": ["Roller", *map(str, ds["load_case"].values)],
@@ -174,7 +201,9 @@ def _headline(answer: Answer) -> dict[str, Any]:
 
 
 def carriage_lives(text: str, file: str = "") -> dict[str, Any]:
-    """Return the record of a carriage with lives and margins: headline, warnings, and its tables as texts."""
+    """Return the record of a carriage with lives and margins: headline, warnings, and its tables as
+    texts.
+    """
     return _lives(solve_carriage(_carriage(text, file)))
 
 
@@ -185,7 +214,10 @@ def _lives(ds: xr.Dataset) -> dict[str, Any]:
     return {
         **_headline(answer),
         "answer": answer.to_dict(),
-        "tables": [limits_on_page(answer, shown), *(part_on_page(answer, part) for part in answer.parts)],
+        "tables": [
+            limits_on_page(answer, shown),
+            *(part_on_page(answer, part) for part in answer.parts),
+        ],
         "worst": str(ds.attrs.get("worst_roller", "")),
     }
 
@@ -205,29 +237,46 @@ def save_carriage(text: str, file: str, opened: str = "") -> dict[str, str]:
     Raises
     ------
     InputError
-        If the file is there and the text comes from another one, or if somebody has changed it in the meantime.
+        If the file is there and the text comes from another one, or if somebody has changed it in
+        the meantime.
     """
     path = _place(file, "file")
     _check_kind(text, path)
     if os.path.lexists(path) and Path(opened) != path:
         remedy = "Give it another name, or open the file first."
-        raise InputError("file", path.as_posix(), "the file that is open, or a new one", remedy, "is there already")
+        raise InputError(
+            "file",
+            path.as_posix(),
+            "the file that is open, or a new one",
+            remedy,
+            "is there already",
+        )
     return {"file": _write(path, text)}
 
 
 def carriage_spectrum(text: str, roller: str, file: str = "") -> dict[str, str]:
-    """Write the load spectrum of a roller into the folder, as `trackroller carriage --spectrum` does."""
+    """Write the load spectrum of a roller into the folder, as `trackroller carriage --spectrum`
+    does.
+    """
     whole = _carriage(text, file)
     values = spectrum_of(whole, forces_of(whole), roller)
     name = name_of_study(f"{whole.name}-{roller}")
-    return {"file": _write(_place((Path(file).parent / f"{name}.yaml").as_posix(), "file"), write_yaml(values))}
+    return {
+        "file": _write(
+            _place((Path(file).parent / f"{name}.yaml").as_posix(), "file"), write_yaml(values)
+        )
+    }
 
 
 def _place(file: str, field: str) -> Path:
-    """Return the path of a YAML file in this folder, or in a folder of it that is not the page's own."""
+    """Return the path of a YAML file in this folder, or in a folder of it that is not the page's
+    own.
+    """
     path = Path(file.strip())
     allowed = "a name such as shuttle.yaml, in this folder or in a folder of it"
-    whole = path.suffix.lower() in (".yaml", ".yml") and file.isprintable() and not path.is_absolute()
+    whole = (
+        path.suffix.lower() in (".yaml", ".yml") and file.isprintable() and not path.is_absolute()
+    )
     hidden = any(part.startswith(".") for part in path.parts)
     if not whole or hidden or len(path.parts) > 2 or path.parts[0] in (RESULTS.name, TEXTS.name):
         raise InputError(field, file[:200], allowed, "Give the file a name that ends in .yaml.")
@@ -245,7 +294,11 @@ def _write(path: Path, text: str) -> str:
     if not WRITTEN.owns(path, digest):
         remedy = "Give it another name, or open the file first."
         raise InputError(
-            "file", path.as_posix(), "a file as this page last read or wrote it", remedy, "is there already"
+            "file",
+            path.as_posix(),
+            "a file as this page last read or wrote it",
+            remedy,
+            "is there already",
         )
     WRITTEN.note({path.as_posix(): digest})
     write_text(path, text)

@@ -1,4 +1,6 @@
-"""What the page offers: every parameter with a range for its slider, the materials, the options and the designs."""
+"""What the page offers: every parameter with a range for its slider, the materials, the options and
+the designs.
+"""
 
 from __future__ import annotations
 
@@ -9,7 +11,14 @@ from typing import Any
 from trackroller.materials import load_database
 from trackroller.materials.tables import material_rows
 from trackroller.methods import METHODS
-from trackroller.parameters import MAPPING_FIELDS, MATERIAL_FIELDS, OF_LIMITS, OPTIONS, PARAMETERS, Parameter
+from trackroller.parameters import (
+    MAPPING_FIELDS,
+    MATERIAL_FIELDS,
+    OF_LIMITS,
+    OPTIONS,
+    PARAMETERS,
+    Parameter,
+)
 from trackroller.parameters.example import LASTING
 from trackroller.parameters.sizes import SIZES
 from trackroller.report.numbers import capital, unit_text
@@ -21,16 +30,36 @@ GROUPS = {"condition": "Loads and use", "choice": "Roller and guide"}
 
 
 def all_fields() -> dict[str, Any]:
-    """Return what the page offers, as values of JSON; a parameter or option that is declared appears by itself."""
+    """Return what the page offers, as values of JSON; a parameter or option that is declared
+    appears by itself.
+    """
     return {
-        "parameters": [_parameter(parameter) for parameter in (*PARAMETERS.values(), *SIZES.values())],
+        "parameters": [
+            _parameter(parameter) for parameter in (*PARAMETERS.values(), *SIZES.values())
+        ],
         "materials": material_rows(load_database()),
         "bodies": list(MATERIAL_FIELDS),
-        "first": {name: value if isinstance(value, str) else f"{value:g}" for name, value in LASTING.items()},
-        "files": sorted(p.as_posix() for pattern in ("*.csv", "*/*.csv") for p in Path().glob(pattern) if _is_own(p)),
-        "mappings": [{"name": name, "meaning": meaning} for name, meaning in MAPPING_FIELDS.items()],
+        "first": {
+            name: value if isinstance(value, str) else f"{value:g}"
+            for name, value in LASTING.items()
+        },
+        "files": sorted(
+            p.as_posix()
+            for pattern in ("*.csv", "*/*.csv")
+            for p in Path().glob(pattern)
+            if _is_own(p)
+        ),
+        "mappings": [
+            {"name": name, "meaning": meaning} for name, meaning in MAPPING_FIELDS.items()
+        ],
         "options": [
-            {"name": o.name, "value": o.default, "meaning": o.meaning, "values": o.values, "kind": o.kind}
+            {
+                "name": o.name,
+                "value": o.default,
+                "meaning": o.meaning,
+                "values": o.values,
+                "kind": o.kind,
+            }
             for o in OPTIONS.values()
         ],
         "designs": list(METHODS),
@@ -38,7 +67,9 @@ def all_fields() -> dict[str, Any]:
 
 
 def _is_own(path: Path) -> bool:
-    """Return whether a file lies in this folder, not behind a link, and has a name that a study file can hold."""
+    """Return whether a file lies in this folder, not behind a link, and has a name that a study
+    file can hold.
+    """
     return path.as_posix().isprintable() and path.resolve().is_relative_to(Path.cwd().resolve())
 
 
@@ -77,9 +108,9 @@ def slider(parameter: Parameter) -> tuple[float, float] | None:
     Returns
     -------
     tuple of float or None
-        Its usual values if its bounds are close together. Otherwise a quarter of the example's value and four times
-        this value, or both signs of the latter for a number that may have either sign. None without an
-        example other than 0.
+        Its usual values if its bounds are close together. Otherwise a quarter of the example's
+        value and four times this value, or both signs of the latter for a number that may have
+        either sign. None without an example other than 0.
 
     Examples
     --------

@@ -1,4 +1,6 @@
-"""One thread that works on the newest request of each page; a request that a newer one replaced is never worked on."""
+"""One thread that works on the newest request of each page; a request that a newer one replaced is
+never worked on.
+"""
 
 from __future__ import annotations
 
@@ -26,7 +28,9 @@ class Lane:
         threading.Thread(target=self._work, name=name, daemon=True).start()
 
     def submit(self, key: Hashable, call: Callable[[], Any]) -> Future[Any]:
-        """Put a call into the place of its key, and answer the call that waited there with `STALE`."""
+        """Put a call into the place of its key, and answer the call that waited there with
+        `STALE`.
+        """
         future: Future[Any] = Future()
         with self._changed:
             replaced = self._waiting.pop(key, None)

@@ -14,11 +14,13 @@ from trackroller.materials.tables import material_details, material_rows
 from trackroller.numerics.numbers import read_number
 from trackroller.roller.doubts import doubts
 
-FILE = Path("config/materials.yaml")  # of the page's folder, unless the environment names another file
+# of the page's folder, unless the environment names another file
+FILE = Path("config/materials.yaml")
 
 
 def material(name: str) -> dict[str, Any]:
-    """Return the values of a material, each with its unit, source and mark, and the values that may be added.
+    """Return the values of a material, each with its unit, source and mark, and the values that may
+    be added.
 
     Parameters
     ----------
@@ -28,8 +30,9 @@ def material(name: str) -> dict[str, Any]:
     Returns
     -------
     dict
-        `description` and `family` of the material; `rows`, each with field, symbol, label, value, unit, source, mark
-        and whether it can be changed. A value that the material lacks has the text ''.
+        `description` and `family` of the material; `rows`, each with field, symbol, label, value,
+        unit, source, mark and whether it can be changed. A value that the material lacks has the
+        text ''.
 
     Raises
     ------
@@ -46,8 +49,20 @@ def material(name: str) -> dict[str, Any]:
             mark = f"placeholder, {row['note']}"
         else:
             mark = row.get("note", "")
-        value = {"value": row.get("value", ""), "source": row.get("source", "not given"), "mark": mark}
-        rows.append({"field": prop.name, "symbol": prop.symbol, "label": prop.label, "unit": prop.unit, **value})
+        value = {
+            "value": row.get("value", ""),
+            "source": row.get("source", "not given"),
+            "mark": mark,
+        }
+        rows.append(
+            {
+                "field": prop.name,
+                "symbol": prop.symbol,
+                "label": prop.label,
+                "unit": prop.unit,
+                **value,
+            }
+        )
     return {"description": own.description, "family": own.family, "rows": rows}
 
 
@@ -68,17 +83,20 @@ def save_material(name: str, like: str, values: dict[str, str], source: str) -> 
     Returns
     -------
     dict
-        `materials` as `all_fields` gives them, `file`, and `doubts`: what is unusual about the material.
+        `materials` as `all_fields` gives them, `file`, and `doubts`: what is unusual about the
+        material.
 
     Raises
     ------
     InputError
-        If the name is empty, nothing was changed, a key of `values` is no value of a material, or a value is not
-        possible. The file is then unchanged.
+        If the name is empty, nothing was changed, a key of `values` is no value of a material, or a
+        value is not possible. The file is then unchanged.
     """
     check_names("value of a material", values, NUMBERS)
     if not source.strip():
-        raise InputError("source", source, "where the values come from", "Name the data sheet or the test.")
+        raise InputError(
+            "source", source, "where the values come from", "Name the data sheet or the test."
+        )
     database = load_database()
     file = find_user_file(None) or FILE
     check_names("material value", values, (*PROPERTIES, *ALTERNATIVES))
@@ -89,13 +107,24 @@ def save_material(name: str, like: str, values: dict[str, str], source: str) -> 
     else:
         base = {"like": database.material(like, "like").name}
     if not changed:
-        raise InputError("material", name, "at least one changed value", "Type another number into one of the fields.")
+        raise InputError(
+            "material",
+            name,
+            "at least one changed value",
+            "Type another number into one of the fields.",
+        )
     material = add_material(file, name, replace=True, source=source.strip(), **base, **changed)
-    return {"materials": material_rows(load_database()), "file": str(file), "doubts": doubts({}, [material])}
+    return {
+        "materials": material_rows(load_database()),
+        "file": str(file),
+        "doubts": doubts({}, [material]),
+    }
 
 
 def typed(text: str) -> float | str:
-    """Return a typed number, with its decimal comma as a point; a text with a unit stays as it is."""
+    """Return a typed number, with its decimal comma as a point; a text with a unit stays as
+    it is.
+    """
     plain = text.strip().replace("−", "-").replace(",", ".")
     try:
         return read_number(plain)

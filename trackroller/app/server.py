@@ -1,9 +1,9 @@
 """The server of the live page, on 127.0.0.1 only.
 
-Whoever wants an answer has to know the token, which is the first part of every path. Requests of another site are
-refused by the headers `Host`, `Origin` and `Sec-Fetch-Site`: a site whose name leads to this machine has another host.
-Behind a forwarded port the user names the hosts that may ask. A page runs only the script of this server, and can reach
-no other host.
+Whoever wants an answer has to know the token, which is the first part of every path. Requests of
+another site are refused by the headers `Host`, `Origin` and `Sec-Fetch-Site`: a site whose name
+leads to this machine has another host. Behind a forwarded port the user names the hosts that may
+ask. A page runs only the script of this server, and can reach no other host.
 """
 
 from __future__ import annotations
@@ -34,19 +34,33 @@ USUAL = 80  # the port of http
 LARGEST = 300_000  # bytes of a request; a study file with a table of cases names the table
 FRAMES = "http://127.0.0.1:* http://localhost:*"  # a notebook on this machine may show the page
 OWN = (
-    "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data:; connect-src 'self'; "
-    f"base-uri 'none'; form-action 'none'; frame-ancestors {FRAMES}"  # and the origins of forwarded ports
+    "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data:; "
+    "connect-src 'self'; "
+    # and the origins of forwarded ports
+    f"base-uri 'none'; form-action 'none'; frame-ancestors {FRAMES}"
 )
-# a sheet has its styles inside, a report its scripts too; `sandbox` keeps them away from this server
-SHEET = "default-src 'none'; style-src 'unsafe-inline'; img-src data:; base-uri 'none'; form-action 'none'; sandbox"
+# a sheet has its styles inside, a report its scripts too; `sandbox` keeps them away from this
+# server
+SHEET = (
+    "default-src 'none'; style-src 'unsafe-inline'; img-src data:; base-uri 'none'; "
+    "form-action 'none'; sandbox"
+)
 REPORT = (
-    "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data:; base-uri 'none'; "
+    "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src "
+    "data:; base-uri 'none'; "
     "form-action 'none'; sandbox allow-scripts allow-downloads"
 )
-ASSETS = {"": ("index.html", "text/html"), "app.js": ("app.js", "text/javascript"), "app.css": ("app.css", "text/css")}
+ASSETS = {
+    "": ("index.html", "text/html"),
+    "app.js": ("app.js", "text/javascript"),
+    "app.css": ("app.css", "text/css"),
+}
 
 
-KINDS = {"pdf": "application/pdf", "xlsx": "application/vnd.openxmlformats-officedocument.spreadsheetml.sheet"}
+KINDS = {
+    "pdf": "application/pdf",
+    "xlsx": "application/vnd.openxmlformats-officedocument.spreadsheetml.sheet",
+}
 MAPPING = pydantic.TypeAdapter(dict[str, Any])  # what every request holds as JSON
 STATUS = {InputError: 422, WorkError: 409, pydantic.ValidationError: 400}
 
@@ -63,23 +77,33 @@ class Refused(tornado.web.HTTPError):
 
 
 # the thread of the solver answers
-SOLVING = dict.fromkeys(("picture", "curve", "find_range", "texts", "sheet", "file_of_roller"), "picture")
+SOLVING = dict.fromkeys(
+    ("picture", "curve", "find_range", "texts", "sheet", "file_of_roller"), "picture"
+)
 SOLVING |= {"carriage_lives": "carriage", "spectrum": "spectrum"}
 STUDIES = (
     *("checked", "listing", "text_of", "start", "resume", "pause", "delete", "headlines"),
     *("page_of", "file_of_study"),
 )
 PAGES = ("sheet", "page_of", "file_of_roller", "file_of_study")  # have addresses of their own
-FILES = {"all_fields": "fields", "material": "materials", "save_material": "materials"}  # the thread of the files
+# the thread of the files
+FILES = {"all_fields": "fields", "material": "materials", "save_material": "materials"}
 FILES |= dict.fromkeys(STUDIES, "studies")
-CARRIAGES = ("carriage_files", "open_carriage", "carriage_loads", "save_carriage", "carriage_spectrum")
+CARRIAGES = (
+    "carriage_files",
+    "open_carriage",
+    "carriage_loads",
+    "save_carriage",
+    "carriage_spectrum",
+)
 FILES |= dict.fromkeys(CARRIAGES, "carriage")
 _loading = threading.Lock()
 
 
 @functools.cache
 def answer(name: str) -> Callable[..., Any]:
-    """Return the function that answers; it refuses arguments that it does not take, or of another type.
+    """Return the function that answers; it refuses arguments that it does not take, or of another
+    type.
 
     Its module is imported when it is first needed: the page loads while the solver does.
     """
@@ -89,7 +113,9 @@ def answer(name: str) -> Callable[..., Any]:
 
 
 def plain(value: Any) -> Any:
-    """Return a value as JSON can hold it: NaN as None, and infinite numbers as the texts inf and -inf."""
+    """Return a value as JSON can hold it: NaN as None, and infinite numbers as the texts inf and
+    -inf.
+    """
     if isinstance(value, float) and not math.isfinite(value):
         if math.isnan(value):
             return None
@@ -116,25 +142,36 @@ class _Handler(tornado.web.RequestHandler):
             self.set_header(name, text)
 
     def prepare(self) -> None:
-        """Refuse who does not know the token, who asks under another name of this machine, and other sites."""
+        """Refuse who does not know the token, who asks under another name of this machine, and
+        other sites.
+        """
         server = self.settings["server"]
         headers = self.request.headers
         host = self.request.host.lower()
         if host not in server.hosts:
             where = " and ".join(sorted(server.hosts))
-            way = "Forward the same port number, or start the page with --allow-host and the host of the address line"
+            way = (
+                "Forward the same port number, or start the page with --allow-host and the host "
+                "of the address line"
+            )
             raise Refused(403, f"This server answers at {where} only, not at {host[:80]}. {way}.")
         if not hmac.compare_digest(str(self.path_args[0]).encode(), server.token.encode()):
             raise Refused(
-                403, "The token in the address is missing or wrong. Open the address that the terminal shows."
+                403,
+                "The token in the address is missing or wrong. Open the address that the terminal "
+                "shows.",
             )
         foreign = headers.get("Sec-Fetch-Site", "none") not in ("none", "same-origin")
         own = {f"http://{host}", *server.forwarded}  # a proxy may change the host, and the protocol
-        if self.request.method == "POST" and (foreign or headers.get("Origin", f"http://{host}").lower() not in own):
+        if self.request.method == "POST" and (
+            foreign or headers.get("Origin", f"http://{host}").lower() not in own
+        ):
             raise Refused(403, "Another site asked. Only the page of this server may.")
 
     async def answered(self, question: str, newest_of: str = "", /, **arguments: Any) -> Any:
-        """Answer in the thread of the solver or of the files; `newest_of` names a page that needs the newest only."""
+        """Answer in the thread of the solver or of the files; `newest_of` names a page that needs
+        the newest only.
+        """
         server: Server = self.settings["server"]
         if question in SOLVING:
             lane = server.solver
@@ -144,16 +181,22 @@ class _Handler(tornado.web.RequestHandler):
         return await asyncio.wrap_future(lane.submit(key, lambda: answer(question)(**arguments)))
 
     def write_error(self, status_code: int, **info: Any) -> None:
-        """Answer with the reason in words; an error of the program leaves its traceback in the terminal only."""
+        """Answer with the reason in words; an error of the program leaves its traceback in the
+        terminal only.
+        """
         exc = info["exc_info"][1]
         exc = (long_name(exc) if isinstance(exc, OSError) else None) or exc
-        self.set_status(next((status for kind, status in STATUS.items() if isinstance(exc, kind)), status_code))
+        self.set_status(
+            next((status for kind, status in STATUS.items() if isinstance(exc, kind)), status_code)
+        )
         errors = [{"field": "", "message": str(exc)}]
         if isinstance(exc, InputError):
             errors = [{"field": e.field, "message": str(e)} for e in exc.errors]
         elif isinstance(exc, pydantic.ValidationError):
             first = exc.errors()[0]
-            errors[0]["message"] = f"The request is wrong: {': '.join(map(str, (*first['loc'], first['msg'])))}."
+            errors[0]["message"] = (
+                f"The request is wrong: {': '.join(map(str, (*first['loc'], first['msg'])))}."
+            )
         elif not isinstance(exc, (tornado.web.HTTPError, WorkError)):
             errors[0]["message"] = f"Internal error, {type(exc).__name__}. The terminal shows more."
         self.finish({"errors": errors})
@@ -197,7 +240,9 @@ class _Sheet(_Handler):
     """The printable sheet of the case that the query holds as JSON."""
 
     async def get(self, token: str) -> None:
-        page = await self.answered("sheet", values=MAPPING.validate_json(self.get_query_argument("case", "{}")))
+        page = await self.answered(
+            "sheet", values=MAPPING.validate_json(self.get_query_argument("case", "{}"))
+        )
         self.set_header("Content-Security-Policy", SHEET)
         self.finish(page)
 
@@ -239,7 +284,8 @@ class Server:
     Attributes
     ----------
     hosts : set of str
-        What the header `Host` may hold: this machine's name and address with the port, and the allowed hosts.
+        What the header `Host` may hold: this machine's name and address with the port, and the
+        allowed hosts.
     forwarded : list of str
         The origins of the allowed hosts.
 
@@ -256,13 +302,17 @@ class Server:
         try:
             sockets = tornado.netutil.bind_sockets(port, HOST)
         except OSError as exc:
-            raise WorkError(f"port {port} is not free ({exc.strerror}). Give another number with --port.") from None
+            raise WorkError(
+                f"port {port} is not free ({exc.strerror}). Give another number with --port."
+            ) from None
         number = sockets[0].getsockname()[1]
         further = list(allow_hosts)
         self.hosts = {*further, *(f"{name}:{number}" for name in (HOST, "localhost"))}
         if number == USUAL:  # browsers leave it out
             self.hosts |= {HOST, "localhost"}
-        self.forwarded = [f"{protocol}://{host}" for host in further for protocol in ("http", "https")]
+        self.forwarded = [
+            f"{protocol}://{host}" for host in further for protocol in ("http", "https")
+        ]
         self.address = f"http://{HOST}:{number}/{self.token}/"
         application = tornado.web.Application(
             [
@@ -276,7 +326,9 @@ class Server:
             server=self,
             log_function=lambda handler: None,  # its lines would hold the token
         )
-        self.http = tornado.httpserver.HTTPServer(application, max_body_size=MAX_BYTES, max_header_size=65_536)
+        self.http = tornado.httpserver.HTTPServer(
+            application, max_body_size=MAX_BYTES, max_header_size=65_536
+        )
         self.http.add_sockets(sockets)
         # the compiled solver is loaded before the first request
         self.solver.submit("first", lambda: answer("picture")(answer("all_fields")()["first"]))

@@ -1,4 +1,6 @@
-"""The load spectrum of the roller on the page: its blocks in, sentences, tables and the spectrum file out."""
+"""The load spectrum of the roller on the page: its blocks in, sentences, tables and the spectrum
+file out.
+"""
 
 from __future__ import annotations
 
@@ -28,9 +30,11 @@ def spectrum(values: Values, by: str, blocks: list[dict[str, str]]) -> dict[str,
     values : mapping
         Fields of the case and options by name; the blocks replace its forces.
     by : str
-        What the amount of each block is: `share` of the time of travel, or `hours` or `distance` [m] of a shift.
+        What the amount of each block is: `share` of the time of travel, or `hours` or `distance`
+        [m] of a shift.
     blocks : list of dict
-        `name`, `amount`, `radial_force` and `axial_force` of each block, as texts; a decimal comma is a point.
+        `name`, `amount`, `radial_force` and `axial_force` of each block, as texts; a decimal comma
+        is a point.
 
     Returns
     -------
@@ -61,6 +65,8 @@ def _answer(ds: xr.Dataset) -> dict[str, Any]:
         "answer": answer.to_dict(),
         "headline": {"lead": headline.lead, "rest": headline.rest},
         "warnings": [warning_line(caution) for caution in answer.warnings],
-        "not_checked": {body: list(limits) for body, limits in answer.not_checked.items() if limits},
+        "not_checked": {
+            body: list(limits) for body, limits in answer.not_checked.items() if limits
+        },
         "tables": [limits_on_page(answer), *(part_on_page(answer, part) for part in answer.parts)],
     }

@@ -21,8 +21,12 @@ PLACE = Path(".trackroller")  # in the folder that the page works in
 ADDRESS = PLACE / "address.json"
 OPENS = PLACE / "open.html"
 _HOST = re.compile(r"([a-z0-9]([a-z0-9._-]*[a-z0-9])?|\[[0-9a-f:.]+\])(:[0-9]{1,5})?")
-# the browser shows this file first: other users of the machine can read the arguments of a process, but not this file
-_OPENING = '<!doctype html>\n<meta http-equiv="refresh" content="0; url={0}">\n<a href="{0}">Open the page</a>\n'
+# the browser shows this file first: other users of the machine can read the arguments of a process,
+# but not this file
+_OPENING = (
+    '<!doctype html>\n<meta http-equiv="refresh" content="0; url={0}">\n<a href="{0}">Open '
+    "the page</a>\n"
+)
 
 
 def checked_host(name: str) -> str:
@@ -40,12 +44,16 @@ def checked_host(name: str) -> str:
     """
     if not _HOST.fullmatch(name.lower()):
         allowed = "HOST or HOST:PORT, without http:// and path"
-        remedy = "Write the host as the address line of the browser shows it, such as 127.0.0.1:9999."
+        remedy = (
+            "Write the host as the address line of the browser shows it, such as 127.0.0.1:9999."
+        )
         raise InputError("--allow-host", name, allowed, remedy)
     return name.lower()
 
 
-def serve(folder: Path, port: int | None = None, browser: bool = True, allow_hosts: Iterable[str] = ()) -> None:
+def serve(
+    folder: Path, port: int | None = None, browser: bool = True, allow_hosts: Iterable[str] = ()
+) -> None:
     """Serve the live page for a folder until Ctrl-C.
 
     Parameters
@@ -57,7 +65,8 @@ def serve(folder: Path, port: int | None = None, browser: bool = True, allow_hos
     browser : bool
         Whether to open the page in the browser.
     allow_hosts : iterable of str
-        Further hosts, with their ports, under which the page may be asked for: those of a forwarded port.
+        Further hosts, with their ports, under which the page may be asked for: those of a forwarded
+        port.
 
     Raises
     ------
@@ -70,7 +79,9 @@ def serve(folder: Path, port: int | None = None, browser: bool = True, allow_hos
         wrong = "does not exist"
         if folder.exists():
             wrong = "is a file"
-        raise InputError("folder", str(folder), "a folder", "Create it first, or give another one.", wrong)
+        raise InputError(
+            "folder", str(folder), "a folder", "Create it first, or give another one.", wrong
+        )
     check_utf_8(folder.absolute(), "folder")
     hosts = [checked_host(name) for name in allow_hosts]
     import_nothing_from(folder)
@@ -82,7 +93,11 @@ def serve(folder: Path, port: int | None = None, browser: bool = True, allow_hos
         if not try_lock(lock):
             _tell_where(browser, hosts)
             return
-        print("trackroller: loading the solver; the page follows in a few seconds", file=sys.stderr, flush=True)
+        print(
+            "trackroller: loading the solver; the page follows in a few seconds",
+            file=sys.stderr,
+            flush=True,
+        )
         with contextlib.suppress(KeyboardInterrupt):
             asyncio.run(_until_stopped(port, browser, hosts))
         for path in (ADDRESS, OPENS):
@@ -96,7 +111,9 @@ async def _until_stopped(port: int | None, browser: bool, hosts: list[str]) -> N
     except ModuleNotFoundError as exc:
         if exc.name != "tornado":
             raise
-        raise WorkError("the page needs Tornado. Install it: pip install 'trackroller[app]'") from None
+        raise WorkError(
+            "the page needs Tornado. Install it: pip install 'trackroller[app]'"
+        ) from None
     server = Server(port or 0, hosts)
     write_private(ADDRESS, json.dumps({"address": server.address, "hosts": hosts}))
     write_private(OPENS, _OPENING.format(html.escape(server.address)))
@@ -119,12 +136,15 @@ def _tell_where(browser: bool, hosts: list[str]) -> None:
         address = known["address"]
         allowed = known["hosts"]
     except (OSError, ValueError, KeyError, TypeError):
-        raise WorkError(f"{Path.cwd()}: another server of this folder is just starting. Try again.") from None
+        raise WorkError(
+            f"{Path.cwd()}: another server of this folder is just starting. Try again."
+        ) from None
     new = [host for host in hosts if host not in allowed]
     if new:
         where = ", ".join(new)
         raise WorkError(
-            f"the page of this folder runs already and does not answer at {where}. End it, and start again."
+            f"the page of this folder runs already and does not answer at {where}. End it, and "
+            "start again."
         )
     print(f"trackroller: the page of this folder runs already at {address}", flush=True)
     if browser:

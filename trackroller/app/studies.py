@@ -1,6 +1,7 @@
 """Studies of a folder: check their texts, start, pause, list, compare and delete them.
 
-A study of the page stands in `studies/NAME.yaml`, and its results in `results/NAME/`, both in the working directory.
+A study of the page stands in `studies/NAME.yaml`, and its results in `results/NAME/`, both in the
+working directory.
 """
 
 from __future__ import annotations
@@ -20,7 +21,14 @@ from typing import Any
 from trackroller.app.worker import LOCK, PAUSE, PROGRESS, is_held
 from trackroller.environment import python
 from trackroller.errors import InputError, WorkError
-from trackroller.files import files_beside, find_beside, open_here, read_text, refuse_links, write_text
+from trackroller.files import (
+    files_beside,
+    find_beside,
+    open_here,
+    read_text,
+    refuse_links,
+    write_text,
+)
 from trackroller.report.headlines import headline_of, warning_line
 from trackroller.report.html import write_page
 from trackroller.report.numbers import rounded, unit_text
@@ -43,7 +51,8 @@ from trackroller.yaml_file import errors_by_line, parse_mapping, write_yaml
 
 TEXTS = Path("studies")
 RESULTS = Path("results")
-WRITTEN = Manifest(Path(), ".trackroller/files.jsonl")  # studies and carriages that the page wrote or read
+# studies and carriages that the page wrote or read
+WRITTEN = Manifest(Path(), ".trackroller/files.jsonl")
 MOST_CASES = 200_000  # larger studies belong on the command line, where nobody waits for a page
 PAGES = ("report.html", "explorer.html")
 _REFUSED: dict[str, Any] = {  # what the list shows of a study with a link in its folder
@@ -58,7 +67,9 @@ def folder_of(name: Any) -> StudyFolder:
     """Return the folder of a study; refuse names and links that lead out of the results folder."""
     root = RESULTS / check_name(name)
     if _is_link(root):
-        raise InputError("name", name, "a folder of this place", "Copy the folder here.", "is a link")
+        raise InputError(
+            "name", name, "a folder of this place", "Copy the folder here.", "is a link"
+        )
     refuse_links(root, "results")
     return StudyFolder(root)
 
@@ -80,8 +91,8 @@ def checked(text: str | None = None, study: dict[str, Any] | None = None) -> dic
     Returns
     -------
     dict
-        The text and the keys, so that each follows the other; what is wrong with field, line and message; the rows of
-        the plan; and doubts about values.
+        The text and the keys, so that each follows the other; what is wrong with field, line and
+        message; the rows of the plan; and doubts about values.
     """
     out: dict[str, Any] = {"text": text, "study": None, "errors": [], "plan": [], "doubts": []}
     try:
@@ -90,7 +101,10 @@ def checked(text: str | None = None, study: dict[str, Any] | None = None) -> dic
             out["text"] = write_yaml(study or {})
         out["study"] = parse_mapping(out["text"], "study file")
         parsed = _study(out["text"])
-        out |= {"plan": plan_rows(parsed, status_of(parsed, folder_of(parsed.name))), "doubts": parsed.doubts()}
+        out |= {
+            "plan": plan_rows(parsed, status_of(parsed, folder_of(parsed.name))),
+            "doubts": parsed.doubts(),
+        }
     except InputError as exc:
         out["errors"] = [{"field": e.field, "line": e.line, "message": str(e)} for e in exc.errors]
     except WorkError as exc:
@@ -117,7 +131,9 @@ def _study(text: str) -> Study:
         cases = max(study.drawn.size, searched, grown)
     if cases > MOST_CASES:
         allowed = f"at most {MOST_CASES:,} cases on this page"
-        raise InputError("design", f"{cases:,} cases", allowed, "Start larger studies with `trackroller run`.")
+        raise InputError(
+            "design", f"{cases:,} cases", allowed, "Start larger studies with `trackroller run`."
+        )
     return study
 
 
@@ -133,7 +149,9 @@ def _least_cases(study: Study) -> int:
 
 
 def start(text: str) -> dict[str, Any]:
-    """Write a study file and run the study in a process of its own; a study that was paused goes on."""
+    """Write a study file and run the study in a process of its own; a study that was paused goes
+    on.
+    """
     name = _study(text).name
     folder = folder_of(name)
     if _works(name, folder):
@@ -143,7 +161,9 @@ def start(text: str) -> dict[str, Any]:
     states = [claim(folder.root / file) for file in (PROGRESS, PAUSE)]
     Manifest(folder.root).unlink(states)
     with open_here(claim(folder.root / "page.log"), "ab") as log:
-        log.write(f"trackroller: started {datetime.datetime.now().isoformat(' ', 'seconds')}\n".encode())
+        log.write(
+            f"trackroller: started {datetime.datetime.now().isoformat(' ', 'seconds')}\n".encode()
+        )
         log.flush()
         _running[name] = subprocess.Popen(
             python("trackroller.app.worker", name),
@@ -156,7 +176,8 @@ def start(text: str) -> dict[str, Any]:
 
 
 def _write_text(name: str, text: str, folder: StudyFolder) -> None:
-    """Write the file of a study, unless somebody has written another one since the page wrote it or read it.
+    """Write the file of a study, unless somebody has written another one since the page wrote it or
+    read it.
 
     The page wrote or read what stands in its own record, and what the study was planned from.
     """
@@ -165,7 +186,13 @@ def _write_text(name: str, text: str, folder: StudyFolder) -> None:
     planned = {one["sha256"] for one in folder.record().get("inputs", {}).values()}
     if not WRITTEN.owns(path, digest) and digest_of_file(path) not in planned:
         remedy = "Give the study another name, or rename the file."
-        raise InputError("name", name, "a name whose file this page wrote", remedy, f"has a file {path} from elsewhere")
+        raise InputError(
+            "name",
+            name,
+            "a name whose file this page wrote",
+            remedy,
+            f"has a file {path} from elsewhere",
+        )
     WRITTEN.note({path.as_posix(): digest})
     write_text(path, text)
 
@@ -179,7 +206,9 @@ def pause(name: str) -> None:
     """Ask a running study to stop; its finished chunks stay."""
     folder = folder_of(name)
     if not _runs_from_page(name, folder):
-        raise WorkError(f"The study '{name}' does not run from this page, so the page cannot pause it.")
+        raise WorkError(
+            f"The study '{name}' does not run from this page, so the page cannot pause it."
+        )
     claim(folder.root / PAUSE).touch()
 
 
@@ -187,7 +216,12 @@ def delete(name: str, confirm: str = "") -> None:
     """Delete the results of a study; its file in `studies/` stays."""
     folder = folder_of(name)
     if confirm != name:
-        raise InputError("confirm", confirm, f"the name of the study, {name}", "Confirm the question of the page.")
+        raise InputError(
+            "confirm",
+            confirm,
+            f"the name of the study, {name}",
+            "Confirm the question of the page.",
+        )
     if _works(name, folder):
         raise WorkError(f"{_running_sentence(name, folder)}.")
     if not folder.root.is_dir():
@@ -197,12 +231,16 @@ def delete(name: str, confirm: str = "") -> None:
 
 
 def _works(name: str, folder: StudyFolder) -> bool:
-    """Return whether a process works on a study, started here, by an earlier server or on the command line."""
+    """Return whether a process works on a study, started here, by an earlier server or on the
+    command line.
+    """
     return _runs_from_page(name, folder) or is_held(folder.lock)
 
 
 def _runs_from_page(name: str, folder: StudyFolder) -> bool:
-    """Return whether this server or an earlier one started the process of a study, so that the page can pause it."""
+    """Return whether this server or an earlier one started the process of a study, so that the page
+    can pause it.
+    """
     return _starts(name) or is_held(folder.root / LOCK)
 
 
@@ -214,7 +252,9 @@ def _running_sentence(name: str, folder: StudyFolder) -> str:
 
 
 def _starts(name: str) -> bool:
-    """Return whether a process of this server works on a study, which takes its lock after some seconds only."""
+    """Return whether a process of this server works on a study, which takes its lock after some
+    seconds only.
+    """
     return name in _running and _running[name].poll() is None
 
 
@@ -279,22 +319,25 @@ def _entry(name: str) -> dict[str, Any] | None:
 
 def _stats(root: Path) -> Iterator[os.stat_result]:
     """Return size and date of each file; the files of a study that runs may vanish meanwhile."""
-    for place, _, names in os.walk(root):
+    for folder, _, names in os.walk(root):
         for name in names:
             with contextlib.suppress(FileNotFoundError):
-                yield os.lstat(Path(place, name))
+                yield os.lstat(Path(folder, name))
 
 
 @functools.lru_cache(1000)  # the list is made every few seconds, and a digest takes up to a second
 def _altered(path: Path, newest: float, size: int) -> str:
-    """Return what is wrong with a result that was altered after it was written; date and size are of its folder."""
+    """Return what is wrong with a result that was altered after it was written; date and size are
+    of its folder.
+    """
     return (why_altered(path) if path.is_file() else "") or ""
 
 
 def text_of(name: str) -> dict[str, Any]:
     """Return the file of a study, as it was written or as it was stored with the results.
 
-    After its folder or its file was renamed, the study has the new name, so that its run goes on there.
+    After its folder or its file was renamed, the study has the new name, so that its run goes on
+    there.
     """
     for path in (TEXTS / f"{check_name(name)}.yaml", folder_of(name).study_file):
         if path.is_file():
@@ -304,7 +347,9 @@ def text_of(name: str) -> dict[str, Any]:
                 if stated.get("name", name) != name:
                     return {"text": write_yaml(stated | {"name": name})}
             return {"text": text}
-    raise InputError("name", name, "a study of this folder", "Choose one of the list.", "is not there")
+    raise InputError(
+        "name", name, "a study of this folder", "Choose one of the list.", "is not there"
+    )
 
 
 def page_of(name: str, page: str) -> Path:
@@ -317,11 +362,15 @@ def page_of(name: str, page: str) -> Path:
 
 
 def file_of_study(name: str, file: str) -> bytes:
-    """Return the report of a study as PDF, `report.pdf`, or its cases as a workbook, `cases.xlsx`."""
-    with tempfile.TemporaryDirectory() as place:
-        path = Path(place, file)
+    """Return the report of a study as PDF, `report.pdf`, or its cases as a workbook,
+    `cases.xlsx`.
+    """
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder, file)
         if path.suffix == ".pdf":
-            return write_page(path, page_of(name, "report.html").read_text(encoding="utf-8")).read_bytes()
+            return write_page(
+                path, page_of(name, "report.html").read_text(encoding="utf-8")
+            ).read_bytes()
         return write_results(open_as_reported(folder_of(name).root), path).read_bytes()
 
 
@@ -332,7 +381,9 @@ def headlines(name: str) -> dict[str, Any]:
     return {
         "name": name,
         "cases": len(results.table),
-        "factors": {str(row[0]): f"{row[2]} {row[1]}".strip(" –") for row in table.rows} if table else {},
+        "factors": {str(row[0]): f"{row[2]} {row[1]}".strip(" –") for row in table.rows}
+        if table
+        else {},
         "numbers": _numbers(results),
         "short": _headline(results),
     }
@@ -350,7 +401,10 @@ def _numbers(results: Results) -> dict[str, list[str]]:
     """Return lowest, middle and highest value of each output over the cases that roll."""
     out = {}
     for one in outputs(
-        results.data, results.dims, default_names(results.data, results.dims, results.dims), scale="natural"
+        results.data,
+        results.dims,
+        default_names(results.data, results.dims, results.dims),
+        scale="natural",
     ):
         values = sorted(v for v in one.values.tolist() if math.isfinite(v))
         if values:

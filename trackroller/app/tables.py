@@ -1,4 +1,6 @@
-"""Tables of a record as the live page shows them: heads with their definitions, cells and bars as texts."""
+"""Tables of a record as the live page shows them: heads with their definitions, cells and bars as
+texts.
+"""
 
 from __future__ import annotations
 
@@ -11,11 +13,14 @@ from trackroller.report.pictures.uses import UseBars
 from trackroller.report.tables.rows import Rows, rows_of
 from trackroller.results.answer import Answer, Part
 
-SHOWN = ("limit", "body", "state", "value", "used_low", "low", "block")  # columns of the limits on the page
+# columns of the limits on the page
+SHOWN = ("limit", "body", "state", "value", "used_low", "low", "block")
 
 
 def limits_on_page(answer: Answer, shown: Sequence[str] = SHOWN) -> dict[str, Any]:
-    """Return the table of limits with its bars, without the columns that stand on the sheet alone."""
+    """Return the table of limits with its bars, without the columns that stand on the sheet
+    alone.
+    """
     rows = rows_of(answer, [column for column in answer.columns if column.name in shown])
     bars = UseBars.of(answer)
     shown_bars: dict[str, Any] = {"bars": [], "axis": ""}
@@ -27,9 +32,18 @@ def limits_on_page(answer: Answer, shown: Sequence[str] = SHOWN) -> dict[str, An
 
 def part_on_page(answer: Answer, part: Part) -> dict[str, Any]:
     """Return a further table with its heads and cells as texts."""
-    return {"name": part.name, "title": part.title, **_texts(part_rows(answer, part)), "note": part.note}
+    return {
+        "name": part.name,
+        "title": part.title,
+        **_texts(part_rows(answer, part)),
+        "note": part.note,
+    }
 
 
 def _texts(rows: Rows) -> dict[str, Any]:
     cells = [[asdict(cell) for cell in row] for row in rows.cells]
-    return {"heads": [asdict(head) for head in rows.heads], "rows": cells, "shared": list(rows.shared)}
+    return {
+        "heads": [asdict(head) for head in rows.heads],
+        "rows": cells,
+        "shared": list(rows.shared),
+    }

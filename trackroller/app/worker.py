@@ -1,8 +1,9 @@
 """Run one study in a process of its own, which outlives the page and its server.
 
-`python -m trackroller.app.worker NAME` solves `studies/NAME.yaml` in the working directory and makes its report. It
-holds the lock `results/NAME/.page.lock` as long as it lives, writes how far it is into `results/NAME/.page.json`, and
-stops as at Ctrl-C once the file `results/NAME/.pause` is there.
+`python -m trackroller.app.worker NAME` solves `studies/NAME.yaml` in the working directory and
+makes its report. It holds the lock `results/NAME/.page.lock` as long as it lives, writes how far it
+is into `results/NAME/.page.json`, and stops as at Ctrl-C once the file `results/NAME/.pause` is
+there.
 """
 
 from __future__ import annotations
@@ -18,7 +19,13 @@ from pathlib import Path
 from typing import Any
 
 from trackroller.errors import InputError, WorkError
-from trackroller.files import confine, interrupts_wait_for_files, refuse_links, try_lock, wait_for_lock
+from trackroller.files import (
+    confine,
+    interrupts_wait_for_files,
+    refuse_links,
+    try_lock,
+    wait_for_lock,
+)
 from trackroller.study.store.folder import StudyFolder
 from trackroller.study.store.manifest import Manifest
 from trackroller.study.store.put import claim, put_unlisted
@@ -33,15 +40,18 @@ class Progress:
     """How far a study is, kept in a file for the page."""
 
     def __init__(self, root: Path) -> None:
-        self.place = claim(root / PROGRESS)
-        self.told: dict[str, Any] = {}
+        self.file = claim(root / PROGRESS)
+        self.record: dict[str, Any] = {}
         self.written = 0.0
 
-    def say(self, at_once: bool = True, **told: Any) -> None:
+    def say(self, at_once: bool = True, **facts: Any) -> None:
         """Add facts to the record, and write it at once or if the last record is old."""
-        self.told |= told
+        self.record |= facts
         if at_once or time.monotonic() - self.written > TICK:
-            put_unlisted(self.place, lambda beside: beside.write_text(json.dumps(self.told), encoding="utf-8"))
+            put_unlisted(
+                self.file,
+                lambda beside: beside.write_text(json.dumps(self.record), encoding="utf-8"),
+            )
             self.written = time.monotonic()
 
     def started(self, total: int, done: int) -> None:
@@ -50,7 +60,9 @@ class Progress:
 
     def advanced(self, count: int, failed: int) -> None:
         """Record solved cases, of which some failed."""
-        self.say(at_once=False, done=self.told["done"] + count, failed=self.told["failed"] + failed)
+        self.say(
+            at_once=False, done=self.record["done"] + count, failed=self.record["failed"] + failed
+        )
 
 
 def is_held(path: Path) -> bool:
@@ -94,11 +106,15 @@ def run(name: str) -> None:
             progress.say(step="stopped", error=str(exc))
         except Exception as exc:
             traceback.print_exc()
-            progress.say(step="stopped", error=f"internal error, {type(exc).__name__}; see {root / 'page.log'}")
+            progress.say(
+                step="stopped",
+                error=f"internal error, {type(exc).__name__}; see {root / 'page.log'}",
+            )
 
 
 def _work(name: str, progress: Progress) -> None:
-    from trackroller.report.build import build_report  # heavy: SALib; the page shows "starting" meanwhile
+    # heavy: SALib; the page shows "starting" meanwhile
+    from trackroller.report.build import build_report
     from trackroller.report.explorer.page import write_explorer
     from trackroller.results.solving import run_any  # heavy: analysis
     from trackroller.results.stored_study import open_study
@@ -108,7 +124,9 @@ def _work(name: str, progress: Progress) -> None:
     progress.say(failed=status_of(study, folder).failed)  # in the chunks that an earlier run solved
     ledger = run_any(study, started=progress.started, progress=progress.advanced)
     status = status_of(study, folder)
-    progress.say(step="making the report", total=status.total, done=status.done, failed=status.failed)
+    progress.say(
+        step="making the report", total=status.total, done=status.done, failed=status.failed
+    )
     build_report(ledger.folder, lambda line: progress.say(step=line))
     progress.say(step="making the explorer")
     write_explorer(open_study(ledger.folder.root), ledger.folder.root / "explorer.html")
@@ -116,6 +134,7 @@ def _work(name: str, progress: Progress) -> None:
 
 
 if __name__ == "__main__":
-    signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell may start the server with SIGINT ignored
+    # a shell may start the server with SIGINT ignored
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     confine(Path.cwd())
     run(sys.argv[1])

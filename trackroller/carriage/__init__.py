@@ -1,6 +1,7 @@
 """A carriage on track rollers: the loads of each roller from masses, motion and forces.
 
-The module itself can be called: `trackroller.carriage` is both this room and the function `solve_carriage`.
+The module itself can be called: `trackroller.carriage` is both this room and the function
+`solve_carriage`.
 """
 
 from __future__ import annotations

@@ -1,4 +1,6 @@
-"""The carriage with which a user starts: of the live page, and of `trackroller carriage --example`."""
+"""The carriage with which a user starts: of the live page, and of `trackroller carriage
+--example`.
+"""
 
 EXAMPLE = """\
 # A shuttle of 40 kg with an off-centre payload: four rollers with upright axes hold two rails between them.

@@ -1,4 +1,6 @@
-"""The fields of a carriage that a study varies: which of them a carriage has, and the carriage with other values."""
+"""The fields of a carriage that a study varies: which of them a carriage has, and the carriage with
+other values.
+"""
 
 from __future__ import annotations
 
@@ -11,19 +13,30 @@ import numpy as np
 
 from trackroller.carriage.file import Carriage, LoadCase, PointMass, Preload, check_curves
 from trackroller.errors import unknown_name
-from trackroller.parameters.carriage_fields import AXES, OF_LOAD_CASE, OF_ROLLER, OF_WHOLE, PREFIX, split_field, word_of
+from trackroller.parameters.carriage_fields import (
+    AXES,
+    OF_LOAD_CASE,
+    OF_ROLLER,
+    OF_WHOLE,
+    PREFIX,
+    split_field,
+    word_of,
+)
 
 
 def fields_of(whole: Carriage) -> list[str]:
     """Return the names of the fields that a carriage has.
 
-    A field of all load cases is one of the carriage if at least one load case states it; each load case has all fields
-    of its own. A carriage without payload, drive or pairs has no fields of them.
+    A field of all load cases is one of the carriage if at least one load case states it; each load
+    case has all fields of its own. A carriage without payload, drive or pairs has no fields of
+    them.
     """
     known = [name for name in OF_WHOLE if _has(whole, name.removeprefix(PREFIX))]
     known += [name for name in OF_LOAD_CASE if any(_states(case, name) for case in whole.cases)]
     known += [f"{name}_in_{word_of(case.name)}" for case in whole.cases for name in OF_LOAD_CASE]
-    return known + [f"{name}_of_{word_of(roller.name)}" for roller in whole.rollers for name in OF_ROLLER]
+    return known + [
+        f"{name}_of_{word_of(roller.name)}" for roller in whole.rollers for name in OF_ROLLER
+    ]
 
 
 def check_fields(whole: Carriage, names: list[str], where: str = "factors") -> None:
@@ -42,7 +55,8 @@ def changed(whole: Carriage, values: Mapping[str, float]) -> Carriage:
     whole : Carriage
         The carriage.
     values : mapping of str to float
-        Values by the names of `fields_of`, in the units of `trackroller.parameters.carriage_fields`.
+        Values by the names of `fields_of`, in the units of
+        `trackroller.parameters.carriage_fields`.
 
     Raises
     ------
@@ -51,18 +65,19 @@ def changed(whole: Carriage, values: Mapping[str, float]) -> Carriage:
 
     Notes
     -----
-    `carriage_wheelbase` and `carriage_gauge` move all rollers in proportion to their distance from the middle of the
-    outermost ones. `carriage_payload` keeps the proportions of several payloads, and their places are moved together.
+    `carriage_wheelbase` and `carriage_gauge` move all rollers in proportion to their distance from
+    the middle of the outermost ones. `carriage_payload` keeps the proportions of several payloads,
+    and their places are moved together.
     """
     check_fields(whole, list(values))
     new = whole
     for name, value in values.items():
-        head, place = split_field(name) or (name, "")
+        head, part = split_field(name) or (name, "")
         field = head.removeprefix(PREFIX)
         if head in OF_LOAD_CASE:
-            new = _in_cases(new, field, place, value)
+            new = _in_cases(new, field, part, value)
         elif head in OF_ROLLER:
-            new = _of_roller(new, field, place, value)
+            new = _of_roller(new, field, part, value)
         else:
             new = _OF_WHOLE[field](new, value)
     check_curves(new.cases, new.rollers)
@@ -84,13 +99,15 @@ def _has(whole: Carriage, field: str) -> bool:
     return {"payload": bool(whole.payloads), "drive": whole.drive is not None}.get(part, True)
 
 
-def _in_cases(whole: Carriage, field: str, place: str, value: float) -> Carriage:
-    """Return a carriage with a value of a load case, of each load case that states one if `place` is ''."""
+def _in_cases(whole: Carriage, field: str, part: str, value: float) -> Carriage:
+    """Return a carriage with a value of a load case, of each load case that states one if `part`
+    is ''.
+    """
     own: dict[str, Any] = {field: math.radians(value) if field in ("gradient", "cant") else value}
 
     def new(case: LoadCase) -> LoadCase:
-        if place:
-            meant = word_of(case.name) == place
+        if part:
+            meant = word_of(case.name) == part
         else:
             meant = _states(case, field)
         return replace(case, **own) if meant else case
@@ -98,10 +115,10 @@ def _in_cases(whole: Carriage, field: str, place: str, value: float) -> Carriage
     return replace(whole, cases=tuple(map(new, whole.cases)))
 
 
-def _of_roller(whole: Carriage, field: str, place: str, value: float) -> Carriage:
+def _of_roller(whole: Carriage, field: str, part: str, value: float) -> Carriage:
     rollers = []
     for roller in whole.rollers:
-        if word_of(roller.name) == place:
+        if word_of(roller.name) == part:
             roller = replace(roller, at=_moved(roller.at, field, value))
         rollers.append(roller)
     return replace(whole, rollers=tuple(rollers))
@@ -120,7 +137,9 @@ def _stretched(axis: int) -> Callable[[Carriage, float], Carriage]:
         distance = np.ptp(places)
         new = middle + (places - middle) * value / distance
         pairs = zip(whole.rollers, new, strict=True)
-        return replace(whole, rollers=tuple(replace(r, at=_moved(r.at, AXES[axis], x)) for r, x in pairs))
+        return replace(
+            whole, rollers=tuple(replace(r, at=_moved(r.at, AXES[axis], x)) for r, x in pairs)
+        )
 
     return change
 
@@ -131,7 +150,9 @@ def _payload(whole: Carriage, value: float) -> Carriage:
     if total > 0:
         shares = [mass.value / total for mass in whole.payloads]
     pairs = zip(whole.payloads, shares, strict=True)
-    return replace(whole, payloads=tuple(PointMass(value * share, mass.at) for mass, share in pairs))
+    return replace(
+        whole, payloads=tuple(PointMass(value * share, mass.at) for mass, share in pairs)
+    )
 
 
 def _payload_place(axis: int) -> Callable[[Carriage, float], Carriage]:
@@ -140,7 +161,10 @@ def _payload_place(axis: int) -> Callable[[Carriage, float], Carriage]:
         if not weights.sum() > 0:
             weights = np.ones(len(weights))
         step = value - float(np.average([one.at[axis] for one in whole.payloads], weights=weights))
-        moved = (PointMass(one.value, _moved(one.at, AXES[axis], one.at[axis] + step)) for one in whole.payloads)
+        moved = (
+            PointMass(one.value, _moved(one.at, AXES[axis], one.at[axis] + step))
+            for one in whole.payloads
+        )
         return replace(whole, payloads=tuple(moved))
 
     return change

@@ -31,7 +31,14 @@ from trackroller.numerics.units import split_quantity
 from trackroller.parameters import MATERIAL_FIELDS
 from trackroller.roller.aliases import ALIASES
 from trackroller.roller.case import Case
-from trackroller.roller.duty import STROKES, checked_duty, in_hours, is_of_strokes, refuse_overrollings, strokes_in
+from trackroller.roller.duty import (
+    STROKES,
+    checked_duty,
+    in_hours,
+    is_of_strokes,
+    refuse_overrollings,
+    strokes_in,
+)
 from trackroller.roller.requirement import Requirement, checked_requirement
 from trackroller.roller.settings import LOADS, checked_case
 from trackroller.yaml_file import errors_by_line, parse_mapping
@@ -40,12 +47,35 @@ FILE_FIELDS = (
     *("name", "description", "mass", "payloads", "drive", "rollers", "preload", "cases"),
     *("distance", "duty"),
 )
-ROLLER_FIELDS = ("at", "pushes", "x_R", "kind", "roller", "stiffness", "bearing", "structure", "catalogue")
-CASE_FIELDS = (*("name", "share", "acceleration", "speed", "curve_radius", "gradient", "cant", "payload", "forces"),)
+ROLLER_FIELDS = (
+    "at",
+    "pushes",
+    "x_R",
+    "kind",
+    "roller",
+    "stiffness",
+    "bearing",
+    "structure",
+    "catalogue",
+)
+CASE_FIELDS = (
+    *(
+        "name",
+        "share",
+        "acceleration",
+        "speed",
+        "curve_radius",
+        "gradient",
+        "cant",
+        "payload",
+        "forces",
+    ),
+)
 KINDS = ("locating", "floating")
 OF_LOADS = (*LOADS, "velocity")  # parameters of a roller that its carriage gives
 SQUARE = 1e-6  # largest cosine between directions that count as perpendicular
-IN_LINE = 1e-3  # of the distance: rollers of a pair press against each other if they are off their line by less
+# of the distance: rollers of a pair press against each other if they are off their line by less
+IN_LINE = 1e-3
 _POINT = "three numbers [x, y, z] in mm: x forward, y left, z up"
 _AT = "Write at: [0, 0, 60]."
 
@@ -60,7 +90,8 @@ class PointMass:
 
 @dataclass(frozen=True)
 class CatalogueRoller:
-    """What a maker's catalogue states of a roller, with the keys of the field `catalogue` of a case.
+    """What a maker's catalogue states of a roller, with the keys of the field `catalogue` of a
+    case.
 
     Parameters
     ----------
@@ -73,7 +104,8 @@ class CatalogueRoller:
     offset : float
         Load factor that counts without any load [1]; NaN for that of the law.
     moment : float
-        Permissible moment [N mm], which does not count here: the statics of a carriage knows no moment of a roller.
+        Permissible moment [N mm], which does not count here: the statics of a carriage knows no
+        moment of a roller.
     """
 
     radial_force: float
@@ -89,7 +121,9 @@ class CatalogueRoller:
 
     def life(self, load_factor: np.ndarray) -> np.ndarray:
         """Return the life at load factors [1], in km."""
-        return catalogue_km(load_factor, np.asarray(self.basic_life), np.asarray(self.law), self.offset)
+        return catalogue_km(
+            load_factor, np.asarray(self.basic_life), np.asarray(self.law), self.offset
+        )
 
 
 @dataclass(frozen=True)
@@ -138,7 +172,9 @@ class MountedRoller:
 
 @dataclass(frozen=True)
 class Preload:
-    """Preload of two rollers that press against each other: the force between them [N], or their play [mm]."""
+    """Preload of two rollers that press against each other: the force between them [N], or their
+    play [mm].
+    """
 
     pair: tuple[str, str]
     force: float = 0.0
@@ -232,7 +268,8 @@ def load_carriage(source: Path | str | Mapping[str, Any]) -> Carriage:
     Parameters
     ----------
     source : pathlib.Path, str or mapping
-        The YAML file, or a mapping with its keys, in which `roller` may be a mapping or a `Case`, too.
+        The YAML file, or a mapping with its keys, in which `roller` may be a mapping or a `Case`,
+        too.
 
     Raises
     ------
@@ -244,7 +281,9 @@ def load_carriage(source: Path | str | Mapping[str, Any]) -> Carriage:
         return carriage_of(values)
     if not isinstance(source, str | Path):
         allowed = "the name of a carriage file, or a mapping with its keys"
-        raise InputError("carriage", type(source).__name__, allowed, "Write tr.carriage('shuttle.yaml').")
+        raise InputError(
+            "carriage", type(source).__name__, allowed, "Write tr.carriage('shuttle.yaml')."
+        )
     path = Path(source)
     text = read_text(path, "carriage file")
     values = parse_mapping(text, str(path))
@@ -255,8 +294,8 @@ def load_carriage(source: Path | str | Mapping[str, Any]) -> Carriage:
 def written_out(source: Path | str | Mapping[str, Any], field: str = "carriage") -> dict[str, Any]:
     """Return the keys of a carriage file with the values of its rollers in place of their files.
 
-    A study keeps them, so that it can be solved without these files. Values of a roller that its file does not name
-    are left out.
+    A study keeps them, so that it can be solved without these files. Values of a roller that its
+    file does not name are left out.
 
     Parameters
     ----------
@@ -268,7 +307,8 @@ def written_out(source: Path | str | Mapping[str, Any], field: str = "carriage")
     Raises
     ------
     InputError
-        As `load_carriage`; or if a roller states its material in its own file, because a study names materials.
+        As `load_carriage`; or if a roller states its material in its own file, because a study
+        names materials.
     """
     values = mapping_of(source)
     if not isinstance(values, Mapping):
@@ -290,14 +330,18 @@ def written_out(source: Path | str | Mapping[str, Any], field: str = "carriage")
 def _stated(roller: MountedRoller) -> dict[str, Any]:
     """Return what the file of a roller states, as values of YAML."""
     assert roller.case is not None
-    given = {name: v for name, v in roller.case.as_dict().items() if name not in roller.case.not_given}
+    given = {
+        name: v for name, v in roller.case.as_dict().items() if name not in roller.case.not_given
+    }
     for name in MATERIAL_FIELDS:
         if not isinstance(given.get(name, ""), str):
             remedy = "Add it to the database by `trackroller materials add`, and write its name."
             where = f"rollers.{roller.name}.roller.{name}"
             raise InputError(where, "a mapping", "the name of a material", remedy, "is no name")
     plain = {name: value for name, value in given.items() if value is not None and value != ""}
-    options = {key: list(value) for key, value in roller.options.items() if isinstance(value, tuple)}
+    options = {
+        key: list(value) for key, value in roller.options.items() if isinstance(value, tuple)
+    }
     return {**plain, **roller.options, **options}
 
 
@@ -311,12 +355,17 @@ def carriage_of(values: Mapping[str, Any]) -> Carriage:
         ("mass", lambda value: _mass(value, "mass")),
         (
             "payloads",
-            lambda value: tuple(_mass(mass, f"payloads[{i + 1}]") for i, mass in enumerate(_list(value, "payloads"))),
+            lambda value: tuple(
+                _mass(mass, f"payloads[{i + 1}]") for i, mass in enumerate(_list(value, "payloads"))
+            ),
         ),
         ("drive", _drive),
         ("rollers", _rollers),
         ("cases", _cases),
-        ("distance", lambda value: _number(value, "distance", "m", "a distance > 0 per shift", lower=1e-9)),
+        (
+            "distance",
+            lambda value: _number(value, "distance", "m", "a distance > 0 per shift", lower=1e-9),
+        ),
         ("duty", checked_duty),
     ):
         with wrong.part():
@@ -338,7 +387,9 @@ def carriage_of(values: Mapping[str, Any]) -> Carriage:
     with wrong.part():
         fields["name"] = checked_text(str(values.get("name", "carriage")), "name")
     with wrong.part():
-        fields["description"] = checked_text(str(values.get("description", "")), "description", lines=True)
+        fields["description"] = checked_text(
+            str(values.get("description", "")), "description", lines=True
+        )
     wrong.check()
     return Carriage(**fields)
 
@@ -349,7 +400,13 @@ def _by_strokes(
     """Return the duty of a carriage in hours, and its strokes."""
     if STROKES[2] in duty:
         wrong = "is not known of a carriage: it follows from the places of its rollers"
-        raise InputError(f"duty.{STROKES[2]}", duty[STROKES[2]], "strokes_per_day and stroke", "Remove it.", wrong)
+        raise InputError(
+            f"duty.{STROKES[2]}",
+            duty[STROKES[2]],
+            "strokes_per_day and stroke",
+            "Remove it.",
+            wrong,
+        )
     for roller in rollers:
         if roller.case is None:
             given = None
@@ -371,14 +428,23 @@ def _check_payloads(entries: Sequence[Mapping[str, Any]], fields: Mapping[str, A
             allowed = "a share of the payloads of the carriage"
             remedy = "Add payloads: [{value: 60 kg, at: [80, 0, 150]}], or remove payload here."
             raise InputError(
-                f"case '{case.name}'.payload", entry["payload"], allowed, remedy, "has no payload to count"
+                f"case '{case.name}'.payload",
+                entry["payload"],
+                allowed,
+                remedy,
+                "has no payload to count",
             )
 
 
-_NEEDED = {"mass": "the carriage's own mass", "rollers": "the rollers by name", "cases": "a list of load cases"}
+_NEEDED = {
+    "mass": "the carriage's own mass",
+    "rollers": "the rollers by name",
+    "cases": "a list of load cases",
+}
 _EXAMPLES = {
     "mass": "mass: {value: 40 kg, at: [0, 0, 60]}",
-    "rollers": "rollers: {FL: {at: [150, 40, 0], pushes: [0, -1, 0], x_R: [0, 0, 1], kind: locating, roller: r.yaml}}",
+    "rollers": "rollers: {FL: {at: [150, 40, 0], pushes: [0, -1, 0], x_R: [0, 0, 1], kind: "
+    "locating, roller: r.yaml}}",
     "cases": "cases: [{name: run, share: 1, speed: 1 m/s}]",
 }
 
@@ -393,11 +459,15 @@ def _entries(value: Any, where: str, names: Sequence[str], example: str) -> Mapp
 
 def _list(value: Any, where: str) -> list[Any]:
     if not isinstance(value, (list, tuple)):
-        raise InputError(where, value, "a list", "Begin each entry with '- ', or write [ ] around them.")
+        raise InputError(
+            where, value, "a list", "Begin each entry with '- ', or write [ ] around them."
+        )
     return list(value)
 
 
-def _number(value: Any, where: str, unit: str, allowed: str, lower: float = -1e12, upper: float = 1e12) -> float:
+def _number(
+    value: Any, where: str, unit: str, allowed: str, lower: float = -1e12, upper: float = 1e12
+) -> float:
     if unit != "-":
         allowed = f"{allowed} [{unit}]"
     return number_in(value, where, allowed, lower, upper, unit)
@@ -454,7 +524,11 @@ def _rollers(value: Any) -> tuple[MountedRoller, ...]:
     if not any(roller.locating for roller in rollers):
         remedy = "Write kind: locating for the rollers that guide the carriage along their axes."
         raise InputError(
-            "rollers", ", ".join(r.name for r in rollers), "at least one locating roller", remedy, "float all"
+            "rollers",
+            ", ".join(r.name for r in rollers),
+            "at least one locating roller",
+            remedy,
+            "float all",
         )
     return tuple(rollers)
 
@@ -462,7 +536,10 @@ def _rollers(value: Any) -> tuple[MountedRoller, ...]:
 def _roller(name: str, value: Any, files: dict[object, Any]) -> MountedRoller:
     where = f"rollers.{name}"
     entry = _entries(
-        value, where, ROLLER_FIELDS, "{at: [150, 40, 0], pushes: [0, -1, 0], x_R: [0, 0, 1], roller: r.yaml}"
+        value,
+        where,
+        ROLLER_FIELDS,
+        "{at: [150, 40, 0], pushes: [0, -1, 0], x_R: [0, 0, 1], roller: r.yaml}",
     )
     wrong = Collector()
     fields: dict[str, Any] = {}
@@ -489,7 +566,11 @@ def _roller(name: str, value: Any, files: dict[object, Any]) -> MountedRoller:
         fields["stiffness"] = None
         if "stiffness" in entry:
             fields["stiffness"] = _stiffness(entry["stiffness"], f"{where}.stiffness")
-        series = [_stiffness(entry[key], f"{where}.{key}") for key in ("bearing", "structure") if key in entry]
+        series = [
+            _stiffness(entry[key], f"{where}.{key}")
+            for key in ("bearing", "structure")
+            if key in entry
+        ]
         fields["compliance"] = tuple(sum(1 / one[i] for one in series) for i in (0, 1))
     with wrong.part():
         fields["catalogue"] = None
@@ -501,9 +582,15 @@ def _roller(name: str, value: Any, files: dict[object, Any]) -> MountedRoller:
     if fields["catalogue"] is not None and case is not None and case.catalogue is not None:
         allowed = "the catalogue once"
         remedy = "Remove it here: the one in the file of the roller counts its moment, too."
-        raise InputError(f"{where}.catalogue", entry["catalogue"], allowed, remedy, "stands in both places")
-    optional = {key: fields[key] for key in ("stiffness", "compliance", "catalogue")} | fields["roller"]
-    return MountedRoller(name, fields["at"], fields["pushes"], fields["x_R"], kind == KINDS[0], **optional)
+        raise InputError(
+            f"{where}.catalogue", entry["catalogue"], allowed, remedy, "stands in both places"
+        )
+    optional = {key: fields[key] for key in ("stiffness", "compliance", "catalogue")} | fields[
+        "roller"
+    ]
+    return MountedRoller(
+        name, fields["at"], fields["pushes"], fields["x_R"], kind == KINDS[0], **optional
+    )
 
 
 def _check_directions(where: str, pushes: np.ndarray, axis: np.ndarray) -> None:
@@ -512,20 +599,31 @@ def _check_directions(where: str, pushes: np.ndarray, axis: np.ndarray) -> None:
     if abs(pushes @ axis) > SQUARE:
         allowed = "a direction perpendicular to x_R"
         remedy = "A roller presses at right angles to its axis: change pushes or x_R."
-        raise InputError(f"{where}.pushes", pushes.tolist(), allowed, remedy, f"stands at {angle:.6g} deg to x_R")
+        raise InputError(
+            f"{where}.pushes", pushes.tolist(), allowed, remedy, f"stands at {angle:.6g} deg to x_R"
+        )
     for key, way in (("pushes", pushes), ("x_R", axis)):
         if abs(way[0]) > SQUARE:
             allowed = "a direction across the track, whose x is 0"
-            raise InputError(f"{where}.{key}", way.tolist(), allowed, "The carriage travels along x: write x as 0.")
+            raise InputError(
+                f"{where}.{key}",
+                way.tolist(),
+                allowed,
+                "The carriage travels along x: write x as 0.",
+            )
 
 
 def _case(value: Any, where: str, files: dict[object, Any]) -> dict[str, Any]:
     """Return case, options and given values of a roller: a file, a mapping or a `Case`.
 
-    Rollers may share a file or a mapping, which is read once and kept in `files`; its errors are stated once.
+    Rollers may share a file or a mapping, which is read once and kept in `files`; its errors are
+    stated once.
     """
     if isinstance(value, Case):
-        return {"case": value, "given": {n: v for n, v in value.as_dict().items() if n not in value.not_given}}
+        return {
+            "case": value,
+            "given": {n: v for n, v in value.as_dict().items() if n not in value.not_given},
+        }
     shared: object = id(value) if isinstance(value, Mapping) else str(value)
     if shared not in files:
         files[shared] = {}  # stays where the roller is wrong
@@ -537,7 +635,12 @@ def _read_roller(value: Any, where: str) -> dict[str, Any]:
     """Return case, options and given values of the roller of a mapping or a file."""
     if isinstance(value, Mapping):
         case, options, beside = checked_case(value)
-        return {"case": case, "options": options, "given": dict(value), "required": _required(beside)}
+        return {
+            "case": case,
+            "options": options,
+            "given": dict(value),
+            "required": _required(beside),
+        }
     path = find_beside(value, where)
     text = read_text(path, "roller file")
     given = parse_mapping(text, str(path))
@@ -548,8 +651,10 @@ def _read_roller(value: Any, where: str) -> dict[str, Any]:
 
 def _required(beside: Mapping[str, Any]) -> dict[str, Requirement]:
     """Return what the file of a roller requires, from its entries beside the case."""
-    found: dict[str, Requirement] = checked_requirement(beside.get("requirement", {}), beside.get("duty"))
-    return found
+    requirements: dict[str, Requirement] = checked_requirement(
+        beside.get("requirement", {}), beside.get("duty")
+    )
+    return requirements
 
 
 def _stiffness(value: Any, where: str) -> tuple[float, float]:
@@ -561,14 +666,20 @@ def _stiffness(value: Any, where: str) -> tuple[float, float]:
     check_names(f"{where}: key", entry, ("radial", "axial"))
     radial = entry.get("radial", entry.get("axial"))
     both = (radial, entry.get("axial", radial))
-    return tuple(_number(one, where, "N/mm", "a stiffness > 0", lower=1e-9, upper=1e15) for one in both)  # type: ignore[return-value]
+    return tuple(
+        _number(one, where, "N/mm", "a stiffness > 0", lower=1e-9, upper=1e15) for one in both
+    )  # type: ignore[return-value]
 
 
 def _catalogue(value: Any, where: str) -> CatalogueRoller:
-    """Return the entries of a maker's catalogue, which are those of the field `catalogue` of a case."""
+    """Return the entries of a maker's catalogue, which are those of the field `catalogue` of a
+    case.
+    """
     if not isinstance(value, Mapping):
         example = "{radial_force: 9700 N, axial_force: 4000 N, basic_life: 174 km, law: dry}"
-        raise InputError(where, value, "a mapping of the values of a catalogue", f"Write {example}.")
+        raise InputError(
+            where, value, "a mapping of the values of a catalogue", f"Write {example}."
+        )
     return CatalogueRoller(**replace(CATALOGUE, name=where).canonical(value))
 
 
@@ -585,7 +696,10 @@ def _preloads(value: Any, rollers: Sequence[MountedRoller]) -> tuple[Preload, ..
             twice = paired & {*preload.pair}
             if twice:
                 raise InputError(
-                    f"{where}.pair", sorted(twice)[0], "each roller in one pair", "Remove one of the pairs."
+                    f"{where}.pair",
+                    sorted(twice)[0],
+                    "each roller in one pair",
+                    "Remove one of the pairs.",
                 )
             paired |= {*preload.pair}
     wrong.check()
@@ -599,16 +713,23 @@ def _preload(value: Any, where: str, known: Mapping[str, MountedRoller]) -> Prel
         raise InputError(f"{where}.pair", pair, "two rollers", "Write pair: [FL, FR].")
     check_names(f"{where}.pair", map(str, pair), known)
     if ("force" in entry) == ("play" in entry):
-        raise InputError(where, dict(entry), "either force or play", "Write force: 100 N, or play: 0.05 mm.")
+        raise InputError(
+            where, dict(entry), "either force or play", "Write force: 100 N, or play: 0.05 mm."
+        )
     one, other = (known[str(name)] for name in pair)
     way = other.at - one.at
     off = np.linalg.norm(way - (way @ one.pushes) * one.pushes)
-    if one.pushes @ other.pushes > -1 + SQUARE or off > IN_LINE * max(float(np.linalg.norm(way)), 1e-9):
+    if one.pushes @ other.pushes > -1 + SQUARE or off > IN_LINE * max(
+        float(np.linalg.norm(way)), 1e-9
+    ):
         allowed = "two rollers that press against each other on one line"
-        raise InputError(f"{where}.pair", list(pair), allowed, "Name the roller on the other side of the rails.")
+        raise InputError(
+            f"{where}.pair", list(pair), allowed, "Name the roller on the other side of the rails."
+        )
     if "force" in entry:
         return Preload(
-            (one.name, other.name), _number(entry["force"], f"{where}.force", "N", "a force >= 0", lower=0.0)
+            (one.name, other.name),
+            _number(entry["force"], f"{where}.force", "N", "a force >= 0", lower=0.0),
         )
     play = _number(entry["play"], f"{where}.play", "mm", "a play >= 0", lower=0.0)
     return Preload((one.name, other.name), play=play)
@@ -623,21 +744,31 @@ def _cases(value: Any) -> tuple[LoadCase, ...]:
             cases.append(_load_case(entry, i + 1))
     wrong.check()
     if not cases:
-        raise InputError("cases", value, "a list of load cases that is not empty", f"Write {_EXAMPLES['cases']}.")
+        raise InputError(
+            "cases", value, "a list of load cases that is not empty", f"Write {_EXAMPLES['cases']}."
+        )
     names = [case.name for case in cases]
     for name in names:
         if names.count(name) > 1:
-            raise InputError("cases", name, "a name of its own for each load case", "Rename one of the cases.")
+            raise InputError(
+                "cases", name, "a name of its own for each load case", "Rename one of the cases."
+            )
     shares = [case.share for case in cases]
     if not any("share" in entry for entry in entries):
         return tuple(_with_share(case, 1 / len(cases)) for case in cases)
     for case, entry in zip(cases, entries, strict=True):
         if len(cases) > 1 and "share" not in entry:
             allowed = "the share of the travel, as other cases have one"
-            raise InputError(f"case '{case.name}'.share", None, allowed, "Add share: 0.5, or remove all shares.")
+            raise InputError(
+                f"case '{case.name}'.share", None, allowed, "Add share: 0.5, or remove all shares."
+            )
     if abs(sum(shares) - 1) > 1e-6:
         raise InputError(
-            "cases", f"{sum(shares):.6g}", "shares that add up to 1", "Change the shares.", "is the sum of the shares"
+            "cases",
+            f"{sum(shares):.6g}",
+            "shares that add up to 1",
+            "Change the shares.",
+            "is the sum of the shares",
         )
     return tuple(cases)
 
@@ -674,13 +805,20 @@ def _angle(value: Any, where: str) -> float:
         raise InputError(where, value, allowed, f"Write {value} % or {value} deg.", "has no unit")
     if parts[1] == "%":
         return math.atan(float(parts[0]) / 100.0)
-    return math.radians(_number(value, where, "deg", "a slope in % or degrees, from -90 to 90", -90.0, 90.0))
+    return math.radians(
+        _number(value, where, "deg", "a slope in % or degrees, from -90 to 90", -90.0, 90.0)
+    )
 
 
 def _radius(value: Any, where: str) -> float:
     radius = number_or_nan(value, "mm", where)
     if math.isnan(radius) or radius == 0:
-        raise InputError(where, value, "a radius, > 0 to the left and < 0 to the right", "Write curve_radius: 1.5 m.")
+        raise InputError(
+            where,
+            value,
+            "a radius, > 0 to the left and < 0 to the right",
+            "Write curve_radius: 1.5 m.",
+        )
     return radius
 
 
@@ -688,7 +826,13 @@ def _forces(value: Any, where: str) -> tuple[tuple[np.ndarray, np.ndarray], ...]
     forces = []
     for item in _list(value, where):
         entry = _entries(item, where, ("force", "at"), "{force: [0, 50 N, 0], at: [0, 0, 200]}")
-        force = _vector(entry.get("force"), f"{where}.force", "N", "three forces [x, y, z] in N", "Write [0, 50, 0].")
+        force = _vector(
+            entry.get("force"),
+            f"{where}.force",
+            "N",
+            "three forces [x, y, z] in N",
+            "Write [0, 50, 0].",
+        )
         forces.append((force, _vector(entry.get("at"), f"{where}.at", "mm", _POINT, _AT)))
     return tuple(forces)
 
@@ -702,7 +846,9 @@ def _share_of_payloads(value: Any, where: str) -> float:
         share = number_or_nan(value)
     if share > 1 or (parts is not None and parts[1] in ("kg", "g", "t")):
         allowed = "the share of the payloads that is on board, from 0 to 1"
-        remedy = "Write payload: 1 for all of them. A larger payload is a value of its own in payloads."
+        remedy = (
+            "Write payload: 1 for all of them. A larger payload is a value of its own in payloads."
+        )
         raise InputError(where, value, allowed, remedy, "is no share; a mass in kg seems meant")
     return _number(value, where, "-", "a share of the payloads from 0 to 1", 0.0, 1.0)
 
@@ -726,4 +872,6 @@ def check_curves(cases: Sequence[LoadCase], rollers: Sequence[MountedRoller]) ->
         if abs(case.curve_radius) <= reach:
             allowed = f"a radius larger than the reach of the rollers, {reach:.4g} mm"
             remedy = f"Write curve_radius: {case.curve_radius:g} m if metres are meant."
-            raise InputError(f"case '{case.name}'.curve_radius", f"{case.curve_radius:g} mm", allowed, remedy)
+            raise InputError(
+                f"case '{case.name}'.curve_radius", f"{case.curve_radius:g} mm", allowed, remedy
+            )

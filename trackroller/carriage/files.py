@@ -1,4 +1,6 @@
-"""Files that follow from a solved carriage: the load spectrum of a roller, and a study of the loads of all rollers."""
+"""Files that follow from a solved carriage: the load spectrum of a roller, and a study of the loads
+of all rollers.
+"""
 
 from __future__ import annotations
 
@@ -40,8 +42,8 @@ def spectrum_of(whole: Carriage, ds: xr.Dataset, name: str) -> dict[str, Any]:
     Returns
     -------
     dict
-        One block for each load case in which the roller carries load. The description states the share of the travel
-        without load, because a roller without radial force is no case.
+        One block for each load case in which the roller carries load. The description states the
+        share of the travel without load, because a roller without radial force is no case.
 
     Raises
     ------
@@ -52,11 +54,15 @@ def spectrum_of(whole: Carriage, ds: xr.Dataset, name: str) -> dict[str, Any]:
     j = [roller.name for roller in whole.rollers].index(name)
     roller = whole.rollers[j]
     if roller.case is None:
-        raise InputError(f"rollers.{name}.roller", None, "the file of the roller", "Add roller: FILE.")
+        raise InputError(
+            f"rollers.{name}.roller", None, "the file of the roller", "Add roller: FILE."
+        )
     _check_settled(ds)
     cases = {i: case for (i, own), case in cases_of(whole, ds).items() if own == j}
     if not cases:
-        raise InputError("--spectrum", name, "a roller that carries load in a load case", "Name another roller.")
+        raise InputError(
+            "--spectrum", name, "a roller that carries load in a load case", "Name another roller."
+        )
     blocks: list[dict[str, Any]] = [
         {
             "name": whole.cases[i].name,
@@ -75,9 +81,17 @@ def spectrum_of(whole: Carriage, ds: xr.Dataset, name: str) -> dict[str, Any]:
     text = f"Roller {name} of {whole.name}, {whole.distance:g} m of travel per shift."
     if lifted:
         named = ", ".join(case.name for case in lifted)
-        text += f" No block holds {100 * share:.4g} % of the travel, in which the roller is lifted: {named}."
+        text += (
+            f" No block holds {100 * share:.4g} % of the travel, in which the roller is "
+            f"lifted: {named}."
+        )
     base, options = parts_for_spectrum(roller.given)
-    head = {"name": name_of_study(f"{whole.name}-{name}"), "description": text, "base": base, "blocks": blocks}
+    head = {
+        "name": name_of_study(f"{whole.name}-{name}"),
+        "description": text,
+        "base": base,
+        "blocks": blocks,
+    }
     duty = whole.duty
     if duty is None:
         duty = roller.given.get("duty")
@@ -87,7 +101,8 @@ def spectrum_of(whole: Carriage, ds: xr.Dataset, name: str) -> dict[str, Any]:
 
 
 def study_of(whole: Carriage, ds: xr.Dataset, table: str) -> tuple[dict[str, Any], str]:
-    """Return a study of all loads of all rollers: the keys of a study file, and the text of its table of cases.
+    """Return a study of all loads of all rollers: the keys of a study file, and the text of its
+    table of cases.
 
     Parameters
     ----------
@@ -101,17 +116,21 @@ def study_of(whole: Carriage, ds: xr.Dataset, table: str) -> tuple[dict[str, Any
     Returns
     -------
     tuple of dict and str
-        The table has a row for each load case and roller that carries load. Fields in which the rollers differ are
-        columns; all others stand in the study, which asks about one design under all these conditions.
+        The table has a row for each load case and roller that carries load. Fields in which the
+        rollers differ are columns; all others stand in the study, which asks about one design under
+        all these conditions.
 
     Raises
     ------
     InputError
-        If the file of a roller is not given, or if the rollers differ in more than numbers and names.
+        If the file of a roller is not given, or if the rollers differ in more than numbers and
+        names.
     """
     for roller in whole.rollers:
         if roller.case is None:
-            raise InputError(f"rollers.{roller.name}.roller", None, "the file of the roller", "Add roller: FILE.")
+            raise InputError(
+                f"rollers.{roller.name}.roller", None, "the file of the roller", "Add roller: FILE."
+            )
     _check_settled(ds)
     _check_same_options(whole)
     base, varying = _shared(whole)
@@ -147,14 +166,20 @@ def study_of(whole: Carriage, ds: xr.Dataset, table: str) -> tuple[dict[str, Any
     else:
         duty = {"duty": dict(whole.duty)}
     given = whole.rollers[0].options
-    options = {key: value for key, value in given.items() if "study" in OPTIONS[key].files and key != "outputs"}
+    options = {
+        key: value
+        for key, value in given.items()
+        if "study" in OPTIONS[key].files and key != "outputs"
+    }
     return study | duty | options, out.getvalue()
 
 
 def name_of_study(text: str) -> str:
-    """Return a name that a study or spectrum may have, made of any text: 'my-shuttle-loads' of 'my shuttle-loads'.
+    """Return a name that a study or spectrum may have, made of any text: 'my-shuttle-loads' of 'my
+    shuttle-loads'.
 
-    Accents are removed, other signs than letters and digits become '-', and long names are cut in the middle.
+    Accents are removed, other signs than letters and digits become '-', and long names are cut in
+    the middle.
     """
     plain = unicodedata.normalize("NFKD", text).encode("ascii", "ignore").decode()
     name = re.sub(r"[^A-Za-z0-9_]+", "-", plain).strip("-_")
@@ -169,7 +194,9 @@ def _check_settled(ds: xr.Dataset) -> None:
     if unsettled:
         remedy = "Give the pairs a larger preload, or make more rollers locating ones."
         wrong = "has no forces of the rollers that fulfil all conditions of an equilibrium"
-        raise InputError("case", ", ".join(unsettled), "load cases in which the rollers hold", remedy, wrong)
+        raise InputError(
+            "case", ", ".join(unsettled), "load cases in which the rollers hold", remedy, wrong
+        )
 
 
 def _check_same_options(whole: Carriage) -> None:
@@ -180,7 +207,12 @@ def _check_same_options(whole: Carriage) -> None:
             own, other = (one.options.get(key, OPTIONS[key].default) for one in (roller, first))
             if own != other:
                 allowed = f"the same {key} for all rollers, which is {other} for {first.name}"
-                raise InputError(f"rollers.{roller.name}.roller", f"{key}: {own}", allowed, "Change one of the files.")
+                raise InputError(
+                    f"rollers.{roller.name}.roller",
+                    f"{key}: {own}",
+                    allowed,
+                    "Change one of the files.",
+                )
 
 
 def _head(name: str, unit: str) -> str:
@@ -198,15 +230,24 @@ def _cell(value: Any) -> str:
 
 
 def _shared(whole: Carriage) -> tuple[dict[str, Any], list[str]]:
-    """Return what the files of all rollers say alike, and the fields in which the rollers differ."""
+    """Return what the files of all rollers say alike, and the fields in which the rollers
+    differ.
+    """
     given = [
-        {key: value for key, value in parts_for_spectrum(roller.given)[0].items() if key not in OF_LOADS}
+        {
+            key: value
+            for key, value in parts_for_spectrum(roller.given)[0].items()
+            if key not in OF_LOADS
+        }
         for roller in whole.rollers
     ]
     if all(entry == given[0] for entry in given):
         return given[0], []
     cases = [roller.case for roller in whole.rollers if roller.case is not None]
-    fields = [{key: value for key, value in case.as_dict().items() if key not in OF_LOADS} for case in cases]
+    fields = [
+        {key: value for key, value in case.as_dict().items() if key not in OF_LOADS}
+        for case in cases
+    ]
     varying = [key for key in fields[0] if any(entry[key] != fields[0][key] for entry in fields)]
     for key in varying:
         if key in MAPPING_FIELDS:
@@ -214,7 +255,9 @@ def _shared(whole: Carriage) -> tuple[dict[str, Any], list[str]]:
             remedy = "Write the spectrum of each roller with --spectrum instead."
             raise InputError(key, None, allowed, remedy, "differs among the rollers")
     given_fields = {key for key in fields[0] if not all(key in case.not_given for case in cases)}
-    return {key: value for key, value in fields[0].items() if key in given_fields and key not in varying}, varying
+    return {
+        key: value for key, value in fields[0].items() if key in given_fields and key not in varying
+    }, varying
 
 
 def _short(value: Any) -> float:

@@ -1,7 +1,8 @@
 """The lives of the rollers of carriages over their load cases, limit by limit.
 
-ASSUME: damage adds up linearly over the load cases (Palmgren-Miner), limit by limit, by their shares of the travel.
-ASSUME: the load cases load the same two tracks of a roller and the same point of the guide.
+ASSUME: damage adds up linearly over the load cases (Palmgren-Miner), limit by limit, by their
+shares of the travel. ASSUME: the load cases load the same two tracks of a roller and the same point
+of the guide.
 """
 
 from __future__ import annotations
@@ -31,7 +32,9 @@ def hours_per_km(share: np.ndarray, speed: np.ndarray, velocity: np.ndarray) -> 
     velocity : numpy.ndarray, shape (n,)
         Velocity that the file of the roller states [m/min].
     """
-    return np.asarray(np.sum(share / np.where(np.isnan(speed), 0.06 * velocity[:, None], 3.6 * speed), axis=1))
+    return np.asarray(
+        np.sum(share / np.where(np.isnan(speed), 0.06 * velocity[:, None], 3.6 * speed), axis=1)
+    )
 
 
 class Lives:
@@ -57,15 +60,22 @@ class Lives:
     solved : xarray.Dataset
         The results, whose flag `worn` holds for all load cases of a roller together.
     summed : dict of str to numpy.ndarray
-        Lives with the damage of all load cases, largest utilisations and worst states of limits, by roller.
+        Lives with the damage of all load cases, largest utilisations and worst states of limits, by
+        roller.
     ruling : numpy.ndarray of int
         Case of each roller that does most damage, or in which it does not roll.
     rank : numpy.ndarray
-        What sorts rollers, the worst one first: the life to the first limit [h], below 0 for one that does not roll.
+        What sorts rollers, the worst one first: the life to the first limit [h], below 0 for one
+        that does not roll.
     """
 
     def __init__(
-        self, group: np.ndarray, share: np.ndarray, speed: np.ndarray, hours: np.ndarray, solved: xr.Dataset
+        self,
+        group: np.ndarray,
+        share: np.ndarray,
+        speed: np.ndarray,
+        hours: np.ndarray,
+        solved: xr.Dataset,
     ) -> None:
         self.order = np.argsort(group, kind="stable")
         _, self.start = np.unique(group[self.order], return_index=True)
@@ -93,7 +103,9 @@ class Lives:
         return np.asarray(reduce.reduceat(values[self.order], self.start))  # type: ignore[attr-defined]
 
     def life(self, values: np.ndarray, units: str) -> np.ndarray:
-        """Return a life with the damage of all load cases; in hours by their time, otherwise by their travel."""
+        """Return a life with the damage of all load cases; in hours by their time, otherwise by
+        their travel.
+        """
         weight = self.share
         whole = np.ones(len(self.first))
         if units == "h":
@@ -106,38 +118,53 @@ class Lives:
     def _judged(self) -> tuple[np.ndarray, np.ndarray]:
         """Return the case that stands for each roller, and what ranks the rollers."""
         regime = np.where(self.share > 0, self.solved["regime"].values, 0)
-        name = next(n for n in ("pair_life_to_first_limit_hours", "pair_life_hours") if n in self.solved)
-        damage = np.nan_to_num(block_damage(self.time, self.solved[name].values), nan=0.0, posinf=1e300)
+        name = next(
+            n for n in ("pair_life_to_first_limit_hours", "pair_life_hours") if n in self.solved
+        )
+        damage = np.nan_to_num(
+            block_damage(self.time, self.solved[name].values), nan=0.0, posinf=1e300
+        )
         if "max_pressure" in self.solved:
             used = self.solved["max_pressure"].max("contact").values
         else:
             used = self.share
-        order = np.lexsort((used, damage, regime))  # the case that rules is the last one of its roller
+        # the case that rules is the last one of its roller
+        order = np.lexsort((used, damage, regime))
         group = np.empty(len(order), dtype=int)
         group[self.order] = np.repeat(np.arange(len(self.first)), self.counts)
         ruling = np.empty(len(self.first), dtype=int)
         ruling[group[order]] = order
         worst = self.of(regime, np.maximum)
-        return ruling, np.where(worst > 0, -worst.astype(float), np.nan_to_num(self.summed[name], nan=np.inf))
+        return ruling, np.where(
+            worst > 0, -worst.astype(float), np.nan_to_num(self.summed[name], nan=np.inf)
+        )
 
     def _summed(self) -> dict[str, np.ndarray]:
-        """Return lives with the damage of all load cases, utilisations and states of limits, by roller."""
+        """Return lives with the damage of all load cases, utilisations and states of limits, by
+        roller.
+        """
         out = {}
         for name, variable in self.solved.data_vars.items():
             known = declared(str(name))
             if known is not None and known.life:
                 out[str(name)] = self.life(variable.values, str(variable.attrs.get("units", "")))
         if "life_hours" in out:
-            for body, life in zip(BODIES, np.moveaxis(out["life_hours"].min(axis=1), -1, 0), strict=True):
+            for body, life in zip(
+                BODIES, np.moveaxis(out["life_hours"].min(axis=1), -1, 0), strict=True
+            ):
                 out[f"{body}_life_hours"] = life
-            out["pair_life_hours"], first = first_failure(out["roller_life_hours"], out["guide_life_hours"])
+            out["pair_life_hours"], first = first_failure(
+                out["roller_life_hours"], out["guide_life_hours"]
+            )
             out["first_to_fail"] = first.astype(self.solved["first_to_fail"].dtype)
         if "life_hours_by_limit" in self.solved:
             out |= self._by_limit(out)
         return out
 
     def _by_limit(self, out: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
-        """Return the lives by limit and to the first one, and which one it is; fatigue adds up track by track."""
+        """Return the lives by limit and to the first one, and which one it is; fatigue adds up
+        track by track.
+        """
         solved = self.solved
         new: dict[str, np.ndarray] = {}
         limits = [LIMITS[name] for name in solved["limit"].values.tolist()]
@@ -145,12 +172,20 @@ class Lives:
         used = self.of(np.where(counts, solved["utilisation"].values, np.nan), np.fmax)
         state = self.of(np.where(counts, solved["limit_state"].values, 0), np.maximum)
         meanings = solved["validity_body"].attrs["flag_meanings"].split()
-        breaks = (solved["validity_body"].values >> meanings.index("static")) & 1 & (self.share > 0)[:, None]
+        breaks = (
+            (solved["validity_body"].values >> meanings.index("static"))
+            & 1
+            & (self.share > 0)[:, None]
+        )
         broken = verdict.breaking(self.of(breaks, np.maximum).astype(bool), limits)
         timed = solved["life_hours_by_limit"].notnull().any(["case", "body"]).values
         for end in verdict.ENDS:
             lives = out[f"life_hours_by_limit{end}"].copy()
-            for i in (i for i, limit in enumerate(limits) if limit.name == "fatigue" and "life_hours" in solved):
+            for i in (
+                i
+                for i, limit in enumerate(limits)
+                if limit.name == "fatigue" and "life_hours" in solved
+            ):
                 lives[:, i] = self._fatigue(solved[f"life_hours_by_limit{end}"].values[:, i])
             first, which = verdict.first_of(lives, used, timed, limits, broken, state == 0)
             new |= {f"life_hours_by_limit{end}": lives, f"life_to_first_limit_hours{end}": first}
@@ -160,15 +195,20 @@ class Lives:
                 values = np.ravel(solved["limiting_mechanism"].attrs["flag_values"])
                 names = [*(limit.name for limit in limits), "unknown"]
                 numbers = np.array([values[words.index(name)] for name in names])
-                new["limiting_mechanism"] = numbers[which].astype(solved["limiting_mechanism"].dtype)
+                new["limiting_mechanism"] = numbers[which].astype(
+                    solved["limiting_mechanism"].dtype
+                )
         return new | {"utilisation": used, "limit_state": state.astype(solved["limit_state"].dtype)}
 
     def _fatigue(self, by_limit: np.ndarray) -> np.ndarray:
-        """Return the hours to the fatigue limit at its failure probability, (roller, body), of the worse track.
+        """Return the hours to the fatigue limit at its failure probability, (roller, body), of the
+        worse track.
 
         ASSUME: both tracks of a case have the same ratio of this life to the life at 50 %.
         """
         tracks = self.solved["life_hours"].transpose("case", "contact", "body").values
         with np.errstate(invalid="ignore", divide="ignore"):
             ratio = by_limit / tracks.min(axis=1)
-        return np.asarray(self.life(tracks * np.where(np.isnan(ratio), 1.0, ratio)[:, None], "h").min(axis=1))
+        return np.asarray(
+            self.life(tracks * np.where(np.isnan(ratio), 1.0, ratio)[:, None], "h").min(axis=1)
+        )

@@ -30,12 +30,15 @@ def force_on(mass: PointMass, case: LoadCase) -> np.ndarray:
     mass : PointMass
         The mass.
     case : LoadCase
-        Its motion. A curve is level: it accelerates each mass horizontally by omega^2 times its own horizontal
-        radius, omega = v/R at the origin. On a canted track this acceleration has a part along z.
+        Its motion. A curve is level: it accelerates each mass horizontally by omega^2 times its own
+        horizontal radius, omega = v/R at the origin. On a canted track this acceleration has a part
+        along z.
     """
     up = case.gradient
     tilt = case.cant
-    weight = GRAVITY * np.array([-np.sin(up), np.sin(tilt) * np.cos(up), -np.cos(tilt) * np.cos(up)])
+    weight = GRAVITY * np.array(
+        [-np.sin(up), np.sin(tilt) * np.cos(up), -np.cos(tilt) * np.cos(up)]
+    )
     across = np.array([0.0, np.cos(tilt), np.sin(tilt)])  # horizontal, to the left of the track
     inward = 0.0
     if np.isfinite(case.curve_radius) and case.speed is not None:
@@ -47,7 +50,9 @@ def force_on(mass: PointMass, case: LoadCase) -> np.ndarray:
 
 @dataclass(frozen=True)
 class Loads:
-    """Wrenches (6,) of a load case, each with its drive: of the payloads, and of everything else; and the drive [N]."""
+    """Wrenches (6,) of a load case, each with its drive: of the payloads, and of everything else;
+    and the drive [N].
+    """
 
     payload: np.ndarray
     other: np.ndarray
@@ -59,8 +64,12 @@ class Loads:
         return self.payload + self.other
 
 
-def _all_forces(carriage: Carriage, case: LoadCase) -> Iterator[tuple[bool, np.ndarray, np.ndarray]]:
-    """Yield whether a force is of a payload, each force (3,) [N] but the drive, and its point (3,) [mm]."""
+def _all_forces(
+    carriage: Carriage, case: LoadCase
+) -> Iterator[tuple[bool, np.ndarray, np.ndarray]]:
+    """Yield whether a force is of a payload, each force (3,) [N] but the drive, and its point (3,)
+    [mm].
+    """
     for one in carriage.payloads:
         yield True, case.payload * force_on(one, case), one.at
     yield False, force_on(carriage.mass, case), carriage.mass.at
@@ -69,7 +78,8 @@ def _all_forces(carriage: Carriage, case: LoadCase) -> Iterator[tuple[bool, np.n
 
 
 def swing_of(carriage: Carriage, case: LoadCase, hinge: np.ndarray) -> float | None:
-    """Return the angle about the x axis [rad] to which a load case swings a carriage that hangs on one line.
+    """Return the angle about the x axis [rad] to which a load case swings a carriage that hangs on
+    one line.
 
     Parameters
     ----------
@@ -83,13 +93,15 @@ def swing_of(carriage: Carriage, case: LoadCase, hinge: np.ndarray) -> float | N
     Returns
     -------
     float or None
-        Angle, > 0 if the left side goes up; None if the carriage would fall to the other side of the line.
+        Angle, > 0 if the left side goes up; None if the carriage would fall to the other side of
+        the line.
 
     Notes
     -----
-    The forces keep their directions, and their points r swing about the line. Their moment is A cos(phi) - B sin(phi)
-    with A the sum of r_y F_z - r_z F_y and B that of r_y F_y + r_z F_z, so that tan(phi) = A/B. The carriage is stable
-    where the moment falls with the angle: within 90 deg if B > 0, that is, if the loads pull away from the line.
+    The forces keep their directions, and their points r swing about the line. Their moment is A
+    cos(phi) - B sin(phi) with A the sum of r_y F_z - r_z F_y and B that of r_y F_y + r_z F_z, so
+    that tan(phi) = A/B. The carriage is stable where the moment falls with the angle: within 90 deg
+    if B > 0, that is, if the loads pull away from the line.
 
     ASSUME: the swing does not change the radius of a mass in a curve.
     """
@@ -103,9 +115,13 @@ def swing_of(carriage: Carriage, case: LoadCase, hinge: np.ndarray) -> float | N
 
 
 def _turned(force: np.ndarray, angle: float) -> np.ndarray:
-    """Return a force (3,) as a carriage sees it that has swung by an angle about the x axis [rad]."""
+    """Return a force (3,) as a carriage sees it that has swung by an angle about the x axis
+    [rad].
+    """
     cosine, sine = np.cos(angle), np.sin(angle)
-    return np.array([force[0], cosine * force[1] + sine * force[2], cosine * force[2] - sine * force[1]])
+    return np.array(
+        [force[0], cosine * force[1] + sine * force[2], cosine * force[2] - sine * force[1]]
+    )
 
 
 def loads_of(carriage: Carriage, case: LoadCase, swing: float = 0.0) -> Loads:
@@ -118,8 +134,8 @@ def loads_of(carriage: Carriage, case: LoadCase, swing: float = 0.0) -> Loads:
     case : LoadCase
         The load case.
     swing : float
-        Angle by which the carriage has swung about its line of rollers [rad], see `swing_of`. The loads are those that
-        the carriage sees, so that they turn by the opposite angle.
+        Angle by which the carriage has swung about its line of rollers [rad], see `swing_of`. The
+        loads are those that the carriage sees, so that they turn by the opposite angle.
 
     Raises
     ------
@@ -142,5 +158,7 @@ def loads_of(carriage: Carriage, case: LoadCase, swing: float = 0.0) -> Loads:
             allowed = f"the point at which the drive pulls with {drive:.4g} N in case '{case.name}'"
             raise InputError("drive.at", None, allowed, "Add drive: {at: [0, 0, -20]}.")
         return Loads(payload, other, 0.0)
-    payload, other = (part - wrench_at(np.array([part[0], 0.0, 0.0]), carriage.drive) for part in (payload, other))
+    payload, other = (
+        part - wrench_at(np.array([part[0], 0.0, 0.0]), carriage.drive) for part in (payload, other)
+    )
     return Loads(payload, other, drive)

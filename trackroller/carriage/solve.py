@@ -1,4 +1,6 @@
-"""Solve a carriage: the loads of each roller in each load case, its margins, and the worst roller by its life."""
+"""Solve a carriage: the loads of each roller in each load case, its margins, and the worst roller
+by its life.
+"""
 
 from __future__ import annotations
 
@@ -44,18 +46,29 @@ from trackroller.roller.geometry import contact_geometry
 from trackroller.roller.requirement import LIVES_OF_PAIR
 from trackroller.roller.run_in import groups_for_run_in
 from trackroller.roller.settings import LOADS
-from trackroller.roller.stored_inputs import DOUBTS, MATERIALS, NOT_GIVEN, material_values, plain_inputs
+from trackroller.roller.stored_inputs import (
+    DOUBTS,
+    MATERIALS,
+    NOT_GIVEN,
+    material_values,
+    plain_inputs,
+)
 
 LIFE = "pair_life_to_first_limit_hours"
 CONVENTIONS = (
-    "radial_force < 0 presses the roller on its rail; axial_force acts on the roller along its own x_R",
-    "a rigid carriage and small displacements; the drive holds the carriage along the track, where it acts",
-    "forces of a roller act at its point `at`, the middle of the rail section, where the normals of its contacts meet",
+    "radial_force < 0 presses the roller on its rail; axial_force acts on the roller along "
+    "its own x_R",
+    "a rigid carriage and small displacements; the drive holds the carriage along the track, "
+    "where it acts",
+    "forces of a roller act at its point `at`, the middle of the rail section, where the "
+    "normals of its contacts meet",
     "horizontal acceleration (v/R)^2 times each mass's own radius; v and R belong to the origin",
     "preload is the force between the pair with no other load",
-    "a lifted roller carries no load; a locating roller carries axial load both ways while it carries radial load",
+    "a lifted roller carries no load; a locating roller carries axial load both ways while "
+    "it carries radial load",
     "contacts without friction give the stiffness: Hertz's approach at the load of each roller",
-    "shares are shares of the travel; damage adds up linearly over the load cases, limit by limit (Palmgren-Miner)",
+    "shares are shares of the travel; damage adds up linearly over the load cases, limit by "
+    "limit (Palmgren-Miner)",
 )
 ROUNDING = 1e-14  # of the largest radial force: an axial force below it is 0
 ENDS = {
@@ -70,7 +83,9 @@ _C = ("load_case",)
 
 
 def solve_carriage(
-    source: Path | str | Mapping[str, Any] | Carriage, lives: bool = True, advanced: Callable[[int], object] = int
+    source: Path | str | Mapping[str, Any] | Carriage,
+    lives: bool = True,
+    advanced: Callable[[int], object] = int,
 ) -> xr.Dataset:
     """Compute the loads of the rollers of a carriage, and their lives.
 
@@ -86,30 +101,33 @@ def solve_carriage(
     Returns
     -------
     xarray.Dataset
-        Dimensions `load_case` and `roller`. `radial_force` and `axial_force` [N] have the signs of `Case`; a lifted
-        roller has 0 N. `approach` [mm] is that of the roller to its rail. `payload_to_lift_off`,
-        `payload_to_tipping`, `loads_to_lift_off` and `loads_to_tipping` (load_case) are multipliers [1]. `converged`
-        (load_case) is False where no state fulfils all conditions of an equilibrium; its forces, margins and the lives
-        of all rollers are NaN. A margin beyond the one to a single contact is one of rollers that carry axial load both
-        ways, which a roller on one contact does not; tables and sentences leave it out. With `lives`,
-        `life_km` and `life_hours` (roller) are those to the first limit, and the attribute `worst_roller` names the
-        roller with the shortest one.
+        Dimensions `load_case` and `roller`. `radial_force` and `axial_force` [N] have the signs of
+        `Case`; a lifted roller has 0 N. `approach` [mm] is that of the roller to its rail.
+        `payload_to_lift_off`, `payload_to_tipping`, `loads_to_lift_off` and `loads_to_tipping`
+        (load_case) are multipliers [1]. `converged` (load_case) is False where no state fulfils all
+        conditions of an equilibrium; its forces, margins and the lives of all rollers are NaN. A
+        margin beyond the one to a single contact is one of rollers that carry axial load both ways,
+        which a roller on one contact does not; tables and sentences leave it out. With `lives`,
+        `life_km` and `life_hours` (roller) are those to the first limit, and the attribute
+        `worst_roller` names the roller with the shortest one.
 
     Raises
     ------
     InputError
-        If an entry is wrong, or if the rollers do not hold the carriage; the error names the load case.
+        If an entry is wrong, or if the rollers do not hold the carriage; the error names the load
+        case.
 
     Notes
     -----
-    The margins take a tenth of a second a load case, up to two where many rollers lift. The lives take as long as
-    `trackroller.solve` for each roller and load case.
+    The margins take a tenth of a second a load case, up to two where many rollers lift. The lives
+    take as long as `trackroller.solve` for each roller and load case.
 
     Examples
     --------
     >>> import trackroller as tr
     >>> down = {"pushes": [0, 0, -1], "x_R": [0, 1, 0]}
-    >>> places = {"FL": [100, 50, 0], "FR": [100, -50, 0], "RL": [-100, 50, 0], "RR": [-100, -50, 0]}
+    >>> places = {"FL": [100, 50, 0], "FR": [100, -50, 0]}
+    >>> places |= {"RL": [-100, 50, 0], "RR": [-100, -50, 0]}
     >>> cart = {"mass": {"value": "40 kg", "at": [0, 0, 0]}, "cases": [{"name": "stand"}]}
     >>> rollers = {name: {"at": at, "stiffness": 1e4} | down for name, at in places.items()}
     >>> ds = tr.carriage(cart | {"rollers": rollers})
@@ -133,13 +151,17 @@ def solve_carriage(
 
 
 def forces_of(whole: Carriage) -> xr.Dataset:
-    """Return the forces of the rollers in each load case, without margins and lives; see `solve_carriage`."""
+    """Return the forces of the rollers in each load case, without margins and lives; see
+    `solve_carriage`.
+    """
     springs = springs_of(whole)
     return _solution(whole, springs, *_loads(whole, springs))
 
 
 def _loads(whole: Carriage, springs: Springs) -> tuple[list[Loads], np.ndarray]:
-    """Return the loads of each load case, and the angles [rad] to which they swing a carriage on a line of rollers."""
+    """Return the loads of each load case, and the angles [rad] to which they swing a carriage on a
+    line of rollers.
+    """
     if springs.hinge is None:
         return [loads_of(whole, case) for case in whole.cases], np.full(len(whole.cases), np.nan)
     swings = []
@@ -147,7 +169,8 @@ def _loads(whole: Carriage, springs: Springs) -> tuple[list[Loads], np.ndarray]:
         swing = swing_of(whole, case, springs.hinge)
         if swing is None:
             wrong = (
-                f"leave the carriage free: it {MOTIONS[2]} without any resistance, and falls in case '{case.name}', "
+                f"leave the carriage free: it {MOTIONS[2]} without any resistance, and falls in "
+                f"case '{case.name}', "
                 "because its loads do not hang below the line of its rollers"
             )
             raise _free(whole, wrong)
@@ -156,17 +179,29 @@ def _loads(whole: Carriage, springs: Springs) -> tuple[list[Loads], np.ndarray]:
     return [loads_of(whole, case, swing) for case, swing in pairs], np.array(swings)
 
 
-def _solution(whole: Carriage, springs: Springs, loads: list[Loads], swings: np.ndarray) -> xr.Dataset:
+def _solution(
+    whole: Carriage, springs: Springs, loads: list[Loads], swings: np.ndarray
+) -> xr.Dataset:
     """Return the forces of the rollers as a data set with places, load cases and conventions."""
-    states = [_equilibrium(whole, springs, one, case.name) for one, case in zip(loads, whole.cases, strict=True)]
+    states = [
+        _equilibrium(whole, springs, one, case.name)
+        for one, case in zip(loads, whole.cases, strict=True)
+    ]
     variables = _forces(whole, states, loads)
     variables |= _of_catalogue(whole, variables) | _places(whole)
     if springs.hinge is not None:
-        long_name = "angle to which the carriage swings about its line of rollers, in whose axes the forces stand"
+        long_name = (
+            "angle to which the carriage swings about its line of rollers, in whose axes "
+            "the forces stand"
+        )
         variables["swing"] = (_C, np.degrees(swings), _attrs("degree", long_name))
     coords = {
         "load_case": ("load_case", [case.name for case in whole.cases], {"long_name": "load case"}),
-        "roller": ("roller", [roller.name for roller in whole.rollers], {"long_name": "roller of the carriage"}),
+        "roller": (
+            "roller",
+            [roller.name for roller in whole.rollers],
+            {"long_name": "roller of the carriage"},
+        ),
     }
     attrs = {
         **file_attributes("Loads of the rollers of a carriage", "solved"),
@@ -222,20 +257,27 @@ def springs_of(whole: Carriage, unknown: Sequence[float] = ()) -> Springs:
     if len(ways) == 1:
         hinge = _hinge(whole, ways[0], length)
     if hinge is None:
-        raise _free(whole, f"leave the carriage free: it {motion_of(ways[-1])} without any resistance")
+        raise _free(
+            whole, f"leave the carriage free: it {motion_of(ways[-1])} without any resistance"
+        )
     return _preloaded(without(springs, ways[0], hinge), whole)
 
 
 def _free(whole: Carriage, wrong: str) -> InputError:
     """Return the error for rollers that do not hold the carriage."""
     names = ", ".join(roller.name for roller in whole.rollers)
-    remedy = "Add a roller, put the rollers further apart, or make one with kind: floating a locating one."
+    remedy = (
+        "Add a roller, put the rollers further apart, or make one with kind: floating a "
+        "locating one."
+    )
     allowed = "rollers that hold the carriage in all directions across the track"
     return InputError("rollers", names, allowed, remedy, wrong)
 
 
 def _hinge(whole: Carriage, way: np.ndarray, length: float) -> np.ndarray | None:
-    """Return the place (2,) along y and z of the line of all rollers about which a motion (5,) turns, None without."""
+    """Return the place (2,) along y and z of the line of all rollers about which a motion (5,)
+    turns, None without.
+    """
     angle = way[2] / length
     if np.abs(way[3:]).max() > 1e-6 * abs(way[2]) or angle == 0:
         return None
@@ -256,20 +298,31 @@ def _preloaded(springs: Springs, whole: Carriage) -> Springs:
 
 
 def _compliance(roller: MountedRoller) -> tuple[float, float, tuple[float, float]]:
-    """Return Hertz's factor of the radial approach [mm N^(-2/3)], tan(alpha), and the compliances in series [mm/N]."""
+    """Return Hertz's factor of the radial approach [mm N^(-2/3)], tan(alpha), and the compliances
+    in series [mm/N].
+    """
     if roller.stiffness is not None:
-        series = [own + 1 / one for own, one in zip(roller.compliance, roller.stiffness, strict=True)]
+        series = [
+            own + 1 / one for own, one in zip(roller.compliance, roller.stiffness, strict=True)
+        ]
         return 0.0, 1.0, (series[0], series[1])
     if roller.case is None:
-        return 0.0, 1.0, (1.0, 1.0)  # the forces of a determinate arrangement depend on no stiffness
+        # the forces of a determinate arrangement depend on no stiffness
+        return 0.0, 1.0, (1.0, 1.0)
     table = to_table([roller.case])
     geometry = contact_geometry(vars(table))
     bodies = ((body.youngs_modulus, body.poisson_ratio) for body in (table.roller, table.guide))
     modulus = contact_modulus(*(value for body in bodies for value in body))
-    approach = float(unit_approach(geometry.curvature_lateral, geometry.curvature_rolling, modulus)[0])
+    approach = float(
+        unit_approach(geometry.curvature_lateral, geometry.curvature_rolling, modulus)[0]
+    )
     cosine = float(np.cos(geometry.contact_angle[0]))
     # F_rad = 2 F_N cos(alpha), and each contact approaches by the radial approach times cos(alpha)
-    return approach / (2 * cosine) ** (2 / 3) / cosine, float(np.tan(geometry.contact_angle[0])), roller.compliance
+    return (
+        approach / (2 * cosine) ** (2 / 3) / cosine,
+        float(np.tan(geometry.contact_angle[0])),
+        roller.compliance,
+    )
 
 
 def _reduced(wrench: np.ndarray, springs: Springs) -> np.ndarray:
@@ -287,13 +340,18 @@ def _equilibrium(whole: Carriage, springs: Springs, loads: Loads, name: str) -> 
         if error.motion in TIPPING:
             tips = "tips"
         remedy = (
-            "Move the masses between the rollers, put the rollers further apart, or give pairs a preload: a roller "
+            "Move the masses between the rollers, put the rollers further apart, or give pairs a "
+            "preload: a roller "
             "carries axial load only while it presses on its rail."
         )
-        raise InputError("case", name, allowed, remedy, f"{tips} the carriage: it {error.motion}") from None
+        raise InputError(
+            "case", name, allowed, remedy, f"{tips} the carriage: it {error.motion}"
+        ) from None
     unknown = _unknown(whole)
     if unknown and not (is_determinate(springs, state) and _decided(whole, loads, state)):
-        needs = f"the stiffness, because the statics alone does not decide the forces in case '{name}'"
+        needs = (
+            f"the stiffness, because the statics alone does not decide the forces in case '{name}'"
+        )
         where = f"rollers.{whole.rollers[unknown[0]].name}.roller"
         raise InputError(where, None, needs, "Add roller: FILE, or stiffness: 5e4.")
     return state
@@ -301,11 +359,17 @@ def _equilibrium(whole: Carriage, springs: Springs, loads: Loads, name: str) -> 
 
 def _unknown(whole: Carriage) -> list[int]:
     """Return the numbers of the rollers whose stiffness is not given."""
-    return [j for j, roller in enumerate(whole.rollers) if roller.case is None and roller.stiffness is None]
+    return [
+        j
+        for j, roller in enumerate(whole.rollers)
+        if roller.case is None and roller.stiffness is None
+    ]
 
 
 def _decided(whole: Carriage, loads: Loads, state: Equilibrium) -> bool:
-    """Return whether other values of the unknown stiffnesses give the same forces, and lift the same rollers."""
+    """Return whether other values of the unknown stiffnesses give the same forces, and lift the
+    same rollers.
+    """
     steps = 10.0 ** -np.arange(float(len(_unknown(whole))))
     for compliance in (1e-5 * steps, 1e-5 * steps[::-1]):
         springs = springs_of(whole, compliance.tolist())
@@ -314,7 +378,10 @@ def _decided(whole: Carriage, loads: Loads, state: Equilibrium) -> bool:
         except Moves:
             return False
         near = 1e-6 * float(state.radial.max(initial=0.0))
-        if not (np.allclose(other.radial, state.radial, 0, near) and np.allclose(other.axial, state.axial, 0, near)):
+        if not (
+            np.allclose(other.radial, state.radial, 0, near)
+            and np.allclose(other.axial, state.axial, 0, near)
+        ):
             return False
     return True
 
@@ -324,14 +391,22 @@ def _attrs(units: str, long_name: str, symbol: str = "") -> dict[str, str]:
 
 
 def _forces(whole: Carriage, states: list[Equilibrium], loads: list[Loads]) -> dict[str, Any]:
-    """Return the forces of rollers and drive, and what the file says of the load cases, as variables."""
+    """Return the forces of rollers and drive, and what the file says of the load cases, as
+    variables.
+    """
     settled = np.array([state.converged for state in states])[:, None]
     radial = np.where(settled, -np.array([state.radial for state in states]), np.nan)
     axial = np.where(settled, np.array([state.axial for state in states]), np.nan)
-    axial = np.where(np.abs(axial) <= ROUNDING * np.abs(radial).max(axis=1, keepdims=True), 0.0, axial)
+    axial = np.where(
+        np.abs(axial) <= ROUNDING * np.abs(radial).max(axis=1, keepdims=True), 0.0, axial
+    )
     speeds = np.array([case.speed for case in whole.cases], dtype=float)  # None becomes NaN
     return {
-        "radial_force": (_RC, np.where(radial == 0, 0.0, radial), _attrs("N", "radial force", "F_rad")),
+        "radial_force": (
+            _RC,
+            np.where(radial == 0, 0.0, radial),
+            _attrs("N", "radial force", "F_rad"),
+        ),
         "axial_force": (_RC, axial, _attrs("N", "axial force", "F_ax")),
         "approach": (
             _RC,
@@ -348,7 +423,11 @@ def _forces(whole: Carriage, states: list[Equilibrium], loads: list[Loads]) -> d
             np.array([state.converged for state in states]),
             {"long_name": "whether the forces are an equilibrium of the rollers"},
         ),
-        "share": (_C, np.array([case.share for case in whole.cases]), _attrs("1", "share of the travel")),
+        "share": (
+            _C,
+            np.array([case.share for case in whole.cases]),
+            _attrs("1", "share of the travel"),
+        ),
         "speed": (_C, speeds, _attrs("m s-1", "speed")),
     }
 
@@ -358,15 +437,29 @@ def _places(whole: Carriage) -> dict[str, Any]:
     masses = [whole.mass, *whole.payloads]
     names = ["carriage", *(f"payload {i + 1}" for i in range(len(whole.payloads)))]
     rd, md = ("roller", "direction"), ("mass_name", "direction")
-    at, pushes, axis = (np.array([getattr(r, key) for r in whole.rollers]) for key in ("at", "pushes", "axis"))
+    at, pushes, axis = (
+        np.array([getattr(r, key) for r in whole.rollers]) for key in ("at", "pushes", "axis")
+    )
     return {
         "roller_at": (rd, at, _attrs("mm", "place of the roller")),
-        "roller_pushes": (rd, pushes, _attrs("1", "direction in which the roller presses on its rail")),
+        "roller_pushes": (
+            rd,
+            pushes,
+            _attrs("1", "direction in which the roller presses on its rail"),
+        ),
         "roller_axis": (rd, axis, _attrs("1", "axis x_R of the roller")),
-        "locating": ("roller", np.array([r.locating for r in whole.rollers]), {"long_name": "carries axial load"}),
+        "locating": (
+            "roller",
+            np.array([r.locating for r in whole.rollers]),
+            {"long_name": "carries axial load"},
+        ),
         "mass": (("mass_name",), np.array([one.value for one in masses]), _attrs("kg", "mass")),
         "mass_at": (md, np.array([one.at for one in masses]), _attrs("mm", "place of the mass")),
-        "direction": (("direction",), np.array(["x", "y", "z"]), {"long_name": "x forward, y left, z up"}),
+        "direction": (
+            ("direction",),
+            np.array(["x", "y", "z"]),
+            {"long_name": "x forward, y left, z up"},
+        ),
         "mass_name": (("mass_name",), np.array(names), {"long_name": "name of the mass"}),
     }
 
@@ -374,7 +467,9 @@ def _places(whole: Carriage) -> dict[str, Any]:
 def _margins(
     whole: Carriage, springs: Springs, loads: list[Loads], advanced: Callable[[int], object]
 ) -> dict[str, Any]:
-    """Return the multipliers of payload and of all loads to one contact, to lift-off and to tipping."""
+    """Return the multipliers of payload and of all loads to one contact, to lift-off and to
+    tipping.
+    """
     angles = np.full(len(whole.rollers), np.nan)
     for j, roller in enumerate(whole.rollers):
         if roller.case is not None:
@@ -383,7 +478,10 @@ def _margins(
     out: dict[str, list[float]] = {}
     for one in loads:
         payload, other = (_reduced(part, springs) for part in (one.payload, one.other))
-        for name, fixed, varying in (("payload", other, payload), ("loads", 0.0 * other, payload + other)):
+        for name, fixed, varying in (
+            ("payload", other, payload),
+            ("loads", 0.0 * other, payload + other),
+        ):
             if name == "payload" and _swings_further(springs, one):
                 for end in ENDS:
                     out.setdefault(f"{name}_to_{end}", []).append(np.nan)
@@ -399,7 +497,9 @@ def _margins(
 
 
 def _swings_further(springs: Springs, loads: Loads) -> bool:
-    """Return whether another payload swings a carriage on a line of rollers, so that no margin of it is known."""
+    """Return whether another payload swings a carriage on a line of rollers, so that no margin of
+    it is known.
+    """
     if springs.hinge is None:
         return False
     force = loads.payload[1:3]
@@ -412,7 +512,9 @@ def _of_catalogue(whole: Carriage, variables: Mapping[str, Any]) -> dict[str, An
     """Return load factor and life by the catalogues of the rollers, {} without a catalogue."""
     if not any(roller.catalogue for roller in whole.rollers):
         return {}
-    radial, axial, shares = (variables[name][1] for name in ("radial_force", "axial_force", "share"))
+    radial, axial, shares = (
+        variables[name][1] for name in ("radial_force", "axial_force", "share")
+    )
     factor = np.full(radial.shape, np.nan)
     life = np.full(radial.shape[1], np.nan)
     for i, roller in enumerate(whole.rollers):
@@ -426,7 +528,9 @@ def _of_catalogue(whole: Carriage, variables: Mapping[str, Any]) -> dict[str, An
 
 
 def cases_of(whole: Carriage, ds: xr.Dataset) -> dict[tuple[int, int], Case]:
-    """Return the `Case` of each roller that carries load, by the numbers of load case and roller."""
+    """Return the `Case` of each roller that carries load, by the numbers of load case and
+    roller.
+    """
     cases = {}
     passes = passes_per_km(whole)
     for i, j in np.argwhere(ds["radial_force"].values < 0).tolist():
@@ -443,7 +547,9 @@ def cases_of(whole: Carriage, ds: xr.Dataset) -> dict[tuple[int, int], Case]:
 
 
 def doubts_of_rollers(whole: Carriage, ds: xr.Dataset) -> list[str]:
-    """Return a sentence for each unusual value of the rollers and their loads, see `trackroller.roller.doubts`."""
+    """Return a sentence for each unusual value of the rollers and their loads, see
+    `trackroller.roller.doubts`.
+    """
     database = load_database()
     by_text: dict[str, list[str]] = {}
     cases = cases_of(whole, ds)
@@ -464,26 +570,37 @@ def doubts_of_rollers(whole: Carriage, ds: xr.Dataset) -> list[str]:
 
 
 def _doubted_ratings(roller: MountedRoller, radial: np.ndarray) -> Iterator[str]:
-    """Yield a sentence for each rating of a maker's catalogue that is small beside the radial forces (n,) [N]."""
+    """Yield a sentence for each rating of a maker's catalogue that is small beside the radial
+    forces (n,) [N].
+    """
     if roller.catalogue is None:
         return
     rated = {name: getattr(roller.catalogue, name) for name in ("radial_force", "axial_force")}
     yield from ratings({"radial_force": radial, "catalogue": rated})
     if np.isfinite(roller.catalogue.moment):
         yield (
-            f"catalogue.moment = {roller.catalogue.moment:g} N mm does not count: the statics of a carriage gives no "
+            f"catalogue.moment = {roller.catalogue.moment:g} N mm does not count: the statics of "
+            "a carriage gives no "
             "moment of a roller. Put the catalogue into the file of the roller, where it does."
         )
 
 
 def _unused_loads(roller: MountedRoller) -> Iterator[str]:
-    """Yield a sentence for each force in the file of a roller, and for each requirement, that does not count."""
+    """Yield a sentence for each force in the file of a roller, and for each requirement, that does
+    not count.
+    """
     for name in LOADS:
         if name in roller.given:
-            yield f"{name} = {roller.given[name]} in its file does not count: the carriage gives it. Remove it there."
+            yield (
+                f"{name} = {roller.given[name]} in its file does not count: the carriage gives it. "
+                "Remove it there."
+            )
     for name, own in roller.required.items():
         if name not in LIVES_OF_PAIR or math.isfinite(own.most):
-            yield f"requirement.{name} in its file is not judged: of a carriage only a smallest life is."
+            yield (
+                f"requirement.{name} in its file is not judged: of a carriage only a smallest life "
+                "is."
+            )
 
 
 def _flags(solved: xr.Dataset) -> np.ndarray:
@@ -495,9 +612,15 @@ def _flags(solved: xr.Dataset) -> np.ndarray:
     deep = validity_bit("deep_life")
     lives = solved["life_to_first_limit_hours"].transpose(..., "body").values
     own = solved["validity_body"].transpose(..., "body").values
-    ends = np.where(lives[..., BODIES.index("guide")] < lives[..., BODIES.index("roller")], own[..., 1], own[..., 0])
+    ends = np.where(
+        lives[..., BODIES.index("guide")] < lives[..., BODIES.index("roller")],
+        own[..., 1],
+        own[..., 0],
+    )
     of_roller = own[..., BODIES.index("roller")]
-    return np.asarray((solved["validity"].values & ~deep & ~worn) | (ends & deep) | (of_roller & worn))
+    return np.asarray(
+        (solved["validity"].values & ~deep & ~worn) | (ends & deep) | (of_roller & worn)
+    )
 
 
 def _first_ends(lives: Lives, solved: xr.Dataset) -> np.ndarray:
@@ -505,14 +628,19 @@ def _first_ends(lives: Lives, solved: xr.Dataset) -> np.ndarray:
     hours = np.nan_to_num(lives.summed["life_to_first_limit_hours"], nan=np.inf)
     body = np.argmin(hours, axis=1)
     attrs = solved["limiting_mechanism"].attrs
-    words = dict(zip(np.ravel(attrs["flag_values"]).tolist(), attrs["flag_meanings"].split(), strict=True))
+    words = dict(
+        zip(np.ravel(attrs["flag_values"]).tolist(), attrs["flag_meanings"].split(), strict=True)
+    )
     numbers = lives.summed["limiting_mechanism"][np.arange(len(body)), body]
     return np.array(
-        [[BODIES[k], words[number]] for k, number in zip(body, numbers.tolist(), strict=True)], dtype=object
+        [[BODIES[k], words[number]] for k, number in zip(body, numbers.tolist(), strict=True)],
+        dtype=object,
     )
 
 
-def with_lives(ds: xr.Dataset, whole: Carriage, solve: Callable[..., xr.Dataset] | None = None) -> xr.Dataset:
+def with_lives(
+    ds: xr.Dataset, whole: Carriage, solve: Callable[..., xr.Dataset] | None = None
+) -> xr.Dataset:
     """Return a solved carriage with the life of each roller, its regime, and the worst roller.
 
     Parameters
@@ -538,7 +666,9 @@ def with_lives(ds: xr.Dataset, whole: Carriage, solve: Callable[..., xr.Dataset]
         values[~ds["converged"].values] = np.nan
     flagged = np.zeros(shape, dtype=np.int64)
     lasts = {end: np.full(n, np.inf) for end in verdict.ENDS}
-    own = np.array([roller.case.velocity for roller in whole.rollers if roller.case is not None], dtype=float)
+    own = np.array(
+        [roller.case.velocity for roller in whole.rollers if roller.case is not None], dtype=float
+    )
     pace = hours_per_km(ds["share"].values, np.tile(ds["speed"].values, (n, 1)), own)
     ends = np.full((n, 2), "", dtype=object)  # body and limit
     flags: Mapping[str, Any] = {}
@@ -548,7 +678,11 @@ def with_lives(ds: xr.Dataset, whole: Carriage, solve: Callable[..., xr.Dataset]
     for place in cases:
         groups.setdefault(repr(whole.rollers[place[1]].options), []).append(place)
     for places in groups.values():
-        options = {key: value for key, value in whole.rollers[places[0][1]].options.items() if key != "outputs"}
+        options = {
+            key: value
+            for key, value in whole.rollers[places[0][1]].options.items()
+            if key != "outputs"
+        }
         of_group = [cases[place] for place in places]
         outputs = ("forces", "peak_stress", "life", "limits", *groups_for_run_in(of_group))
         solved = solve_cases(of_group, outputs=outputs, **options)
@@ -564,7 +698,12 @@ def with_lives(ds: xr.Dataset, whole: Carriage, solve: Callable[..., xr.Dataset]
         regime[i, j] = solved["regime"].values
         flagged[i, j] = _flags(lives.solved)
         damage[i, j] = block_damage(lives.time, solved[LIFE].values)  # of a km of travel
-    meanings = {**flags, "flag_values": np.append(np.int8(-1), np.asarray(flags.get("flag_values", []), dtype=np.int8))}
+    meanings = {
+        **flags,
+        "flag_values": np.append(
+            np.int8(-1), np.asarray(flags.get("flag_values", []), dtype=np.int8)
+        ),
+    }
     meanings["flag_meanings"] = f"lifted {flags.get('flag_meanings', '')}".strip()
     first = "to the first limit of the roller or its rail"
     if not ds["converged"].values[ds["share"].values > 0].all():
@@ -573,16 +712,40 @@ def with_lives(ds: xr.Dataset, whole: Carriage, solve: Callable[..., xr.Dataset]
     ends[~np.isfinite(lasts[""])] = ""
     travel = lasts[""] / pace
     variables: dict[str, Any] = {
-        "case_life_hours": (_RC, case_hours, _attrs("h", "life to the first limit under a load case alone")),
-        "damage_per_km": (_RC, damage, _attrs("km-1", "damage of a load case by a km of travel with all load cases")),
+        "case_life_hours": (
+            _RC,
+            case_hours,
+            _attrs("h", "life to the first limit under a load case alone"),
+        ),
+        "damage_per_km": (
+            _RC,
+            damage,
+            _attrs("km-1", "damage of a load case by a km of travel with all load cases"),
+        ),
         "roller_regime": (_RC, regime, meanings),
-        "roller_validity": (_RC, flagged, {"long_name": "validity flags of the roller, as of `trackroller.solve`"}),
+        "roller_validity": (
+            _RC,
+            flagged,
+            {"long_name": "validity flags of the roller, as of `trackroller.solve`"},
+        ),
         "life_km": (_R, travel, _attrs("km", f"travel of the carriage {first}")),
         "life_hours": (_R, lasts[""], _attrs("h", f"hours of travel {first}")),
-        "first_body": (_R, ends[:, 0].astype(str), {"long_name": "roller or rail, whichever reaches its limit first"}),
+        "first_body": (
+            _R,
+            ends[:, 0].astype(str),
+            {"long_name": "roller or rail, whichever reaches its limit first"},
+        ),
         "first_limit": (_R, ends[:, 1].astype(str), {"long_name": "limit that is reached first"}),
-        "life_hours_low": (_R, lasts["_low"], _attrs("h", f"low end of the hours of travel {first}")),
-        "life_hours_high": (_R, lasts["_high"], _attrs("h", f"high end of the hours of travel {first}")),
+        "life_hours_low": (
+            _R,
+            lasts["_low"],
+            _attrs("h", f"low end of the hours of travel {first}"),
+        ),
+        "life_hours_high": (
+            _R,
+            lasts["_high"],
+            _attrs("h", f"high end of the hours of travel {first}"),
+        ),
     }
     if whole.duty is not None:
         variables["life_years"] = (
@@ -591,7 +754,11 @@ def with_lives(ds: xr.Dataset, whole: Carriage, solve: Callable[..., xr.Dataset]
             _attrs("year", "years of the duty to the first limit"),
         )
     database = load_database()
-    materials = [material_values(roller.case, database) for roller in whole.rollers if roller.case is not None]
+    materials = [
+        material_values(roller.case, database)
+        for roller in whole.rollers
+        if roller.case is not None
+    ]
     variables |= checks.variables() | _inputs_of_rollers(whole, materials, pace)
     known = np.where(np.isnan(travel), np.inf, travel)
     worst = ""
@@ -614,24 +781,38 @@ class _Checks:
     def __init__(self, number: int) -> None:
         shape = (number, len(LIMITS), len(BODIES))
         self.names = list(LIMITS)
-        self.used, self.hours = np.full(shape, np.nan), np.full(shape, np.nan)
+        self.used = np.full(shape, np.nan)
+        self.hours = np.full(shape, np.nan)
         self.state = np.zeros(shape, dtype=np.int8)
-        self.asked: list[str] = []
+        self.requested: list[str] = []
         self.notes: list[str] = []
 
     def add(self, rollers: np.ndarray, lives: Lives, solved: xr.Dataset) -> None:
-        """Take the limits of rollers that were solved together; one that is unknown in a load case is not known."""
+        """Take the limits of rollers that were solved together; one that is unknown in a load case
+        is not known.
+        """
         places = [self.names.index(name) for name in solved["limit"].values.tolist()]
         state = lives.summed["limit_state"].copy()
         shares = (lives.share == 0)[:, None, None]
-        least = lives.of(np.where(shares, len(verdict.STATES), solved["limit_state"].values), np.minimum)
+        least = lives.of(
+            np.where(shares, len(verdict.STATES), solved["limit_state"].values), np.minimum
+        )
         exceeded = verdict.STATES.index("exceeded")
-        state[(least == verdict.STATES.index("unknown")) & (state != exceeded)] = verdict.STATES.index("unknown")
+        state[(least == verdict.STATES.index("unknown")) & (state != exceeded)] = (
+            verdict.STATES.index("unknown")
+        )
         into = np.ix_(rollers, np.array(places))
         self.state[into] = state
-        self.used[into], self.hours[into] = lives.summed["utilisation"], lives.summed["life_hours_by_limit"]
-        self.asked += [name for name in solved["limit"].values.tolist() if name not in self.asked]
-        self.notes += [line for line in str(solved.attrs.get(NOTES, "")).split("\n") if line and line not in self.notes]
+        self.used[into] = lives.summed["utilisation"]
+        self.hours[into] = lives.summed["life_hours_by_limit"]
+        self.requested += [
+            name for name in solved["limit"].values.tolist() if name not in self.requested
+        ]
+        self.notes += [
+            line
+            for line in str(solved.attrs.get(NOTES, "")).split("\n")
+            if line and line not in self.notes
+        ]
 
     def variables(self) -> dict[str, Any]:
         """Return utilisation, hours and state of each limit as variables, with their labels."""
@@ -645,17 +826,23 @@ class _Checks:
         return {
             "limit": ("limit", self.names, {"long_name": "limit"}),
             "body": ("body", list(BODIES), {"long_name": "body"}),
-            "utilisation": (dims, self.used, _attrs("1", "largest utilisation over the load cases")),
+            "utilisation": (
+                dims,
+                self.used,
+                _attrs("1", "largest utilisation over the load cases"),
+            ),
             "life_hours_by_limit": (dims, self.hours, alone),
             "limit_state": (dims, self.state, flags),
         }
 
     def attributes(self) -> dict[str, str]:
         """Return which limits were asked for, and what they lack, as attributes."""
-        return {"limits": " ".join(self.asked), NOTES: "\n".join(self.notes)}
+        return {"limits": " ".join(self.requested), NOTES: "\n".join(self.notes)}
 
 
-def _inputs_of_rollers(whole: Carriage, materials: list[dict[str, Any]], pace: np.ndarray) -> dict[str, Any]:
+def _inputs_of_rollers(
+    whole: Carriage, materials: list[dict[str, Any]], pace: np.ndarray
+) -> dict[str, Any]:
     """Return the materials of the rollers, and the life that their files require, as variables.
 
     A required travel is one of the carriage, which takes `pace` hours a km, (n,).
@@ -670,21 +857,31 @@ def _inputs_of_rollers(whole: Carriage, materials: list[dict[str, Any]], pace: n
     names: dict[str, Any] = {
         field: (_R, [str(own[field]["name"]) for own in materials], {}) for field in MATERIAL_FIELDS
     }
-    return names | {"required_hours": (_R, required, _attrs("h", "life that the file of the roller requires"))}
+    return names | {
+        "required_hours": (_R, required, _attrs("h", "life that the file of the roller requires"))
+    }
 
 
 def _each_once(materials: list[dict[str, Any]]) -> dict[str, Any]:
     """Return the values of the materials of all rollers and rails, those of equal pairs once."""
     pairs = {json.dumps(own, sort_keys=True, default=str): own for own in materials}
-    return {f"{name}_{k}": values for k, own in enumerate(pairs.values()) for name, values in own.items()}
+    return {
+        f"{name}_{k}": values
+        for k, own in enumerate(pairs.values())
+        for name, values in own.items()
+    }
 
 
 def _not_given(whole: Carriage) -> dict[str, Any]:
-    """Return the values of rollers that nobody gave and that the carriage does not give, by name."""
-    stated = {*LOADS, "travel"}
+    """Return the values of rollers that nobody gave and that the carriage does not give, by
+    name.
+    """
+    given = {*LOADS, "travel"}
     if all(case.speed is not None for case in whole.cases):
-        stated |= {"velocity"}
-    found: dict[str, Any] = {}
+        given |= {"velocity"}
+    values: dict[str, Any] = {}
     for case in (roller.case for roller in whole.rollers if roller.case is not None):
-        found |= used_of(plain_inputs(case), [name for name in case.not_given if name not in stated])
-    return found
+        values |= used_of(
+            plain_inputs(case), [name for name in case.not_given if name not in given]
+        )
+    return values

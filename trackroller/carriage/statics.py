@@ -1,16 +1,20 @@
-"""A rigid carriage on one-sided springs: the forces of its rollers, and the loads at which it lifts a roller or tips.
+"""A rigid carriage on one-sided springs: the forces of its rollers, and the loads at which it lifts
+a roller or tips.
 
-The carriage has six freedoms. The drive holds it along the track, so that five remain: displacements along y and z and
-rotations about x, y and z. Each roller presses on its rail with a spring that takes no tension. A locating roller has a
-second spring along its axis, which acts as long as the roller presses on its rail.
+The carriage has six freedoms. The drive holds it along the track, so that five remain:
+displacements along y and z and rotations about x, y and z. Each roller presses on its rail with a
+spring that takes no tension. A locating roller has a second spring along its axis, which acts as
+long as the roller presses on its rail.
 
-The radial springs have a potential energy that is convex, so that its minimum is the equilibrium and is found by a
-damped Newton method, which linearises each spring at its load. The axial stiffness follows from the radial load, and is
-computed again until the forces stay the same; close to the solution, Newton's method solves for both together. A roller
-that is about to lift loses its axial load by a jump, beyond which no equilibrium with this roller exists.
+The radial springs have a potential energy that is convex, so that its minimum is the equilibrium
+and is found by a damped Newton method, which linearises each spring at its load. The axial
+stiffness follows from the radial load, and is computed again until the forces stay the same; close
+to the solution, Newton's method solves for both together. A roller that is about to lift loses its
+axial load by a jump, beyond which no equilibrium with this roller exists.
 
-Rollers on one line leave the carriage free to roll about it, as a door leaf that hangs on its rail. This freedom is
-left out: the carriage swings until the loads have no moment about the line, see `trackroller.carriage.loads.swing_of`.
+Rollers on one line leave the carriage free to roll about it, as a door leaf that hangs on its rail.
+This freedom is left out: the carriage swings until the loads have no moment about the line, see
+`trackroller.carriage.loads.swing_of`.
 
 ASSUME: displacements are small; a lifted locating roller carries no axial load.
 """
@@ -38,10 +42,12 @@ MOST_STEPS = 20  # of this method
 MOST_SPRINGS = 16  # linear springs whose 2^16 sets of loaded ones are all tried
 MOST_SETS = 256  # carrying sets that are tried for other springs, the nearest ones first
 BALANCED = 1e-9  # of the largest force: what the sums of a solution may leave
-SETTLED = 1e-7  # of the largest force: how far a force of a solution may be off the one of its springs
+# of the largest force: how far a force of a solution may be off the one of its springs
+SETTLED = 1e-7
 TOUCHES = 1e-10  # of the largest force: a roller on a linear spring with less only touches its rail
 UNLOADED = 1e-60  # N: a contact with less has no axial stiffness
-LARGEST_MULTIPLIER = 1000.0  # a carriage that holds so many times its loads counts as one that never tips
+# a carriage that holds so many times its loads counts as one that never tips
+LARGEST_MULTIPLIER = 1000.0
 _INFEASIBLE = 1e-9  # of the wrench: what no force of the rollers balances
 
 
@@ -66,8 +72,8 @@ class Springs:
     Parameters
     ----------
     radial, axial : numpy.ndarray, shape (n, 5)
-        Displacement of a roller into its rail and along its axis for a unit of each freedom; rotations count as
-        displacements at the distance `length`.
+        Displacement of a roller into its rail and along its axis for a unit of each freedom;
+        rotations count as displacements at the distance `length`.
     locating : numpy.ndarray of bool, shape (n,)
         Whether the roller carries axial load.
     contact : numpy.ndarray, shape (n,)
@@ -81,7 +87,8 @@ class Springs:
     length : float
         Length that turns rotations into displacements [mm].
     basis : numpy.ndarray, shape (5, m)
-        The freedoms that the rollers hold, as columns; `radial` and `axial` have m columns then. All five by default.
+        The freedoms that the rollers hold, as columns; `radial` and `axial` have m columns then.
+        All five by default.
     hinge : numpy.ndarray, optional
         Place (2,) along y and z of the line about which the carriage swings [mm].
     """
@@ -99,18 +106,25 @@ class Springs:
     hinge: np.ndarray | None = None
 
     def approach(self, force: np.ndarray) -> np.ndarray:
-        """Return the approach of each roller to its rail under radial forces >= 0 (n,) [N], in mm."""
+        """Return the approach of each roller to its rail under radial forces >= 0 (n,) [N],
+        in mm.
+        """
         return self.contact * np.cbrt(force) ** 2 + self.radial_compliance * force
 
     def force(self, approach: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return radial forces [N] and stiffness [N/mm] at approaches (n,) [mm]; both are 0 for a lifted roller."""
+        """Return radial forces [N] and stiffness [N/mm] at approaches (n,) [mm]; both are 0 for a
+        lifted roller.
+        """
         pressed = np.maximum(approach, 0.0)
         with np.errstate(divide="ignore", invalid="ignore"):
-            root = np.fmin(np.sqrt(pressed / self.contact), np.cbrt(pressed / self.radial_compliance))
+            root = np.fmin(
+                np.sqrt(pressed / self.contact), np.cbrt(pressed / self.radial_compliance)
+            )
             steps = 0
             if self._mixed:
                 steps = 60
-            for _ in range(steps):  # from above: the approach is a convex function of the cube root of the force
+            # from above: the approach is a convex function of the cube root of the force
+            for _ in range(steps):
                 over = self.contact * root**2 + self.radial_compliance * root**3 - pressed
                 slope = 2 * self.contact * root + 3 * self.radial_compliance * root**2
                 step = np.where(pressed > 0, over / slope, 0.0)
@@ -119,28 +133,36 @@ class Springs:
                     break
             stiffness = 1.0 / (2 / 3 * self.contact / root + self.radial_compliance)
         root = np.where(pressed > 0, root, 0.0)
-        return root**3, np.where(approach >= 0, np.where(root > 0, stiffness, self._unloaded()), 0.0)
+        return root**3, np.where(
+            approach >= 0, np.where(root > 0, stiffness, self._unloaded()), 0.0
+        )
 
     @cached_property
     def _mixed(self) -> bool:
-        """Return whether a roller has a contact and a compliance in series; otherwise its force is a closed form."""
+        """Return whether a roller has a contact and a compliance in series; otherwise its force is
+        a closed form.
+        """
         return bool(np.any((self.contact > 0) & (self.radial_compliance > 0)))
 
     def _unloaded(self) -> np.ndarray:
-        """Return the stiffness of a roller that just touches: that of a linear spring, 0 for a Hertzian contact."""
+        """Return the stiffness of a roller that just touches: that of a linear spring, 0 for a
+        Hertzian contact.
+        """
         with np.errstate(divide="ignore"):
             return np.where(self.contact > 0, 0.0, 1.0 / self.radial_compliance)
 
     def energy(self, approach: np.ndarray, force: np.ndarray) -> float:
         """Return the energy of the radial springs [N mm]."""
-        complementary = 0.6 * self.contact * np.cbrt(force) ** 5 + 0.5 * self.radial_compliance * force**2
+        complementary = (
+            0.6 * self.contact * np.cbrt(force) ** 5 + 0.5 * self.radial_compliance * force**2
+        )
         return float(np.sum(force * np.maximum(approach, 0.0) - complementary))
 
     def axial_stiffness(self, force: np.ndarray) -> np.ndarray:
         """Return the axial stiffness under radial forces > 0 (n,) [N], in N/mm.
 
-        Both contacts of a wedge approach by u_r cos(alpha) +- u_a sin(alpha), so that the axial stiffness of the
-        contacts is tan(alpha)^2 times the radial one.
+        Both contacts of a wedge approach by u_r cos(alpha) +- u_a sin(alpha), so that the axial
+        stiffness of the contacts is tan(alpha)^2 times the radial one.
         """
         of_contacts = self.contact / (1.5 * np.cbrt(force) * self.tangent**2)
         return 1.0 / (of_contacts + self.axial_compliance)
@@ -151,20 +173,25 @@ class Springs:
         return self.axial_stiffness(force) ** 2 * of_contacts
 
     def linear_at(self, force: float) -> Springs:
-        """Return linear springs with the compliance of these at one radial force; preload and play are kept."""
+        """Return linear springs with the compliance of these at one radial force; preload and play
+        are kept.
+        """
         compliance = 2 / 3 * self.contact / np.cbrt(force) + self.radial_compliance
         preload, _ = self.force(self.offset)
         offset = np.where(self.offset > 0, preload * compliance, self.offset)
-        return replace(self, contact=np.zeros_like(compliance), radial_compliance=compliance, offset=offset)
+        return replace(
+            self, contact=np.zeros_like(compliance), radial_compliance=compliance, offset=offset
+        )
 
 
 @dataclass(frozen=True)
 class Equilibrium:
-    """Forces of n rollers: `radial` >= 0 presses on the rail, `axial` acts on the roller along its axis [N], (n,).
+    """Forces of n rollers: `radial` >= 0 presses on the rail, `axial` acts on the roller along its
+    axis [N], (n,).
 
-    `approach` is that of each roller to its rail [mm], (n,); below 0 the roller has lifted by so much. `start` is the
-    displacement, from which a similar wrench is solved faster. `converged` tells whether the state fulfils all
-    conditions of an equilibrium, see `fulfils`.
+    `approach` is that of each roller to its rail [mm], (n,); below 0 the roller has lifted by so
+    much. `start` is the displacement, from which a similar wrench is solved faster. `converged`
+    tells whether the state fulfils all conditions of an equilibrium, see `fulfils`.
     """
 
     radial: np.ndarray
@@ -180,7 +207,9 @@ class Equilibrium:
 
 
 def free_ways(springs: Springs) -> np.ndarray:
-    """Return the motions (k, 5) of the carriage although all rollers touch their rails; k is 0 if they hold it."""
+    """Return the motions (k, 5) of the carriage although all rollers touch their rails; k is 0 if
+    they hold it.
+    """
     rows = np.vstack([springs.radial, springs.axial[springs.locating]])
     _, values, ways = np.linalg.svd(rows)
     values = np.concatenate([values, np.zeros(len(ways) - values.size)])
@@ -191,11 +220,19 @@ def without(springs: Springs, way: np.ndarray, hinge: np.ndarray) -> Springs:
     """Return the springs without one freedom, a motion (5,) of length 1 about the line `hinge`."""
     _, _, ways = np.linalg.svd(way[None, :])
     basis = ways[1:].T
-    return replace(springs, radial=springs.radial @ basis, axial=springs.axial @ basis, basis=basis, hinge=hinge)
+    return replace(
+        springs,
+        radial=springs.radial @ basis,
+        axial=springs.axial @ basis,
+        basis=basis,
+        hinge=hinge,
+    )
 
 
 def motion_of(way: np.ndarray) -> str:
-    """Return the word for a motion (5,); one that turns the carriage and moves it counts as turning."""
+    """Return the word for a motion (5,); one that turns the carriage and moves it counts as
+    turning.
+    """
     size = np.abs(way) * np.array([0.5, 0.5, 1.0, 1.0, 1.0])
     return MOTIONS[int(np.argmax(size))]
 
@@ -214,7 +251,8 @@ def equilibrium(
     start : numpy.ndarray, shape (5,), optional
         Displacement of a similar equilibrium.
     thorough : bool
-        Whether other sets of carrying rollers are tried where removing those that lift leads to no equilibrium.
+        Whether other sets of carrying rollers are tried where removing those that lift leads to no
+        equilibrium.
 
     Returns
     -------
@@ -260,8 +298,8 @@ def fulfils(springs: Springs, wrench: np.ndarray, state: Equilibrium) -> bool:
 
     Notes
     -----
-    Forces and moments balance the wrench, no roller pulls on its rail, a roller without radial force carries no axial
-    force, and each force is that of its springs at the displacement.
+    Forces and moments balance the wrench, no roller pulls on its rail, a roller without radial
+    force carries no axial force, and each force is that of its springs at the displacement.
     """
     size = _size(springs, wrench)
     residual = wrench - springs.radial.T @ state.radial - springs.axial.T @ state.axial
@@ -281,7 +319,11 @@ def fulfils(springs: Springs, wrench: np.ndarray, state: Equilibrium) -> bool:
 
 
 def _searched(
-    springs: Springs, wrench: np.ndarray, size: float, place: np.ndarray, visited: list[np.ndarray]
+    springs: Springs,
+    wrench: np.ndarray,
+    size: float,
+    displacement: np.ndarray,
+    visited: list[np.ndarray],
 ) -> Equilibrium | None:
     """Return an equilibrium among the other sets of rollers, None if none is found.
 
@@ -289,24 +331,30 @@ def _searched(
     ----------
     springs, wrench, size
         The problem, and the size of its forces.
-    place : numpy.ndarray, shape (5,)
+    displacement : numpy.ndarray, shape (5,)
         Displacement at which the search begins.
     visited : list of numpy.ndarray of bool
         Sets of carrying rollers without an equilibrium, (n,) each.
     """
     if not springs.contact.any() and len(springs.radial) <= MOST_SPRINGS:
-        return _enumerated(springs, wrench, size, place)
+        return _enumerated(springs, wrench, size, displacement)
     for carries in _other_sets(springs, visited):
         if not _can_balance(springs, carries, wrench):
             continue
-        state = _from_start(springs, carries, wrench, size, _stiff_place(springs, carries, wrench, size))
+        state = _from_start(
+            springs, carries, wrench, size, _stiff_place(springs, carries, wrench, size)
+        )
         if fulfils(springs, wrench, state):
             return state
     return None
 
 
-def _enumerated(springs: Springs, wrench: np.ndarray, size: float, place: np.ndarray) -> Equilibrium | None:
-    """Return the equilibrium of linear springs, of all sets of loaded rollers that with most of them."""
+def _enumerated(
+    springs: Springs, wrench: np.ndarray, size: float, displacement: np.ndarray
+) -> Equilibrium | None:
+    """Return the equilibrium of linear springs, of all sets of loaded rollers that with most of
+    them.
+    """
     n = len(springs.radial)
     sets = ((np.arange(2**n)[:, None] >> np.arange(n)) & 1).astype(bool)
     stiffness = 1.0 / springs.radial_compliance
@@ -316,22 +364,27 @@ def _enumerated(springs: Springs, wrench: np.ndarray, size: float, place: np.nda
         for rows, own in ((springs.radial, stiffness), (springs.axial, of_axial))
     ]
     curve = np.tensordot(sets, shares[0] + shares[1], 1)
-    approach = springs.offset + springs.radial @ place
+    approach = springs.offset + springs.radial @ displacement
     residuals = wrench - (sets * (stiffness * approach)) @ springs.radial
-    residuals -= (sets * (of_axial * (springs.axial @ place))) @ springs.axial
-    damping = 1e-14 * np.trace(curve[-1])  # where a set leaves the carriage free, it moves as little as possible
+    residuals -= (sets * (of_axial * (springs.axial @ displacement))) @ springs.axial
+    # where a set leaves the carriage free, it moves as little as possible
+    damping = 1e-14 * np.trace(curve[-1])
     step = np.linalg.solve(curve + damping * np.eye(len(wrench)), residuals[:, :, None])[:, :, 0]
     forces = stiffness * (approach + step @ springs.radial.T)
     good = (np.where(sets, forces, -forces) >= -TOUCHES * size).all(axis=1)
     for i in np.flatnonzero(good)[np.argsort(-sets[good].sum(axis=1), kind="stable")]:
-        state = _state(springs, sets[i] & springs.locating, wrench, size, place + step[i], True)
+        state = _state(
+            springs, sets[i] & springs.locating, wrench, size, displacement + step[i], True
+        )
         if fulfils(springs, wrench, state):
             return state
     return None
 
 
 def _other_sets(springs: Springs, visited: list[np.ndarray]) -> list[np.ndarray]:
-    """Return at most `MOST_SETS` sets of carrying rollers, those first that differ least from the visited ones."""
+    """Return at most `MOST_SETS` sets of carrying rollers, those first that differ least from the
+    visited ones.
+    """
     places = np.flatnonzero(springs.locating)
     sets = []
     for removed in range(len(places) + 1):
@@ -346,25 +399,32 @@ def _other_sets(springs: Springs, visited: list[np.ndarray]) -> list[np.ndarray]
     return [sets[i] for i in np.argsort(changes, kind="stable")[:MOST_SETS]]
 
 
-def _stiff_place(springs: Springs, carries: np.ndarray, wrench: np.ndarray, size: float) -> np.ndarray:
-    """Return the displacement (5,) if some rollers carry axial load with the stiffness under an equal radial load."""
-    stiffness = np.where(carries, springs.axial_stiffness(np.full(carries.shape, size / carries.size)), 0.0)
+def _stiff_place(
+    springs: Springs, carries: np.ndarray, wrench: np.ndarray, size: float
+) -> np.ndarray:
+    """Return the displacement (5,) if some rollers carry axial load with the stiffness under an
+    equal radial load.
+    """
+    stiffness = np.where(
+        carries, springs.axial_stiffness(np.full(carries.shape, size / carries.size)), 0.0
+    )
     return _minimum(springs, stiffness, wrench, np.zeros(len(wrench)), size)
 
 
 def _from_start(
-    springs: Springs, carries: np.ndarray, wrench: np.ndarray, size: float, place: np.ndarray
+    springs: Springs, carries: np.ndarray, wrench: np.ndarray, size: float, displacement: np.ndarray
 ) -> Equilibrium:
     """Return the state that Powell's hybrid method reaches from a displacement.
 
-    A contact has no axial stiffness without load, so that a locating roller with contacts may always count as carrying.
+    A contact has no axial stiffness without load, so that a locating roller with contacts may
+    always count as carrying.
     """
     carries = carries | (springs.locating & (springs.contact > 0))
     at = _coupled_forces(springs, carries, wrench, UNLOADED)
-    scale = max(float(np.abs(place).max()), 1e-12)
+    scale = max(float(np.abs(displacement).max()), 1e-12)
     zero = root(
         lambda own: at(scale * own)[0] / size,
-        place / scale,
+        displacement / scale,
         jac=lambda own: at(scale * own)[1] * (scale / size),
         options={"xtol": 1e-14},
     )
@@ -395,26 +455,33 @@ def _check_balance(springs: Springs, carries: np.ndarray, wrench: np.ndarray) ->
 
 
 def _settled(
-    springs: Springs, carries: np.ndarray, wrench: np.ndarray, size: float, radial: np.ndarray, start: np.ndarray | None
+    springs: Springs,
+    carries: np.ndarray,
+    wrench: np.ndarray,
+    size: float,
+    radial: np.ndarray,
+    start: np.ndarray | None,
 ) -> Equilibrium:
     """Return the equilibrium with the axial stiffness that belongs to its radial forces."""
     least = 1e-6 * size
     stiffness = np.where(carries, springs.axial_stiffness(np.maximum(radial, least)), 0.0)
     if start is None:
-        start = _minimum(springs.linear_at(size / radial.size), stiffness, wrench, np.zeros(len(wrench)), size)
-    place = start
+        start = _minimum(
+            springs.linear_at(size / radial.size), stiffness, wrench, np.zeros(len(wrench)), size
+        )
+    displacement = start
     converged = not (carries.any() and springs.contact.any())
     for turn in range(MOST_PASSES):
-        place = _minimum(springs, stiffness, wrench, place, size)
+        displacement = _minimum(springs, stiffness, wrench, displacement, size)
         if converged or turn not in NEWTON:
             coupled = None
         else:
-            coupled = _coupled(springs, carries, wrench, place, size)
+            coupled = _coupled(springs, carries, wrench, displacement, size)
         if coupled is not None:
-            place = coupled
+            displacement = coupled
             converged = True
             break
-        new, _ = springs.force(springs.offset + springs.radial @ place)
+        new, _ = springs.force(springs.offset + springs.radial @ displacement)
         change = np.abs(new - radial).max()
         if turn < 12:
             radial = new
@@ -424,116 +491,148 @@ def _settled(
         converged = converged or bool(change <= 1e-9 * size)
         if converged:
             break
-    approach = springs.offset + springs.radial @ place
+    approach = springs.offset + springs.radial @ displacement
     radial, _ = springs.force(approach)
     radial[radial < 1e-12 * size] = 0.0
-    axial = np.where(carries, springs.axial_stiffness(np.maximum(radial, least)), 0.0) * (springs.axial @ place)
-    return Equilibrium(*_balanced(springs, carries, wrench, radial, axial), approach, place, converged)
+    axial = np.where(carries, springs.axial_stiffness(np.maximum(radial, least)), 0.0) * (
+        springs.axial @ displacement
+    )
+    return Equilibrium(
+        *_balanced(springs, carries, wrench, radial, axial), approach, displacement, converged
+    )
 
 
 def _state(
-    springs: Springs, carries: np.ndarray, wrench: np.ndarray, size: float, place: np.ndarray, converged: bool
+    springs: Springs,
+    carries: np.ndarray,
+    wrench: np.ndarray,
+    size: float,
+    displacement: np.ndarray,
+    converged: bool,
 ) -> Equilibrium:
-    """Return the forces at a displacement, of which a roller that only touches its rail has none."""
-    approach = springs.offset + springs.radial @ place
+    """Return the forces at a displacement, of which a roller that only touches its rail has
+    none.
+    """
+    approach = springs.offset + springs.radial @ displacement
     radial, _ = springs.force(approach)
     radial = np.where((radial < TOUCHES * size) & (springs.contact == 0), 0.0, radial)
     own = carries & (radial > 0)
     stiffness = springs.axial_stiffness(np.maximum(radial, UNLOADED))
-    axial = np.where(own, stiffness * (springs.axial @ place), 0.0)
-    return Equilibrium(*_balanced(springs, own, wrench, radial, axial), approach, place, converged)
+    axial = np.where(own, stiffness * (springs.axial @ displacement), 0.0)
+    return Equilibrium(
+        *_balanced(springs, own, wrench, radial, axial), approach, displacement, converged
+    )
 
 
 def _coupled_forces(
     springs: Springs, carries: np.ndarray, wrench: np.ndarray, least: float
 ) -> Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]:
-    """Return the function that gives what the forces at a displacement (5,) leave of the wrench, and its derivative.
+    """Return the function that gives what the forces at a displacement (5,) leave of the wrench,
+    and its derivative.
 
-    The axial stiffness is that under the radial forces, of which those below `least` [N] count as `least`.
+    The axial stiffness is that under the radial forces, of which those below `least` [N] count as
+    `least`.
     """
 
-    def at(place: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        force, radial_stiffness = springs.force(springs.offset + springs.radial @ place)
+    def at(displacement: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        force, radial_stiffness = springs.force(springs.offset + springs.radial @ displacement)
         pressed = np.maximum(force, least)
-        slide = springs.axial @ place
+        slide = springs.axial @ displacement
         stiffness = np.where(carries, springs.axial_stiffness(pressed), 0.0)
-        slope = np.where(carries & (force > least), springs.axial_slope(pressed) * radial_stiffness, 0.0)
+        slope = np.where(
+            carries & (force > least), springs.axial_slope(pressed) * radial_stiffness, 0.0
+        )
         residual = springs.radial.T @ force + springs.axial.T @ (stiffness * slide) - wrench
-        curve = (springs.radial.T * radial_stiffness) @ springs.radial + (springs.axial.T * stiffness) @ springs.axial
+        curve = (springs.radial.T * radial_stiffness) @ springs.radial + (
+            springs.axial.T * stiffness
+        ) @ springs.axial
         return residual, curve + (springs.axial.T * (slope * slide)) @ springs.radial
 
     return at
 
 
 def _coupled(
-    springs: Springs, carries: np.ndarray, wrench: np.ndarray, place: np.ndarray, size: float
+    springs: Springs, carries: np.ndarray, wrench: np.ndarray, displacement: np.ndarray, size: float
 ) -> np.ndarray | None:
-    """Return the displacement (5,) at which forces and axial stiffness belong together, by Newton's method.
+    """Return the displacement (5,) at which forces and axial stiffness belong together, by Newton's
+    method.
 
-    None if the method does not come closer from `place`.
+    None if the method does not come closer from `displacement`.
     """
     at = _coupled_forces(springs, carries, wrench, 1e-6 * size)
-    residual, curve = at(place)
+    residual, curve = at(displacement)
     norm = float(np.abs(residual).max())
     for _ in range(MOST_STEPS):
         if norm <= 1e-11 * size:
-            return place
+            return displacement
         try:
             step = np.linalg.solve(curve, -residual)
         except np.linalg.LinAlgError:
             return None
         for share in (1.0, 0.5, 0.25, 0.125):
-            residual, curve = at(place + share * step)
+            residual, curve = at(displacement + share * step)
             new = float(np.abs(residual).max())
             if new < (1 - 0.1 * share) * norm:
                 break
         else:
             if norm <= 1e-9 * size:  # rounding ends the decrease
-                return place
+                return displacement
             return None
-        place = place + share * step
+        displacement = displacement + share * step
         norm = new
     return None
 
 
 def _minimum(
-    springs: Springs, axial_stiffness: np.ndarray, wrench: np.ndarray, place: np.ndarray, size: float
+    springs: Springs,
+    axial_stiffness: np.ndarray,
+    wrench: np.ndarray,
+    displacement: np.ndarray,
+    size: float,
 ) -> np.ndarray:
     """Return the displacement (5,) of least potential energy, by a damped Newton method."""
     of_axial = (springs.axial.T * axial_stiffness) @ springs.axial
 
-    def at(place: np.ndarray) -> tuple[float, np.ndarray, np.ndarray]:
-        approach = springs.offset + springs.radial @ place
+    def at(displacement: np.ndarray) -> tuple[float, np.ndarray, np.ndarray]:
+        approach = springs.offset + springs.radial @ displacement
         force, stiffness = springs.force(approach)
-        energy = springs.energy(approach, force) + 0.5 * place @ of_axial @ place - wrench @ place
-        slope = springs.radial.T @ force + of_axial @ place - wrench
+        energy = (
+            springs.energy(approach, force)
+            + 0.5 * displacement @ of_axial @ displacement
+            - wrench @ displacement
+        )
+        slope = springs.radial.T @ force + of_axial @ displacement - wrench
         return energy, slope, (springs.radial.T * stiffness) @ springs.radial + of_axial
 
-    energy, slope, curve = at(place)
+    energy, slope, curve = at(displacement)
     damping = 1e-12
     for _ in range(400):
         if np.abs(slope).max() <= 1e-12 * size or damping > 1e4:
             break
         scale = max(float(np.trace(curve)), 1e-6 * size)
         step = np.linalg.solve(curve + damping * scale * np.eye(len(slope)), -slope)
-        new = at(place + step)
+        new = at(displacement + step)
         better = new[0] <= energy + 1e-4 * float(slope @ step)
-        flat = np.abs(new[1]).max() < 0.5 * np.abs(slope).max() and new[0] <= energy + 1e-12 * abs(energy)
+        flat = np.abs(new[1]).max() < 0.5 * np.abs(slope).max() and new[0] <= energy + 1e-12 * abs(
+            energy
+        )
         if not flat and abs(float(slope @ step)) <= 1e-15 * abs(energy):
             break
         if better or flat:  # close to the minimum, rounding hides the decrease of the energy
-            place = place + step
+            displacement = displacement + step
             energy, slope, curve = new
             damping = max(damping / 30, 1e-14)
         else:
             damping *= 10
-    return place
+    return displacement
 
 
 def _balanced(
     springs: Springs, carries: np.ndarray, wrench: np.ndarray, radial: np.ndarray, axial: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the forces after the least change that makes their sums exact; determinate forces become exact by it."""
+    """Return the forces after the least change that makes their sums exact; determinate forces
+    become exact by it.
+    """
     loaded = radial > 0
     rows = np.vstack([springs.radial[loaded], springs.axial[carries]])
     for _ in range(2):
@@ -550,13 +649,16 @@ def _balanced(
 
 
 def is_determinate(springs: Springs, state: Equilibrium) -> bool:
-    """Return whether the sums of forces and moments give all forces of the rollers, whatever their stiffness is."""
+    """Return whether the sums of forces and moments give all forces of the rollers, whatever their
+    stiffness is.
+    """
     rows = np.vstack([springs.radial[state.loaded], springs.axial[springs.locating & state.loaded]])
     return rows.size == 0 or np.linalg.matrix_rank(rows, tol=1e-9) == len(rows)
 
 
 def multipliers(springs: Springs, fixed: np.ndarray, varying: np.ndarray) -> tuple[float, float]:
-    """Return the multipliers of a part of the loads at which the first roller lifts, and at which the carriage tips.
+    """Return the multipliers of a part of the loads at which the first roller lifts, and at which
+    the carriage tips.
 
     Parameters
     ----------
@@ -568,9 +670,10 @@ def multipliers(springs: Springs, fixed: np.ndarray, varying: np.ndarray) -> tup
     Returns
     -------
     tuple of float
-        Multipliers [1]; inf if it does not happen up to `LARGEST_MULTIPLIER`. Rollers count that carry load at the
-        multiplier 1 or by their preload; one that has lifted at 1 gives a multiplier below 1. Loads for which no
-        equilibrium with all of these rollers is found count as lifting one. Both are NaN without an equilibrium at 1.
+        Multipliers [1]; inf if it does not happen up to `LARGEST_MULTIPLIER`. Rollers count that
+        carry load at the multiplier 1 or by their preload; one that has lifted at 1 gives a
+        multiplier below 1. Loads for which no equilibrium with all of these rollers is found count
+        as lifting one. Both are NaN without an equilibrium at 1.
     """
     given = equilibrium(springs, fixed + varying)
     if not given.converged:
@@ -579,7 +682,9 @@ def multipliers(springs: Springs, fixed: np.ndarray, varying: np.ndarray) -> tup
     searched = not _holds(springs, fixed + varying, thorough=False)
 
     def lowest(multiplier: float) -> float:
-        """Return the smallest approach of the rollers that carry load; below 0 where they do not carry all loads."""
+        """Return the smallest approach of the rollers that carry load; below 0 where they do not
+        carry all loads.
+        """
         try:
             state = equilibrium(springs, fixed + multiplier * varying, given.start, searched)
         except Moves:
@@ -589,7 +694,9 @@ def multipliers(springs: Springs, fixed: np.ndarray, varying: np.ndarray) -> tup
             return smallest
         return min(smallest, -1e-12 * springs.length)
 
-    tipping = _tipping(springs, fixed, varying, lambda multiplier: _holds(springs, fixed + multiplier * varying))
+    tipping = _tipping(
+        springs, fixed, varying, lambda multiplier: _holds(springs, fixed + multiplier * varying)
+    )
     if not watched.any() or not np.any(varying):
         return np.inf, tipping
     if given.approach[watched].min() <= 0:
@@ -603,7 +710,8 @@ def multipliers(springs: Springs, fixed: np.ndarray, varying: np.ndarray) -> tup
 def to_one_contact(
     springs: Springs, fixed: np.ndarray, varying: np.ndarray, tangent: np.ndarray, lift_off: float
 ) -> float:
-    """Return the multiplier of a part of the loads at which the first contact of a roller lifts, without friction.
+    """Return the multiplier of a part of the loads at which the first contact of a roller lifts,
+    without friction.
 
     Parameters
     ----------
@@ -618,8 +726,8 @@ def to_one_contact(
 
     Notes
     -----
-    The contacts of a wedge carry F_rad +- F_ax/tan(alpha): one of them lifts where the axial force exceeds
-    F_rad tan(alpha).
+    The contacts of a wedge carry F_rad +- F_ax/tan(alpha): one of them lifts where the axial force
+    exceeds F_rad tan(alpha).
     """
     known = springs.locating & np.isfinite(tangent)
     if np.isnan(lift_off) or not known.any() or not np.any(varying):
@@ -658,7 +766,9 @@ def _holds(springs: Springs, wrench: np.ndarray, thorough: bool = True) -> bool:
         return False
 
 
-def _tipping(springs: Springs, fixed: np.ndarray, varying: np.ndarray, holds: Callable[[float], bool]) -> float:
+def _tipping(
+    springs: Springs, fixed: np.ndarray, varying: np.ndarray, holds: Callable[[float], bool]
+) -> float:
     """Return the largest multiplier with an equilibrium, inf beyond `LARGEST_MULTIPLIER`."""
     axial = springs.axial[springs.locating]
     n = len(springs.radial)

@@ -8,15 +8,16 @@ from trackroller.carriage.file import IN_LINE, SQUARE, Carriage, MountedRoller
 
 
 def passes_per_km(whole: Carriage) -> np.ndarray:
-    """Return how often rollers pass the busiest point of the rail of each roller, (n,) [1/km]; NaN without strokes.
+    """Return how often rollers pass the busiest point of the rail of each roller, (n,) [1/km]; NaN
+    without strokes.
 
     Notes
     -----
-    A roller at x passes the points from x to x + stroke of its rail, so that the busiest point is passed by as many
-    rollers of the rail as lie within one stroke.
+    A roller at x passes the points from x to x + stroke of its rail, so that the busiest point is
+    passed by as many rollers of the rail as lie within one stroke.
 
-    ASSUME: rollers with one direction of pressing on one line along x run on the same track of the same rail.
-    ASSUME: the other rollers load the point as the roller itself does.
+    ASSUME: rollers with one direction of pressing on one line along x run on the same track of the
+    same rail. ASSUME: the other rollers load the point as the roller itself does.
     """
     if not np.isfinite(whole.stroke):
         return np.full(len(whole.rollers), np.nan)

@@ -16,8 +16,9 @@ from trackroller.cli import ALLOW_CODE, INTERRUPTED, STOPPED
 from trackroller.errors import InputError
 from trackroller.files import interrupts_wait_for_files
 
-# Objects that are made before Python looks for circles among them. Its own 700 means that it looks some hundred times
-# while the libraries are imported, which took 0.3 of 2.5 s of `trackroller solve`.
+# Objects that are made before Python looks for circles among them. Its own 700 means that it looks
+# some hundred times while the libraries are imported, which took 0.3 of 2.5 s of `trackroller
+# solve`.
 ALLOCATIONS = 100_000
 
 
@@ -27,11 +28,13 @@ def run() -> None:
     if sys.argv[1:2] == ["solve"]:
         sys.modules["dask"] = None  # type: ignore[assignment] # xarray imports it where it can, which takes 0.35 s
     try:
-        if ALLOW_CODE in sys.argv:  # read before the line is parsed: the import registers the limits
+        # read before the line is parsed: the import registers the limits
+        if ALLOW_CODE in sys.argv:
             sys.argv.remove(ALLOW_CODE)
             os.environ["TRACKROLLER_ALLOW_CODE"] = str(Path("config", "limits").resolve())
         with interrupts_wait_for_files():
-            from trackroller.cli.main import main  # the import takes longer than everything before it
+            # the import takes longer than everything before it
+            from trackroller.cli.main import main
 
         main()
     except InputError as error:

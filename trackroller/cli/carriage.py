@@ -1,4 +1,6 @@
-"""The command of a carriage: loads, lives and margins of its rollers, and the files that follow from them."""
+"""The command of a carriage: loads, lives and margins of its rollers, and the files that follow
+from them.
+"""
 
 from __future__ import annotations
 
@@ -8,12 +10,20 @@ import shlex
 from collections.abc import Mapping
 from pathlib import Path
 
-from trackroller.cli.case import YAML, writable, writable_data, writable_page, write_result, write_yaml_file
+from trackroller.cli.case import (
+    YAML,
+    writable,
+    writable_data,
+    writable_page,
+    write_result,
+    write_yaml_file,
+)
 from trackroller.cli.usage import print_doubts, print_line
 from trackroller.errors import InputError
 from trackroller.files import sha256, write_text
 
-TABLE_OF_US = "# Written beside it: {}, SHA-256 {}"  # line of a study by which its table is known to be unchanged
+# line of a study by which its table is known to be unchanged
+TABLE_OF_US = "# Written beside it: {}, SHA-256 {}"
 MANY = 20  # load cases from which on a progress bar is shown
 START = "trackroller carriage --example -o {}"  # how a user gets a file to change
 
@@ -27,14 +37,19 @@ def run_carriage(
     spectrum: str | None,
     study: bool,
 ) -> None:
-    """Solve a carriage file, and write or print the result; with `example`, write or print a file to start from.
+    """Solve a carriage file, and write or print the result; with `example`, write or print a file
+    to start from.
 
-    `out` receives the spectrum of the roller `spectrum`, or with `study` a study of all loads with a CSV file
-    of its cases; otherwise netCDF. `report` receives the page. `as_json` prints JSON; without it and
-    `out`, tables are printed.
+    `out` receives the spectrum of the roller `spectrum`, or with `study` a study of all loads with
+    a CSV file of its cases; otherwise netCDF. `report` receives the page. `as_json` prints JSON;
+    without it and `out`, tables are printed.
     """
     if example:
-        _write_example(file, out, {"--json": as_json, "--report": report, "--spectrum": spectrum, "--study": study})
+        _write_example(
+            file,
+            out,
+            {"--json": as_json, "--report": report, "--spectrum": spectrum, "--study": study},
+        )
         return
     file = _given(file)
     target = _target(out, spectrum, study)
@@ -44,7 +59,9 @@ def run_carriage(
         table = _beside(target)
     from trackroller.carriage.file import load_carriage
     from trackroller.carriage.files import spectrum_of, study_of
-    from trackroller.carriage.solve import doubts_of_rollers, forces_of, solve_carriage  # heavy: scipy
+
+    # heavy: scipy
+    from trackroller.carriage.solve import doubts_of_rollers, forces_of, solve_carriage
     from trackroller.report.pages.carriage import print_carriage, write_carriage  # heavy: jinja2
     from trackroller.report.pages.sheet import as_json as text_of
     from trackroller.roller.stored_inputs import doubts_of
@@ -87,9 +104,13 @@ def _given(file: Path | None) -> Path:
     """Return the carriage file; a user who has none learns how to get one."""
     if file is None:
         remedy = f"Write one to start from: {START.format('shuttle.yaml')}, and change its values."
-        raise InputError("carriage file", None, "a file with masses, rollers and load cases", remedy)
+        raise InputError(
+            "carriage file", None, "a file with masses, rollers and load cases", remedy
+        )
     if not file.exists():
-        remedy = f"Check the path, or write an example there: {START.format(shlex.quote(str(file)))}"
+        remedy = (
+            f"Check the path, or write an example there: {START.format(shlex.quote(str(file)))}"
+        )
         raise InputError("carriage file", str(file), "the path of a file", remedy, "does not exist")
     return file
 
@@ -103,7 +124,9 @@ def _write_example(file: Path | None, out: Path | None, others: Mapping[str, obj
         beside.insert(0, str(file))
     if beside:
         remedy = f"Write the example first: {START.format('shuttle.yaml')}"
-        raise InputError("--example", beside[0], "nothing but -o beside it", remedy, "stands beside it")
+        raise InputError(
+            "--example", beside[0], "nothing but -o beside it", remedy, "stands beside it"
+        )
     if out is None:
         print(EXAMPLE, end="")
         return
@@ -111,13 +134,19 @@ def _write_example(file: Path | None, out: Path | None, others: Mapping[str, obj
         wrong = ""
         if os.path.lexists(out):
             wrong = "is there already"
-        raise InputError("--out", str(out), "a new file whose name ends in .yaml", "Give another name.", wrong)
+        raise InputError(
+            "--out", str(out), "a new file whose name ends in .yaml", "Give another name.", wrong
+        )
     write_text(writable(out), EXAMPLE)
-    print_line(f"{out} is written. Change its values, then: trackroller carriage {shlex.quote(str(out))}")
+    print_line(
+        f"{out} is written. Change its values, then: trackroller carriage {shlex.quote(str(out))}"
+    )
 
 
 def _beside(study: Path) -> Path:
-    """Return the table of cases to write beside a study; refuse to replace one that is not as it was written."""
+    """Return the table of cases to write beside a study; refuse to replace one that is not as it
+    was written.
+    """
     table = study.with_suffix(".csv")
     if not os.path.lexists(table):
         return table
@@ -128,7 +157,11 @@ def _beside(study: Path) -> Path:
         allowed = f"a name beside which {table.name} is free, or as this command wrote it"
         remedy = f"Give another name with -o, or move {table.name} away."
         raise InputError(
-            "--out", study.name, allowed, remedy, f"would replace {table.name}, which somebody has changed"
+            "--out",
+            study.name,
+            allowed,
+            remedy,
+            f"would replace {table.name}, which somebody has changed",
         )
     return table
 
@@ -136,7 +169,9 @@ def _beside(study: Path) -> Path:
 def _target(out: Path | None, spectrum: str | None, study: bool) -> Path | None:
     """Return the file to write; refuse options that contradict each other."""
     if spectrum is not None and study:
-        raise InputError("--study", "true", "one of --spectrum and --study", "Run the command once for each.")
+        raise InputError(
+            "--study", "true", "one of --spectrum and --study", "Run the command once for each."
+        )
     if spectrum is None and not study:
         if out is None:
             return None

@@ -19,7 +19,13 @@ from trackroller.roller.aliases import ALIASES, overridden
 from trackroller.roller.case import Case
 from trackroller.roller.doubts import doubts_of_case
 from trackroller.roller.settings import checked_case, with_beside
-from trackroller.yaml_file import errors_by_line, parse_mapping, parse_yaml, read_mapping, write_yaml
+from trackroller.yaml_file import (
+    errors_by_line,
+    parse_mapping,
+    parse_yaml,
+    read_mapping,
+    write_yaml,
+)
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -44,21 +50,38 @@ def settings_of(words: list[str] | None) -> dict[str, Any]:
     for word in words or ():
         key, sign, value = word.partition("=")
         if not sign or not key:
-            raise InputError("--set", word, "key=value", "For example --set friction_coefficient=0.1")
+            raise InputError(
+                "--set", word, "key=value", "For example --set friction_coefficient=0.1"
+            )
         if len(word.splitlines()) > 1:
-            raise InputError("--set", word, "one key=value on one line", "Give --set once for each key.")
+            raise InputError(
+                "--set", word, "one key=value on one line", "Give --set once for each key."
+            )
         if not value.strip():
             raise InputError(
-                "--set", word, "key=value", f"Give a value, or leave --set {key.strip()} out.", "has no value"
+                "--set",
+                word,
+                "key=value",
+                f"Give a value, or leave --set {key.strip()} out.",
+                "has no value",
             )
         if key.strip() in settings:
-            raise InputError("--set", word, "each key once", "Remove one of the two.", f"gives {key.strip()} twice")
+            raise InputError(
+                "--set",
+                word,
+                "each key once",
+                "Remove one of the two.",
+                f"gives {key.strip()} twice",
+            )
         settings[key.strip()] = parse_yaml(value, f"--set {key}")
     return settings
 
 
-def case_of(path: Path | None, words: list[str] | None) -> tuple[Case, dict[str, Any], dict[str, Any]]:
-    """Return the case, the options, duty and sheet of a case file and of --set words; see `checked_case`.
+def case_of(
+    path: Path | None, words: list[str] | None
+) -> tuple[Case, dict[str, Any], dict[str, Any]]:
+    """Return the case, the options, duty and sheet of a case file and of --set words; see
+    `checked_case`.
 
     Without any of them it is the roller with which the live page begins.
     """
@@ -80,10 +103,14 @@ def case_of(path: Path | None, words: list[str] | None) -> tuple[Case, dict[str,
 
 
 def tell_start(path: Path | None, words: list[str] | None) -> None:
-    """Print on stderr which roller is solved where neither a case file nor --set words were given."""
+    """Print on stderr which roller is solved where neither a case file nor --set words were
+    given.
+    """
     if path is None and not words:
         first = ", ".join(with_unit(name, value) for name, value in LASTING.items())
-        print_line(f"No case was given. This is the roller with which the live page begins: {first}.")
+        print_line(
+            f"No case was given. This is the roller with which the live page begins: {first}."
+        )
 
 
 def tell_doubts(case: Case) -> None:
@@ -92,7 +119,9 @@ def tell_doubts(case: Case) -> None:
 
 
 def groups_of(words: str) -> tuple[str, ...]:
-    """Return the groups of outputs of the limits `all`, or of limits whose names are separated by commas."""
+    """Return the groups of outputs of the limits `all`, or of limits whose names are separated by
+    commas.
+    """
     from trackroller import damage  # heavy: numpy and scipy
 
     return damage.groups_of("--limits", [word.strip() for word in words.split(",")])
@@ -116,8 +145,12 @@ def _served(case: Case, options: Mapping[str, Any]) -> tuple[str, ...]:
     return tuple(limit.group for limit in limits)
 
 
-def solve_case(case: Case, options: Mapping[str, Any], beside: Mapping[str, Any], **further: Any) -> xr.Dataset:
-    """Solve a case with what `case_of` returned beside it; `further` are other options of `solve`."""
+def solve_case(
+    case: Case, options: Mapping[str, Any], beside: Mapping[str, Any], **further: Any
+) -> xr.Dataset:
+    """Solve a case with what `case_of` returned beside it; `further` are other options of
+    `solve`.
+    """
     tell_doubts(case)
     from trackroller.roller.solver import solve  # heavy: xarray and dask
 
@@ -127,58 +160,75 @@ def solve_case(case: Case, options: Mapping[str, Any], beside: Mapping[str, Any]
 def writable(out: Path) -> Path:
     """Return the file to write for the path that a user gave.
 
-    The target of a symbolic link is written, and the link stays. A file that this program wrote is replaced; a PDF by
-    any other PDF, because a printed page has no mark.
+    The target of a symbolic link is written, and the link stays. A file that this program wrote is
+    replaced; a PDF by any other PDF, because a printed page has no mark.
 
     Raises
     ------
     InputError
-        If the folder is missing, or `out` is there and is not a regular file, or a file of somebody else, which may be
-        the very file that the command reads.
+        If the folder is missing, or `out` is there and is not a regular file, or a file of somebody
+        else, which may be the very file that the command reads.
     """
     target = Path(os.path.realpath(out))
     if target.exists() and not target.is_file():
-        raise InputError("--out", str(out), "the path of a regular file", "Give the name of a file to write.")
+        raise InputError(
+            "--out", str(out), "the path of a regular file", "Give the name of a file to write."
+        )
     if target.is_file() and not _is_ours(target, out.suffix.lower()):
         allowed = "a new file, or one of its kind that trackroller wrote"
         remedy = "Give another name, or move the file away."
-        raise InputError("--out", str(out), allowed, remedy, "is a file that trackroller did not write")
+        raise InputError(
+            "--out", str(out), allowed, remedy, "is a file that trackroller did not write"
+        )
     if not target.parent.is_dir():
         wrong = "stands in a folder that does not exist"
-        raise InputError("--out", str(out), "a file in a folder", f"Create the folder {target.parent}.", wrong)
+        raise InputError(
+            "--out", str(out), "a file in a folder", f"Create the folder {target.parent}.", wrong
+        )
     return target
 
 
 def writable_data(out: Path, otherwise: str = "") -> Path:
     """Return the netCDF file to write for the path that a user gave; see `writable`.
 
-    Another ending than .nc is refused, because a file must be what its name says. `otherwise` says how to get the
-    result in another form.
+    Another ending than .nc is refused, because a file must be what its name says. `otherwise` says
+    how to get the result in another form.
     """
     if out.suffix.lower() != ".nc":
         remedy = f"Write {out.stem or 'result'}.nc.{otherwise}"
-        raise InputError("--out", str(out), "a file whose name ends in .nc, because it is written as netCDF", remedy)
+        raise InputError(
+            "--out",
+            str(out),
+            "a file whose name ends in .nc, because it is written as netCDF",
+            remedy,
+        )
     return writable(out)
 
 
 def _is_ours(path: Path, suffix: str) -> bool:
-    """Return whether a file is empty, or of the kind that a suffix stands for and written by this program.
+    """Return whether a file is empty, or of the kind that a suffix stands for and written by this
+    program.
 
-    netCDF is the default. It names the program in its history; a CSV file has columns that no table of a user may have.
+    netCDF is the default. It names the program in its history; a CSV file has columns that no table
+    of a user may have.
     """
     content = path.read_bytes()
     if suffix == ".csv":
-        return not content or {b"regime", b"converged"} <= {*content.partition(b"\n")[0].split(b",")}
+        return not content or {b"regime", b"converged"} <= {
+            *content.partition(b"\n")[0].split(b",")
+        }
     head = content
     if suffix in (".html", ".htm"):
         head = content[:4096]
     return not content or (
-        content.startswith(KINDS.get(suffix, (b"CDF", b"\x89HDF"))) and MARKS.get(suffix, MADE) in head
+        content.startswith(KINDS.get(suffix, (b"CDF", b"\x89HDF")))
+        and MARKS.get(suffix, MADE) in head
     )
 
 
 def write_yaml_file(target: Path, values: Mapping[str, Any], comment: str = "") -> None:
-    """Write a spectrum or study file as YAML, with the mark by which `writable` knows it; `target` comes from there.
+    """Write a spectrum or study file as YAML, with the mark by which `writable` knows it; `target`
+    comes from there.
 
     A `comment` is a line below the mark.
     """
@@ -187,7 +237,9 @@ def write_yaml_file(target: Path, values: Mapping[str, Any], comment: str = "") 
 
 
 def free_for_page(page: Path) -> None:
-    """Refuse to write a page that the user did not name over a file that is no page of this program."""
+    """Refuse to write a page that the user did not name over a file that is no page of this
+    program.
+    """
     if os.path.lexists(page) and not (page.is_file() and _is_ours(page, ".html")):
         allowed = "a new file, or a page that trackroller wrote"
         wrong = "is a file of somebody else"
@@ -217,8 +269,11 @@ def _write_roller(dataset: xr.Dataset, target: Path, book: bool) -> None:
     write_roller(dataset, target)
 
 
-def _options(given: Case, options: Mapping[str, Any], limits: str | None, sheet: bool, plain: bool) -> dict[str, Any]:
-    """Return the outputs of a case that is told with its margins, and the limits that it leaves out.
+def _options(
+    given: Case, options: Mapping[str, Any], limits: str | None, sheet: bool, plain: bool
+) -> dict[str, Any]:
+    """Return the outputs of a case that is told with its margins, and the limits that it leaves
+    out.
 
     A `plain` result, which is not told, has the outputs of the case file.
     """
@@ -267,10 +322,11 @@ def solve_and_tell(  # noqa: PLR0913 - one argument for each option of the comma
     condition: str | None,
     no_shortcuts: bool,
 ) -> int:
-    """Solve a case, write or print what was asked for, and return the exit code: 1 if the case failed.
+    """Solve a case, write or print what was asked for, and return the exit code: 1 if the case
+    failed.
 
-    `limits` are names of limits, of which the margins alone are printed. `find` is a parameter, and `condition` what is
-    met in the range that is sought.
+    `limits` are names of limits, of which the margins alone are printed. `find` is a parameter, and
+    `condition` what is met in the range that is sought.
     """
     if find is not None or condition is not None:
         _check_search_alone(find, out, sheet, limits)
@@ -306,15 +362,23 @@ def solve_and_tell(  # noqa: PLR0913 - one argument for each option of the comma
     return 1
 
 
-def _check_search_alone(find: str | None, out: Path | None, sheet: Path | None, limits: str | None) -> None:
+def _check_search_alone(
+    find: str | None, out: Path | None, sheet: Path | None, limits: str | None
+) -> None:
     """Refuse other results beside a search."""
     if out is not None or sheet is not None or limits is not None:
         remedy = "Give one of them at a time."
-        raise InputError("--find", find or "", "a search alone, without -o, --report and --limits", remedy)
+        raise InputError(
+            "--find", find or "", "a search alone, without -o, --report and --limits", remedy
+        )
 
 
 def _find_and_tell(
-    path: Path | None, settings: list[str] | None, name: str | None, condition: str | None, as_json: bool
+    path: Path | None,
+    settings: list[str] | None,
+    name: str | None,
+    condition: str | None,
+    as_json: bool,
 ) -> int:
     """Print the range of a parameter in which a condition is met; return 1 if no value meets it."""
     if name is None or condition is None:
@@ -322,7 +386,9 @@ def _find_and_tell(
             lacking, example = "--find", "axial_force"
         else:
             lacking, example = "--for", "'max_pressure < 900'"
-        raise InputError(lacking, "", "both --find and --for", f"For example {lacking} {example}.", "is missing")
+        raise InputError(
+            lacking, "", "both --find and --for", f"For example {lacking} {example}.", "is missing"
+        )
     case, options, _ = case_of(path, settings)
     tell_start(path, settings)
     tell_doubts(case)
@@ -337,17 +403,22 @@ def _find_and_tell(
     return int(not range_.met)
 
 
-def run_spectrum(file: Path | None, as_json: bool, out: Path | None, report: Path | None, log: Path | None) -> None:
+def run_spectrum(
+    file: Path | None, as_json: bool, out: Path | None, report: Path | None, log: Path | None
+) -> None:
     """Solve the blocks of a spectrum file, and write or print the result.
 
-    `out` receives netCDF, and `report` the page. `as_json` prints JSON; without it and `out`, tables are printed. With
-    `log`, `out` receives the spectrum of a log instead, and `file` is the case file of its roller.
+    `out` receives netCDF, and `report` the page. `as_json` prints JSON; without it and `out`,
+    tables are printed. With `log`, `out` receives the spectrum of a log instead, and `file` is the
+    case file of its roller.
     """
     if log is not None:
         _write_log(log, file, out, as_json or report is not None)
         return
     if file is None:
-        raise InputError("spectrum file", None, "the path of a file", "Write trackroller spectrum shift.yaml.")
+        raise InputError(
+            "spectrum file", None, "the path of a file", "Write trackroller spectrum shift.yaml."
+        )
     if out is None:
         target = None
     else:
@@ -374,11 +445,16 @@ def run_spectrum(file: Path | None, as_json: bool, out: Path | None, report: Pat
         print_spectrum(dataset)
 
 
-def _write_log(log: Path, roller: Path | None, out: Path | None, more: bool) -> None:
+def _write_log(log: Path, roller: Path | None, out: Path | None, has_other_outputs: bool) -> None:
     """Write the load spectrum of a log, and print what a user must know of the log."""
-    if more or out is None or out.suffix.lower() not in YAML:
+    if has_other_outputs or out is None or out.suffix.lower() not in YAML:
         allowed = "--from with -o and a file whose name ends in .yaml"
-        raise InputError("--from", str(log), allowed, "Add -o shift.yaml, and solve that file by trackroller spectrum.")
+        raise InputError(
+            "--from",
+            str(log),
+            allowed,
+            "Add -o shift.yaml, and solve that file by trackroller spectrum.",
+        )
     target = writable(out)
     from trackroller.study.spectrum.history import spectrum_of_log  # heavy: numpy
 
@@ -395,9 +471,16 @@ def _write_log(log: Path, roller: Path | None, out: Path | None, more: bool) -> 
 
 
 def run_wear(
-    case: Path | None, to: str, settings: list[str] | None, out: Path | None, report: Path | None, quiet: bool
+    case: Path | None,
+    to: str,
+    settings: list[str] | None,
+    out: Path | None,
+    report: Path | None,
+    quiet: bool,
 ) -> None:
-    """Follow a roller while it wears; `out` receives the states one by one, and a later run goes on from there."""
+    """Follow a roller while it wears; `out` receives the states one by one, and a later run goes on
+    from there.
+    """
     target = None if out is None else writable_data(out)
     if report is None:
         page = None
@@ -423,7 +506,9 @@ def run_wear(
 
     before = None
     if target is not None and target.exists() and target.stat().st_size:
-        before = read_netcdf(target, "--out", "A run goes on from what the file holds: give another name.")
+        before = read_netcdf(
+            target, "--out", "A run goes on from what the file holds: give another name."
+        )
         if "next_step" not in before:
             allowed = "a new file, or one that `trackroller wear` wrote, to go on from"
             wrong = "holds something else"
@@ -463,5 +548,10 @@ def plot_target(target: str, settings: list[str] | None, out: Path | None, resul
 
 
 def names_study(path: Path) -> bool:
-    """Return True for a study file, which has factors, a base, a name or a method; any other file is a case file."""
-    return bool({"factors", "base", "name", "design", "method"} & set(read_mapping(path, "study or case file")))
+    """Return True for a study file, which has factors, a base, a name or a method; any other file
+    is a case file.
+    """
+    return bool(
+        {"factors", "base", "name", "design", "method"}
+        & set(read_mapping(path, "study or case file"))
+    )

@@ -13,12 +13,23 @@ if TYPE_CHECKING:
 fit = typer.Typer(no_args_is_help=True, help="Values of materials from tests, and the next test.")
 
 Table = Annotated[Path, typer.Argument(help="tests (CSV or .xlsx)", show_default=False)]
-As = Annotated[str, typer.Option("--as", help="name of the material that is made", show_default=False)]
-Like = Annotated[str | None, typer.Option(help="material whose other values, such as E and R_m, the new one takes")]
-Priors = Annotated[list[str] | None, typer.Option("--prior", help="slope=8,2: mean and deviation; others are flat")]
+As = Annotated[
+    str, typer.Option("--as", help="name of the material that is made", show_default=False)
+]
+Like = Annotated[
+    str | None,
+    typer.Option(help="material whose other values, such as E and R_m, the new one takes"),
+]
+Priors = Annotated[
+    list[str] | None, typer.Option("--prior", help="slope=8,2: mean and deviation; others are flat")
+]
 File = Annotated[Path, typer.Option("--file", help="your materials file")]
-Replace = Annotated[bool, typer.Option("--replace", help="change a material that the file has already")]
-Page = Annotated[Path | None, typer.Option("--report", help="page of the fit; fit-NAME.html if not given")]
+Replace = Annotated[
+    bool, typer.Option("--replace", help="change a material that the file has already")
+]
+Page = Annotated[
+    Path | None, typer.Option("--report", help="page of the fit; fit-NAME.html if not given")
+]
 OWN = Path("config/materials.yaml")
 
 
@@ -26,9 +37,15 @@ OWN = Path("config/materials.yaml")
 def fit_sn(  # noqa: PLR0913 - one argument for each option of the command
     table: Table,
     name: As,
-    load_type: Annotated[str, typer.Option(help="rotating bending, bending, axial, torsion or rolling contact")],
-    stress_ratio: Annotated[float, typer.Option(help="smallest over largest stress of a cycle, -1 for full reversal")],
-    group: Annotated[str | None, typer.Option(help="the group to fit, of several in the column `group`")] = None,
+    load_type: Annotated[
+        str, typer.Option(help="rotating bending, bending, axial, torsion or rolling contact")
+    ],
+    stress_ratio: Annotated[
+        float, typer.Option(help="smallest over largest stress of a cycle, -1 for full reversal")
+    ],
+    group: Annotated[
+        str | None, typer.Option(help="the group to fit, of several in the column `group`")
+    ] = None,
     slope: Annotated[float | None, typer.Option(help="slope k that is held")] = None,
     scatter: Annotated[float | None, typer.Option(help="scatter T_N that is held")] = None,
     like: Like = None,
@@ -37,7 +54,9 @@ def fit_sn(  # noqa: PLR0913 - one argument for each option of the command
     replace: Replace = False,
     report: Page = None,
 ) -> None:
-    """Fit an S-N line to coupons (columns amplitude, cycles, failed), and write the material and a page."""
+    """Fit an S-N line to coupons (columns amplitude, cycles, failed), and write the material and a
+    page.
+    """
     from trackroller.fit import coupons
 
     fit = coupons.fit_sn(
@@ -79,7 +98,9 @@ def fit_bench(  # noqa: PLR0913 - one argument for each option of the command
         "fatigue_strength,slope,scatter"
     ),
     name: Annotated[str, typer.Option("--as", help="name of the material that is made")] = "",
-    body: Annotated[str | None, typer.Option(help="roller or guide; the body that failed if not given")] = None,
+    body: Annotated[
+        str | None, typer.Option(help="roller or guide; the body that failed if not given")
+    ] = None,
     slope: Annotated[float | None, typer.Option(help="slope k that is held")] = None,
     scatter: Annotated[float | None, typer.Option(help="scatter T_N that is held")] = None,
     like: Like = None,
@@ -95,7 +116,14 @@ def fit_bench(  # noqa: PLR0913 - one argument for each option of the command
     from trackroller.fit import bench
 
     fit = bench.fit_bench(
-        table, values, name=name, body=body, slope=slope, scatter_in_cycles=scatter, like=like, prior=_priors(prior)
+        table,
+        values,
+        name=name,
+        body=body,
+        slope=slope,
+        scatter_in_cycles=scatter,
+        like=like,
+        prior=_priors(prior),
     )
     _finish(fit, file, replace, report)
 
@@ -103,7 +131,9 @@ def fit_bench(  # noqa: PLR0913 - one argument for each option of the command
 @fit.command("wear")
 def fit_wear(
     table: Table,
-    base: Annotated[Path | None, typer.Option(help="case file of the roller; without it the paper's example")] = None,
+    base: Annotated[
+        Path | None, typer.Option(help="case file of the roller; without it the paper's example")
+    ] = None,
     body: Annotated[str, typer.Option(help="the body that wears: roller or guide")] = "roller",
     name: Annotated[str, typer.Option("--as", help="name of the material that is made")] = "",
     like: Like = None,
@@ -111,7 +141,9 @@ def fit_wear(
     replace: Replace = False,
     report: Page = None,
 ) -> None:
-    """Fit a wear coefficient to depths of one groove over its travel, by the followed profile; takes minutes."""
+    """Fit a wear coefficient to depths of one groove over its travel, by the followed profile;
+    takes minutes.
+    """
     from trackroller.fit.depths import fit_wear as fitted
     from trackroller.yaml_file import read_mapping
 
@@ -124,7 +156,9 @@ def fit_wear(
 
 @fit.command("example")
 def fit_example(
-    folder: Annotated[Path, typer.Argument(help="folder for the files", show_default=False)] = Path(),
+    folder: Annotated[
+        Path, typer.Argument(help="folder for the files", show_default=False)
+    ] = Path(),
 ) -> None:
     """Write example tests, which are synthetic, with their case files; the tutorial takes them."""
     from trackroller.errors import listing
@@ -139,21 +173,32 @@ def fit_example(
 def fit_next(  # noqa: PLR0913 - one argument for each option of the command
     table: Table,
     candidates: Annotated[Path, typer.Option(help="study file whose rows could be tested")],
-    design: Annotated[Path, typer.Option("--for", help="case file of the design whose B10 matters")],
+    design: Annotated[
+        Path, typer.Option("--for", help="case file of the design whose B10 matters")
+    ],
     tests: Annotated[int, typer.Option(help="how many tests are planned")] = 3,
     values: Annotated[str, typer.Option("--fit", help="what is fitted, separated by commas")] = (
         "fatigue_strength,slope,scatter"
     ),
     until: Annotated[
         float | None,
-        typer.Option(help="factor between the ends of B10 that is wanted: how many more tests, and hours (some 20 s)"),
+        typer.Option(
+            help="factor between the ends of B10 that is wanted: how many more tests, and hours "
+            "(some 20 s)"
+        ),
     ] = None,
-    longest: Annotated[float | None, typer.Option(help="travel after which a test stops [km]")] = None,
-    body: Annotated[str | None, typer.Option(help="roller or guide; the body that failed if not given")] = None,
+    longest: Annotated[
+        float | None, typer.Option(help="travel after which a test stops [km]")
+    ] = None,
+    body: Annotated[
+        str | None, typer.Option(help="roller or guide; the body that failed if not given")
+    ] = None,
     slope: Annotated[float | None, typer.Option(help="slope k that is held")] = None,
     scatter: Annotated[float | None, typer.Option(help="scatter T_N that is held")] = None,
 ) -> None:
-    """Say which tests narrow B10 of a design most, how long they take, and with --until how many more are needed."""
+    """Say which tests narrow B10 of a design most, how long they take, and with --until how many
+    more are needed.
+    """
     import math
 
     from trackroller.fit.bench import fit_bench as fitted

@@ -15,7 +15,9 @@ materials = typer.Typer(no_args_is_help=True, help="The material and friction da
 
 @materials.command("list")
 def materials_list(
-    search: Annotated[str, typer.Argument(help="words of a name or description, such as 42CrMo4")] = "",
+    search: Annotated[
+        str, typer.Argument(help="words of a name or description, such as 42CrMo4")
+    ] = "",
 ) -> None:
     """Print the names and values of all materials, or of those that a word describes."""
     from trackroller.materials.tables import material_rows
@@ -51,14 +53,19 @@ def _print_rows(rows_of: Callable[..., list[dict[str, str]]], *names: str) -> No
 
 
 def _points_of(path: Path) -> dict[str, Any]:
-    """Return the points of an S-N curve in a table with the columns amplitude and cycles, and their source."""
+    """Return the points of an S-N curve in a table with the columns amplitude and cycles, and their
+    source.
+    """
     from trackroller.errors import InputError
     from trackroller.fit.table import LEAST, from_file
 
     table, head = from_file(path, field="sn_points", row="point")
     names = ("amplitude", "cycles")
     if set(table.rows[0]) != set(names):
-        remedy = "Name the columns so, the amplitude with its unit in brackets, and remove other columns."
+        remedy = (
+            "Name the columns so, the amplitude with its unit in brackets, and remove other "
+            "columns."
+        )
         given = ", ".join(table.rows[0])
         allowed = "the columns amplitude [MPa] and cycles"
         raise InputError("sn_points", given, allowed, remedy).at(path, head)
@@ -69,11 +76,17 @@ def _points_of(path: Path) -> dict[str, Any]:
 @materials.command("add")
 def materials_add(
     name: Annotated[str, typer.Argument(show_default=False)],
-    settings: Annotated[list[str], typer.Option("--set", help="field=value, e.g. youngs_modulus=210000")],
+    settings: Annotated[
+        list[str], typer.Option("--set", help="field=value, e.g. youngs_modulus=210000")
+    ],
     file: Annotated[Path, typer.Option(help="your materials file")] = Path("config/materials.yaml"),
-    replace: Annotated[bool, typer.Option("--replace", help="change a material that the file has already")] = False,
+    replace: Annotated[
+        bool, typer.Option("--replace", help="change a material that the file has already")
+    ] = False,
 ) -> None:
-    """Write a material into your own file; comments in the file stay. sn_points takes the name of a table, too."""
+    """Write a material into your own file; comments in the file stay. sn_points takes the name of a
+    table, too.
+    """
     from trackroller.cli.case import settings_of
     from trackroller.damage.own import check_fields
     from trackroller.materials import add_material

@@ -1,4 +1,6 @@
-"""Commands that plan and run a study, report on it, repeat a case, and check or solve again its RO-Crate."""
+"""Commands that plan and run a study, report on it, repeat a case, and check or solve again its
+RO-Crate.
+"""
 
 from __future__ import annotations
 
@@ -11,7 +13,14 @@ from typing import Any, TextIO
 
 import numpy as np
 
-from trackroller.cli.case import case_of, free_for_page, names_study, tell_doubts, writable, writable_page
+from trackroller.cli.case import (
+    case_of,
+    free_for_page,
+    names_study,
+    tell_doubts,
+    writable,
+    writable_page,
+)
 from trackroller.cli.usage import print_doubts, print_line
 from trackroller.errors import InputError
 from trackroller.parameters.example import drive_question, not_given_text, used_of
@@ -28,7 +37,13 @@ from trackroller.study.progress import progress_bar, shown_steps
 from trackroller.study.repeat import repeat_case
 from trackroller.study.run import run_study
 from trackroller.study.status import Status, find_folder, find_study, plan_rows, status_of
-from trackroller.study.store.crate import compare_results, damaged_files, read_crate, study_of_crate, write_crate
+from trackroller.study.store.crate import (
+    compare_results,
+    damaged_files,
+    read_crate,
+    study_of_crate,
+    write_crate,
+)
 from trackroller.study.store.folder import StudyFolder, check_folder
 from trackroller.study.store.ledger import study_folder
 from trackroller.study.store.mark import is_study
@@ -40,7 +55,9 @@ MOST = 20_000  # --explain examines at most this many cases of a study
 def run_with_progress(
     study: Path, results: Path, rerun_failed: bool, scheduler: str | None, quiet: bool, report: bool
 ) -> None:
-    """Run a study with a progress bar of cases/s and the time left; with `report`, make its report."""
+    """Run a study with a progress bar of cases/s and the time left; with `report`, make its
+    report.
+    """
     from trackroller.results.solving import run_any  # heavy: analysis
 
     checked = load_study(study)
@@ -75,7 +92,9 @@ def run_with_progress(
 
 
 def make_report(study: str, results: Path, out: Path | None) -> None:
-    """Make analysis, figures and report of a study that was run, and a copy at `out`; or write its cases to `out`."""
+    """Make analysis, figures and report of a study that was run, and a copy at `out`; or write its
+    cases to `out`.
+    """
     folder = find_study(study, results)[1]
     table = out is not None and out.suffix.lower() in (".xlsx", ".csv")
     if out is None:
@@ -117,7 +136,9 @@ def print_explorer(study: str, results: Path, out: Path | None) -> None:
         path = Path(study)
     target = _page(out)
     if target is not None and target.suffix.lower() == ".pdf":
-        raise InputError("--out", str(out), "a file whose name ends in .html; the explorer works in a browser")
+        raise InputError(
+            "--out", str(out), "a file whose name ends in .html; the explorer works in a browser"
+        )
     solved = open_study(path)
     root = path
     if not path.is_dir():
@@ -138,7 +159,9 @@ def _page(out: Path | None) -> Path | None:
 
 
 def print_best(study: str, results: Path, out: Path | None, as_json: bool = False) -> None:
-    """Print the answer to a study: headline, table and warnings, or its record as JSON; write its page to `out`."""
+    """Print the answer to a study: headline, table and warnings, or its record as JSON; write its
+    page to `out`.
+    """
     from trackroller.report.build import report_text  # heavy: SALib
     from trackroller.report.html import write_page
     from trackroller.report.printed import print_answer
@@ -171,12 +194,16 @@ def print_status(study: str, results: Path, figures: bool) -> int:
     checked, folder = find_study(study, results)
     status = status_of(checked, folder)
     print(
-        f"study     {checked.name}: {status.total} cases, {status.done} done, {status.missing} missing, "
+        f"study     {checked.name}: {status.total} cases, {status.done} done, {status.missing} "
+        "missing, "
         f"{status.failed} failed"
     )
     _print_left(status)
     if status.outdated:
-        print_text("another version of the solver made the results: the next run solves every case anew", "outdated")
+        print_text(
+            "another version of the solver made the results: the next run solves every case anew",
+            "outdated",
+        )
     regimes = [f"{count} {name}" for name, count in status.regimes.items() if count]
     if regimes:
         print(f"regimes   {', '.join(regimes)}")
@@ -191,8 +218,8 @@ def print_status(study: str, results: Path, figures: bool) -> int:
     if figures:
         from trackroller.report.build import draw_solved  # heavy: matplotlib
 
-        place, names = draw_solved(folder)
-        print(f"figures   {len(names)} in {place}")
+        target, names = draw_solved(folder)
+        print(f"figures   {len(names)} in {target}")
     return int(bool(status.corrupt))
 
 
@@ -211,7 +238,9 @@ def _print_left(status: Status) -> None:
 
 
 def print_repeat(study: str, case: int, results: Path) -> int:
-    """Solve a case again and compare; return the exit code, 0 if no result differs by more than rounding explains."""
+    """Solve a case again and compare; return the exit code, 0 if no result differs by more than
+    rounding explains.
+    """
     checked, folder = find_study(study, results)
     again = repeat_case(checked, case, folder)
     print(again.command())
@@ -222,8 +251,12 @@ def print_repeat(study: str, case: int, results: Path) -> int:
 
 
 def _print_differences(compared: Mapping[str, Difference]) -> bool:
-    """Print the variables that differ by more than rounding explains, and return whether there are any."""
-    differing = {name: difference for name, difference in compared.items() if difference.found}
+    """Print the variables that differ by more than rounding explains, and return whether there are
+    any.
+    """
+    differing = {
+        name: difference for name, difference in compared.items() if difference.exceeds_rounding
+    }
     for name, (apart, allowed, scale) in differing.items():
         if apart < math.inf:
             print(f"{name}: differs by {apart:.1e} of {scale}; rounding explains {allowed:.0e}")
@@ -245,7 +278,9 @@ ARCHIVES = (".zip", ".tar", ".tgz", ".gz", ".xz", ".bz2", ".7z")
 
 
 def _crate_at(named: Path, results: Path) -> Path:
-    """Return the folder of a crate by its path or by its name in the results folder; refuse an archive of it."""
+    """Return the folder of a crate by its path or by its name in the results folder; refuse an
+    archive of it.
+    """
     if named.is_file():
         packed = named.suffix.lower() in ARCHIVES
         wrong = "is an archive" if packed else "is a file"
@@ -255,7 +290,9 @@ def _crate_at(named: Path, results: Path) -> Path:
         remedy = "Name the folder."
         if packed:
             remedy = f"Unpack it ({tool} {named.name}), and name the folder."
-        raise InputError("folder", str(named), "the folder of a study, such as results/NAME", remedy, wrong)
+        raise InputError(
+            "folder", str(named), "the folder of a study, such as results/NAME", remedy, wrong
+        )
     inside = results / named
     if not named.exists() and inside.is_dir():
         return inside
@@ -274,11 +311,15 @@ def print_verified(folder: Path, results: Path) -> int:
 
 
 def print_rerun(crate: Path, results: Path) -> int:
-    """Solve the study of a crate again, print the comparison and return the exit code: 0 if every value is the same."""
+    """Solve the study of a crate again, print the comparison and return the exit code: 0 if every
+    value is the same.
+    """
     crate = _crate_at(crate, Path("results"))
     stored = crate / "study.nc"
     if stored.name not in read_crate(crate) or not stored.is_file():
-        raise InputError("crate", str(crate), "a crate that holds study.nc", "Run the study to its end first.")
+        raise InputError(
+            "crate", str(crate), "a crate that holds study.nc", "Run the study to its end first."
+        )
     study = study_of_crate(crate)
     _check_unoccupied(study, study_folder(study.name, results))
     ledger = run_study(study, results)
@@ -294,19 +335,29 @@ def print_rerun(crate: Path, results: Path) -> int:
 
 
 def _check_unoccupied(study: Study, folder: StudyFolder) -> None:
-    """Refuse a folder that holds anything but the unfinished results of the same study, which is then solved on."""
+    """Refuse a folder that holds anything but the unfinished results of the same study, which is
+    then solved on.
+    """
     check_folder(folder.root)
     record = folder.record()
     begun = record.get("study") in (None, study.merged()) and not folder.gathered.exists()
     if folder.root.is_dir() and any(folder.root.iterdir()) and not (record and begun):
         wrong = "stands there already, and stays as it is"
-        raise InputError("--results", str(folder.root), "a new folder", "Choose one with --results.", wrong)
+        raise InputError(
+            "--results", str(folder.root), "a new folder", "Choose one with --results.", wrong
+        )
 
 
 def print_plan(
-    target: Path | None, results: Path, explain: bool, settings: list[str] | None, no_shortcuts: bool
+    target: Path | None,
+    results: Path,
+    explain: bool,
+    settings: list[str] | None,
+    no_shortcuts: bool,
 ) -> None:
-    """Print the plan of a study file, or the stages of a case file or of the paper's example with key=value words."""
+    """Print the plan of a study file, or the stages of a case file or of the paper's example with
+    key=value words.
+    """
     if target is None or not names_study(target):
         _print_case(target, settings, no_shortcuts)
         return
@@ -320,10 +371,16 @@ def print_plan(
         _explain(study, no_shortcuts)
 
 
-def _print_not_given(values: Mapping[str, Any], not_given: Iterable[str], to: TextIO | None = None) -> None:
-    """Print the values that are taken from the paper's example, and ask about a drive that is not given."""
+def _print_not_given(
+    values: Mapping[str, Any], not_given: Iterable[str], to: TextIO | None = None
+) -> None:
+    """Print the values that are taken from the paper's example, and ask about a drive that is not
+    given.
+    """
     used = used_of(values, not_given)
-    for line in filter(None, (not_given_text(used), drive_question(used, values.keys() - used.keys()))):
+    for line in filter(
+        None, (not_given_text(used), drive_question(used, values.keys() - used.keys()))
+    ):
         print_text(line, to=to)
 
 

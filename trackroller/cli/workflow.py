@@ -25,10 +25,12 @@ from trackroller.study.store.ledger import Ledger, read_ledger, study_folder, wo
 from trackroller.study.store.put import claim
 
 CONFIG_KEYS = ("study", "results")
-_held = contextlib.ExitStack()  # keeps the lock of the study until this process ends
+_open_locks = contextlib.ExitStack()  # keeps the lock of the study until this process ends
 
 
-def workflow_config(config: Mapping[str, Any], source: Path, *, strict: bool = True) -> dict[str, str]:
+def workflow_config(
+    config: Mapping[str, Any], source: Path, *, strict: bool = True
+) -> dict[str, str]:
     """Return the paths of the study file and of the results folder that a configuration names.
 
     Parameters
@@ -36,9 +38,11 @@ def workflow_config(config: Mapping[str, Any], source: Path, *, strict: bool = T
     config : mapping
         The configuration that Snakemake read, with the keys `study` and `results`.
     source : pathlib.Path
-        Folder of the workflow. A study file that does not exist in the working directory is looked for here.
+        Folder of the workflow. A study file that does not exist in the working directory is looked
+        for here.
     strict : bool
-        Refuse unknown keys. An importing workflow that gives no `config:` shares its own keys, so they are ignored.
+        Refuse unknown keys. An importing workflow that gives no `config:` shares its own keys, so
+        they are ignored.
 
     Returns
     -------
@@ -59,7 +63,9 @@ def workflow_config(config: Mapping[str, Any], source: Path, *, strict: bool = T
     if not isinstance(study, str):
         raise InputError("study", study, "the path of a study file", advice)
     if not isinstance(results, str) or not results:
-        raise InputError("results", results, "the path of a folder", advice.replace("study=", "results=", 1))
+        raise InputError(
+            "results", results, "the path of a folder", advice.replace("study=", "results=", 1)
+        )
     if not Path(study).exists() and (source / study).is_file():
         study = str(source / study)
     for key, path in (("study", study), ("results", results)):
@@ -71,14 +77,20 @@ def workflow_config(config: Mapping[str, Any], source: Path, *, strict: bool = T
 def _check_braces(key: str, path: str) -> None:
     """Refuse a path with braces, which Snakemake reads as a wildcard."""
     if {"{", "}"} & set(path):
-        remedy = "Rename the file or folder, or solve the study with `trackroller run`, which takes any path."
-        raise InputError(key, path, "a path without braces, as Snakemake reads braces as wildcards", remedy)
+        remedy = (
+            "Rename the file or folder, or solve the study with `trackroller run`, which "
+            "takes any path."
+        )
+        raise InputError(
+            key, path, "a path without braces, as Snakemake reads braces as wildcards", remedy
+        )
 
 
 def workflow_ledger(config: Mapping[str, str], main: bool, tell: Tell = unheard) -> Ledger:
     """Return the ledger of the workflow's study.
 
-    The main process plans, and keeps other processes from changing the plan until it ends. Its jobs read the plan.
+    The main process plans, and keeps other processes from changing the plan until it ends. Its jobs
+    read the plan.
 
     Parameters
     ----------
@@ -97,8 +109,8 @@ def workflow_ledger(config: Mapping[str, str], main: bool, tell: Tell = unheard)
     Raises
     ------
     InputError
-        If the study is wrong, its folder is somebody else's, or a file of somebody else stands where Snakemake would
-        delete it.
+        If the study is wrong, its folder is somebody else's, or a file of somebody else stands
+        where Snakemake would delete it.
     WorkError
         If the study was edited after the main process had planned it.
     """
@@ -110,18 +122,22 @@ def workflow_ledger(config: Mapping[str, str], main: bool, tell: Tell = unheard)
     if study.decides:  # its rule plans each generation
         return Ledger(StudyCases(study), folder)
     if main:
-        return _held.enter_context(working_ledger(study, results, tell=tell))
+        return _open_locks.enter_context(working_ledger(study, results, tell=tell))
     ledger = read_ledger(study, folder)
     if ledger is None:
         raise WorkError(
-            f"study '{study.name}' (or its materials, or the solver) was edited while the workflow runs. This workflow "
-            "solves the earlier version and stops here. Start it again: every finished case is kept."
+            f"study '{study.name}' (or its materials, or the solver) was edited while the "
+            "workflow runs. This workflow "
+            "solves the earlier version and stops here. Start it again: every finished case is "
+            "kept."
         )
     return ledger
 
 
 def study_inputs(study: Study) -> list[str]:
-    """Return the files a study's cases depend on: study file, table of cases, and the user's materials."""
+    """Return the files a study's cases depend on: study file, table of cases, and the user's
+    materials.
+    """
     paths = []
     if study.path is not None:
         paths = [str(study.path)]
@@ -135,7 +151,8 @@ def study_inputs(study: Study) -> list[str]:
 
 
 def captions(study: Study, folder: StudyFolder) -> dict[str, str]:
-    """Return what `snakemake --report` writes below the report and each figure, as reStructuredText by name.
+    """Return what `snakemake --report` writes below the report and each figure, as reStructuredText
+    by name.
 
     Parameters
     ----------
@@ -154,10 +171,11 @@ def captions(study: Study, folder: StudyFolder) -> dict[str, str]:
 
 
 def _as_paragraph(text: str) -> str:
-    """Return a user's text as one paragraph of reStructuredText without markup, directives and links.
+    """Return a user's text as one paragraph of reStructuredText without markup, directives and
+    links.
 
-    A directive such as `.. include::` needs a line of its own, and every markup needs a punctuation mark. So all white
-    space becomes single spaces, and each mark is escaped.
+    A directive such as `.. include::` needs a line of its own, and every markup needs a punctuation
+    mark. So all white space becomes single spaces, and each mark is escaped.
     """
     printable = [sign if sign.isprintable() or sign.isspace() else "?" for sign in text]
     words = " ".join("".join(printable).split())
@@ -165,7 +183,8 @@ def _as_paragraph(text: str) -> str:
 
 
 def show_progress(folder: StudyFolder, to: TextIO = sys.stderr) -> None:
-    """Say how many cases of a study are solved; on a terminal, each message replaces the one before.
+    """Say how many cases of a study are solved; on a terminal, each message replaces the one
+    before.
 
     Parameters
     ----------
@@ -176,8 +195,13 @@ def show_progress(folder: StudyFolder, to: TextIO = sys.stderr) -> None:
     """
     plan = folder.record()
     total = plan["distinct"]
-    solved = total - sum(size for name, size in plan["chunks"].items() if not folder.chunk(name).is_file())
-    line = f"{folder.root.name}: {solved:,} of {total:,} cases solved ({100 * solved // max(total, 1)} %)"
+    solved = total - sum(
+        size for name, size in plan["chunks"].items() if not folder.chunk(name).is_file()
+    )
+    line = (
+        f"{folder.root.name}: {solved:,} of {total:,} cases solved "
+        f"({100 * solved // max(total, 1)} %)"
+    )
     end = "\n"
     if to.isatty() and solved < total:
         end = "\r"
@@ -185,7 +209,8 @@ def show_progress(folder: StudyFolder, to: TextIO = sys.stderr) -> None:
 
 
 def hide_chatter(handlers: Iterable[logging.Handler], report: Callable[[], str]) -> None:
-    """Let Snakemake's log handlers pass only warnings, errors and the message that there is nothing to do.
+    """Let Snakemake's log handlers pass only warnings, errors and the message that there is nothing
+    to do.
 
     Parameters
     ----------
@@ -216,18 +241,24 @@ def finished(folder: StudyFolder, seconds: float) -> str:
 
 
 def log_to(path: str, step: str = "") -> None:
-    """Send the log lines and warnings of this process to a rule's log file, and tell the user the step's name."""
+    """Send the log lines and warnings of this process to a rule's log file, and tell the user the
+    step's name.
+    """
     sys.excepthook = _tell_error
-    _held.enter_context(interrupts_wait_for_files())
+    _open_locks.enter_context(interrupts_wait_for_files())
     if step:
         print(step, file=sys.stderr, flush=True)
     Path(path).parent.mkdir(parents=True, exist_ok=True)
     claim(Path(path))
-    logging.basicConfig(filename=path, level=logging.INFO, format="%(asctime)s %(message)s", force=True)
+    logging.basicConfig(
+        filename=path, level=logging.INFO, format="%(asctime)s %(message)s", force=True
+    )
     logging.captureWarnings(True)
 
 
-def _tell_error(kind: type[BaseException], error: BaseException, trace: TracebackType | None) -> None:
+def _tell_error(
+    kind: type[BaseException], error: BaseException, trace: TracebackType | None
+) -> None:
     """Print an error of the input or the work in one line, any other error with its traceback."""
     if isinstance(error, (InputError, WorkError)):
         print(f"trackroller: {error}", file=sys.stderr)

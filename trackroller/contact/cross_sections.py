@@ -1,11 +1,12 @@
 """Cross-sections of guide and roller beside the nominal point of contact, and the gap between them.
 
-Lateral coordinate u [mm] along the common tangent, 0 at the nominal point of contact, > 0 away from the middle of the
-guide (outward). Heights [mm] are measured along the outward normal of each body: a convex circle of radius r has the
-height -u^2/(2 r) near the point, and a groove has +u^2/(2 r). The gap of two bodies is minus the sum of their heights.
+Lateral coordinate u [mm] along the common tangent, 0 at the nominal point of contact, > 0 away from
+the middle of the guide (outward). Heights [mm] are measured along the outward normal of each body:
+a convex circle of radius r has the height -u^2/(2 r) near the point, and a groove has +u^2/(2 r).
+The gap of two bodies is minus the sum of their heights.
 
-ASSUME: the bodies touch at the nominal contact angle for every drawn shape; drawn shapes change the gap around that
-point, not the lever arms of the equilibrium.
+ASSUME: the bodies touch at the nominal contact angle for every drawn shape; drawn shapes change the
+gap around that point, not the lever arms of the equilibrium.
 """
 
 from __future__ import annotations
@@ -19,11 +20,12 @@ import numpy as np
 from trackroller.contact.measured_points import noise_of
 
 STEEPEST = 0.999  # largest sine of the inclination to the tangent plane at which arcs are followed
-# Tangent of 25 degrees. ASSUME: a surface with a larger inclination to the contact plane takes no part in this contact;
-# a half-space with one plane of contact does not describe it.
+# Tangent of 25 degrees. ASSUME: a surface with a larger inclination to the contact plane takes no
+# part in this contact; a half-space with one plane of contact does not describe it.
 CONTACT_SLOPE = 0.4663
 
-BEFORE_AXIS = 0.95  # ASSUME: a surface nearer to its axis of revolution than 5 % of the radius takes no part
+# ASSUME: a surface nearer to its axis of revolution than 5 % of the radius takes no part
+BEFORE_AXIS = 0.95
 
 Curve = Callable[[np.ndarray], np.ndarray]
 
@@ -41,7 +43,8 @@ class CrossSection:
     chamfer : float
         Radius of the rounding beyond these ends [mm], 0 for a sharp edge.
     parabolic : bool
-        True for Hertz's approximation, in which the inclination does not change the curvature in the rolling direction.
+        True for Hertz's approximation, in which the inclination does not change the curvature in
+        the rolling direction.
     """
 
     height: Curve
@@ -53,7 +56,9 @@ class CrossSection:
 
     @cached_property
     def limits(self) -> tuple[float, float]:
-        """Return the ends of the usable shape [mm]: of the material with its rounding, or of slopes that can touch."""
+        """Return the ends of the usable shape [mm]: of the material with its rounding, or of slopes
+        that can touch.
+        """
         return -self._reach(-1.0, -self.inner), self._reach(1.0, self.outer)
 
     def _reach(self, sign: float, end: float) -> float:
@@ -77,9 +82,13 @@ class CrossSection:
 
 
 def parabola(radius: float) -> CrossSection:
-    """Return the cross-section of Hertz's theory, height -u^2/(2 r); radius > 0 convex, < 0 a groove [mm]."""
+    """Return the cross-section of Hertz's theory, height -u^2/(2 r); radius > 0 convex, < 0 a
+    groove [mm].
+    """
     curvature = 1.0 / radius
-    return CrossSection(lambda u: -0.5 * curvature * u * u, lambda u: -curvature * u, parabolic=True)
+    return CrossSection(
+        lambda u: -0.5 * curvature * u * u, lambda u: -curvature * u, parabolic=True
+    )
 
 
 def arcs(radii: Sequence[float], ends: Sequence[float]) -> CrossSection:
@@ -94,7 +103,8 @@ def arcs(radii: Sequence[float], ends: Sequence[float]) -> CrossSection:
 
     Notes
     -----
-    The sine of the inclination is the integral of the curvature along u, so that it is linear on each arc.
+    The sine of the inclination is the integral of the curvature along u, so that it is linear on
+    each arc.
     """
     kappa = 1.0 / np.asarray(radii, dtype=float)
     knots = np.asarray(ends, dtype=float)
@@ -110,9 +120,13 @@ def arcs(radii: Sequence[float], ends: Sequence[float]) -> CrossSection:
         return to, z - step * (s + to) / cosines
 
     for k in range(zero + 1, starts.size):
-        sine[k], height[k] = onward(sine[k - 1], height[k - 1], starts[k] - starts[k - 1], kappa[order[k - 1]])
+        sine[k], height[k] = onward(
+            sine[k - 1], height[k - 1], starts[k] - starts[k - 1], kappa[order[k - 1]]
+        )
     for k in range(zero - 1, -1, -1):
-        sine[k], height[k] = onward(sine[k + 1], height[k + 1], starts[k] - starts[k + 1], kappa[order[k]])
+        sine[k], height[k] = onward(
+            sine[k + 1], height[k + 1], starts[k] - starts[k + 1], kappa[order[k]]
+        )
 
     def piece(u):
         k = np.searchsorted(starts, u, side="right") - 1
@@ -142,16 +156,18 @@ def _steep_ends(starts, sine, kappa, order) -> tuple[float, float]:
 
 
 def drawn(u: np.ndarray, height: np.ndarray, noise: float | str = 0.0) -> CrossSection:
-    """Return the cubic spline through points, or a spline smoothed within their noise; height 0 at u = 0.
+    """Return the cubic spline through points, or a spline smoothed within their noise; height 0 at
+    u = 0.
 
     Parameters
     ----------
     u, height : numpy.ndarray, shape (n,)
         At least 5 points, u strictly increasing [mm].
     noise : float or str
-        Standard deviation of the measuring noise of the heights [mm]. The result is the smoothest natural cubic spline
-        with this deviation from the points (Reinsch 1967). 'auto' uses the noise that `noise_of` finds. With 0 the
-        spline passes through every point, so that scatter counts as shape.
+        Standard deviation of the measuring noise of the heights [mm]. The result is the smoothest
+        natural cubic spline with this deviation from the points (Reinsch 1967). 'auto' uses the
+        noise that `noise_of` finds. With 0 the spline passes through every point, so that scatter
+        counts as shape.
     """
     spline = smoothed(u, height, noise)
     slope, zero = spline.derivative(), float(spline(0.0))
@@ -160,7 +176,8 @@ def drawn(u: np.ndarray, height: np.ndarray, noise: float | str = 0.0) -> CrossS
 
 def smoothed(u: np.ndarray, height: np.ndarray, noise: float | str):
     """Return the spline of `drawn`."""
-    from scipy.interpolate import CubicSpline, make_smoothing_spline  # heavy, and for drawn profiles only
+    # heavy, and for drawn profiles only
+    from scipy.interpolate import CubicSpline, make_smoothing_spline
     from scipy.optimize import brentq
 
     if noise == "auto":
@@ -181,7 +198,9 @@ def smoothed(u: np.ndarray, height: np.ndarray, noise: float | str):
     return make_smoothing_spline(u, height, lam=unit * 10.0 ** brentq(excess, low, high, xtol=1e-6))
 
 
-def worn(section: CrossSection, start: float, step: float, depth: np.ndarray, moved: float = 0.0) -> CrossSection:
+def worn(
+    section: CrossSection, start: float, step: float, depth: np.ndarray, moved: float = 0.0
+) -> CrossSection:
     """Return the cross-section after wear: its height less the depth that was worn off.
 
     Parameters
@@ -199,7 +218,8 @@ def worn(section: CrossSection, start: float, step: float, depth: np.ndarray, mo
 
     u = start + step * np.arange(-1, depth.size + 1)
     with np.errstate(over="ignore"):  # a slope that underflows counts as zero
-        curve = PchipInterpolator(u, np.concatenate([[0.0], depth, [0.0]]))  # it does not swing beyond its points
+        # it does not swing beyond its points
+        curve = PchipInterpolator(u, np.concatenate([[0.0], depth, [0.0]]))
     rise = curve.derivative()
 
     def height(v: np.ndarray) -> np.ndarray:
@@ -212,10 +232,19 @@ def worn(section: CrossSection, start: float, step: float, depth: np.ndarray, mo
     return CrossSection(height, slope, inner, outer, section.chamfer, section.parabolic)
 
 
-def with_edges(section: CrossSection, inner: float, outer: float, chamfer: float = 0.0) -> CrossSection:
-    """Return the cross-section cut at `inner` < 0 < `outer` with edges of the radius `chamfer` [mm]."""
+def with_edges(
+    section: CrossSection, inner: float, outer: float, chamfer: float = 0.0
+) -> CrossSection:
+    """Return the cross-section cut at `inner` < 0 < `outer` with edges of the radius `chamfer`
+    [mm].
+    """
     return CrossSection(
-        section.height, section.slope, max(section.inner, inner), min(section.outer, outer), chamfer, section.parabolic
+        section.height,
+        section.slope,
+        max(section.inner, inner),
+        min(section.outer, outer),
+        chamfer,
+        section.parabolic,
     )
 
 
@@ -223,9 +252,9 @@ def with_edges(section: CrossSection, inner: float, outer: float, chamfer: float
 class Gap:
     """Gap of the undeformed bodies over the contact plane: g(x, y) = g_0(x) + k_y(x) y^2 / 2 [mm].
 
-    The curvature in the rolling direction is that of two bodies of revolution at each x:
-    k_y = cos(inclination)/(r_A + x sin(alpha)) + cos(inclination)/(r_Curve - x sin(alpha)). For two parabolas it has
-    its value at the nominal point for all x, so that the problem is that of Hertz.
+    The curvature in the rolling direction is that of two bodies of revolution at each x: k_y =
+    cos(inclination)/(r_A + x sin(alpha)) + cos(inclination)/(r_Curve - x sin(alpha)). For two
+    parabolas it has its value at the nominal point for all x, so that the problem is that of Hertz.
 
     Attributes
     ----------
@@ -245,17 +274,23 @@ class Gap:
 
     @property
     def _parabolic(self) -> bool:
-        """Return whether both profiles are parabolas, as Hertz assumes; such bodies have no axes of revolution."""
+        """Return whether both profiles are parabolas, as Hertz assumes; such bodies have no axes of
+        revolution.
+        """
         return self.guide.parabolic and self.roller.parabolic
 
     @cached_property
     def limits(self) -> tuple[float, float]:
-        """Return the first ends of the two bodies inward and outward [mm]; each ends before its axis, if it has one."""
+        """Return the first ends of the two bodies inward and outward [mm]; each ends before its
+        axis, if it has one.
+        """
         (a, b), (c, d) = self.guide.limits, self.roller.limits
         if self._parabolic:
             return max(a, c), min(b, d)
         sine, curve = np.sin(self.alpha) / BEFORE_AXIS, self.guide_curve_radius
-        return max(a, c, -self.rolling_radius / sine), min(b, d, curve / sine if curve > 0.0 else np.inf)
+        return max(a, c, -self.rolling_radius / sine), min(
+            b, d, curve / sine if curve > 0.0 else np.inf
+        )
 
     def lateral(self, x: np.ndarray) -> np.ndarray:
         """Return g_0(x) [mm]."""

@@ -1,8 +1,9 @@
-"""Friction coefficient as a function of the local slip speed, for contact models that solve for the slip.
+"""Friction coefficient as a function of the local slip speed, for contact models that solve for the
+slip.
 
-Every law is stored as a table that is linear between its knots, so that contact models read one form only. The law
-scales the friction coefficient of the case, which holds at rest. If a case gives no friction coefficient, the first
-value of a measured law (kind `table`) is used.
+Every law is stored as a table that is linear between its knots, so that contact models read one
+form only. The law scales the friction coefficient of the case, which holds at rest. If a case gives
+no friction coefficient, the first value of a measured law (kind `table`) is used.
 """
 
 from __future__ import annotations
@@ -28,7 +29,9 @@ DEFAULTS: dict[str, dict[str, Any]] = {
 
 
 class Knots(NamedTuple):
-    """A law for compiled code: `factor` (m,) [1] at slip speeds `speed` (m,); m = 1 is constant friction."""
+    """A law for compiled code: `factor` (m,) [1] at slip speeds `speed` (m,); m = 1 is constant
+    friction.
+    """
 
     speed: np.ndarray
     factor: np.ndarray
@@ -81,7 +84,11 @@ class FrictionLaw:
         """Return the mapping from which `law_of` makes this law, with all its fields."""
         if self.is_constant:
             return {"kind": "constant"}
-        return dict(self.form) or {"kind": "table", "speed": self.speed.tolist(), "friction": self.factor.tolist()}
+        return dict(self.form) or {
+            "kind": "table",
+            "speed": self.speed.tolist(),
+            "friction": self.factor.tolist(),
+        }
 
 
 @cache
@@ -130,7 +137,9 @@ def _fall(speed: object, lowest: object) -> dict[str, float]:
     least, most = np.nextafter(0.0, 1.0), np.finfo(float).max
     share = "the share of friction left at high speed, in [0, 1]"
     return {
-        "speed": number_in(speed, "friction_law.speed", "a slip speed > 0 in mm/s", least, most, "mm/s"),
+        "speed": number_in(
+            speed, "friction_law.speed", "a slip speed > 0 in mm/s", least, most, "mm/s"
+        ),
         "lowest": number_in(lowest, "friction_law.lowest", share, 0.0, 1.0, "-"),
     }
 
@@ -156,11 +165,14 @@ def linear_falling(speed: float, lowest: float = 0.0) -> FrictionLaw:
         If a value is out of range.
     """
     form = _fall(speed, lowest)
-    return FrictionLaw(np.array([0.0, form["speed"]]), np.array([1.0, form["lowest"]]), {"kind": "linear", **form})
+    return FrictionLaw(
+        np.array([0.0, form["speed"]]), np.array([1.0, form["lowest"]]), {"kind": "linear", **form}
+    )
 
 
 def exponential_falling(speed: float, lowest: float = 0.4) -> FrictionLaw:
-    """Return the law lowest + (1 - lowest) exp(-v / speed) (Polach 2005; Vollebregt & Schuttelaars 2012).
+    """Return the law lowest + (1 - lowest) exp(-v / speed) (Polach 2005; Vollebregt & Schuttelaars
+    2012).
 
     Parameters
     ----------
@@ -193,7 +205,8 @@ def table(speed, friction) -> FrictionLaw:
     speed : sequence of float, length m
         Slip speeds that rise from 0 [mm/s].
     friction : sequence of float, length m
-        Friction coefficients >= 0, the first one > 0 [1]. The law takes them relative to the first one.
+        Friction coefficients >= 0, the first one > 0 [1]. The law takes them relative to the first
+        one.
 
     Returns
     -------
@@ -208,8 +221,16 @@ def table(speed, friction) -> FrictionLaw:
     speeds = _list("speed", speed, "slip speeds in mm/s")
     values = _list("friction", friction, "friction coefficients")
     if speeds.size != values.size:
-        allowed = f"as many friction coefficients as slip speeds: {values.size} beside the {speeds.size} of speed"
-        _refuse("friction", values.tolist(), allowed, "Give one friction coefficient for each slip speed.")
+        allowed = (
+            f"as many friction coefficients as slip speeds: {values.size} beside the "
+            f"{speeds.size} of speed"
+        )
+        _refuse(
+            "friction",
+            values.tolist(),
+            allowed,
+            "Give one friction coefficient for each slip speed.",
+        )
     if speeds[0] != 0.0 or np.any(np.diff(speeds) <= 0) or not np.all(np.isfinite(speeds)):
         _refuse("speed", speeds.tolist(), "slip speeds in mm/s that rise from 0")
     if not (values[0] > 0 and np.all(values >= 0) and np.all(np.isfinite(values))):
@@ -223,7 +244,9 @@ def _list(part: str, values: object, words: str) -> np.ndarray:
     if not isinstance(values, (list, tuple, np.ndarray)) or len(values) == 0:
         _refuse(part, values, allowed)
     unit = "mm/s" if part == "speed" else "-"
-    return np.array([number_in(value, f"friction_law.{part}", allowed, unit=unit) for value in values])  # type: ignore[attr-defined]
+    return np.array(
+        [number_in(value, f"friction_law.{part}", allowed, unit=unit) for value in values]
+    )  # type: ignore[attr-defined]
 
 
 def at_rest(law: Any) -> float | None:
@@ -244,17 +267,26 @@ def at_rest(law: Any) -> float | None:
 
 
 def _fields(mapping: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the fields of a mapping with defaults; refuse unknown kinds, and unknown or missing fields."""
+    """Return the fields of a mapping with defaults; refuse unknown kinds, and unknown or missing
+    fields.
+    """
     kind = str(mapping.get("kind"))
     if kind not in DEFAULTS:
         close = nearest(kind, tuple(DEFAULTS))
         _refuse(
-            "kind", mapping.get("kind"), f"one of {', '.join(DEFAULTS)}", f"Did you mean {close!r}?" if close else ""
+            "kind",
+            mapping.get("kind"),
+            f"one of {', '.join(DEFAULTS)}",
+            f"Did you mean {close!r}?" if close else "",
         )
     values = DEFAULTS[kind] | {k: v for k, v in mapping.items() if k != "kind"}
     for name, value in values.items():
         if name not in DEFAULTS[kind]:
-            _refuse(str(name), value, f"a {kind} law has the fields {', '.join(('kind', *DEFAULTS[kind]))}")
+            _refuse(
+                str(name),
+                value,
+                f"a {kind} law has the fields {', '.join(('kind', *DEFAULTS[kind]))}",
+            )
         if value is None:
             _refuse(name, value, f"a {kind} law needs {name}")
     return values
@@ -266,9 +298,10 @@ def law_of(mapping: Mapping[str, Any] | FrictionLaw | str | None) -> FrictionLaw
     Parameters
     ----------
     mapping : mapping, str, FrictionLaw or None
-        One of `{kind: constant}`, `{kind: linear, speed: v, lowest: f}`, `{kind: exponential, speed: v, lowest: f}` and
-        `{kind: table, speed: [0, ...], friction: [...]}` with slip speeds in mm/s. JSON text of such a mapping is
-        accepted. None and an empty mapping stand for constant friction.
+        One of `{kind: constant}`, `{kind: linear, speed: v, lowest: f}`, `{kind: exponential,
+        speed: v, lowest: f}` and `{kind: table, speed: [0, ...], friction: [...]}` with slip speeds
+        in mm/s. JSON text of such a mapping is accepted. None and an empty mapping stand for
+        constant friction.
 
     Returns
     -------
@@ -292,7 +325,12 @@ def law_of(mapping: Mapping[str, Any] | FrictionLaw | str | None) -> FrictionLaw
     if not isinstance(mapping, Mapping):
         _refuse("", mapping, "a mapping such as {kind: exponential, speed: 100, lowest: 0.4}")
     values = _fields(mapping)
-    makers = {"constant": constant, "linear": linear_falling, "exponential": exponential_falling, "table": table}
+    makers = {
+        "constant": constant,
+        "linear": linear_falling,
+        "exponential": exponential_falling,
+        "table": table,
+    }
     return makers[str(mapping["kind"])](**values)  # type: ignore[operator]
 
 

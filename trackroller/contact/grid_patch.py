@@ -16,7 +16,8 @@ SLIGHT = 5e-3  # share of the largest pressure below which an element does not c
 
 @dataclass(frozen=True)
 class GridPatch(Rows):
-    """n patches with the interface `protocol.Patch`, on grids of N x M elements over their boxes; M is a multiple of N.
+    """n patches with the interface `protocol.Patch`, on grids of N x M elements over their boxes; M
+    is a multiple of N.
 
     Attributes
     ----------
@@ -109,15 +110,19 @@ class GridPatch(Rows):
         """
         rows, columns = self.shape
         if rows % elements or columns % elements:
-            raise ValueError(f"{elements} does not divide the {rows} x {columns} elements of the patch")
+            raise ValueError(
+                f"{elements} does not divide the {rows} x {columns} elements of the patch"
+            )
         parts = len(self.normal_force), elements, rows // elements, elements, columns // elements
         mean = self.pressure.reshape(parts).mean(axis=(2, 4))
         return np.ascontiguousarray(mean / self.max_pressure[:, None, None])
 
     def refined(self, along: int, across: int) -> GridPatch:
-        """Return the same patches with finer elements; the load of each original element stays the same.
+        """Return the same patches with finer elements; the load of each original element stays the
+        same.
 
-        Within an element p^2, which is a parabola in Hertz's theory, follows the parabola through its neighbours.
+        Within an element p^2, which is a parabola in Hertz's theory, follows the parabola through
+        its neighbours.
 
         Parameters
         ----------
@@ -132,11 +137,17 @@ class GridPatch(Rows):
 
 
 def _divided(pressure: np.ndarray, times: int) -> np.ndarray:
-    """Divide the elements of pressures (N, ...) along the first axis, (N times, ...); see `GridPatch.refined`."""
+    """Divide the elements of pressures (N, ...) along the first axis, (N times, ...); see
+    `GridPatch.refined`.
+    """
     square = np.pad(pressure**2, [(1, 1)] + [(0, 0)] * (pressure.ndim - 1))
     before, here, after = square[:-2], square[1:-1], square[2:]
     pieces = [
-        np.sqrt(np.maximum(here + 0.5 * t * (after - before) + 0.5 * t * t * (after - 2 * here + before), 0.0))
+        np.sqrt(
+            np.maximum(
+                here + 0.5 * t * (after - before) + 0.5 * t * t * (after - 2 * here + before), 0.0
+            )
+        )
         for t in 0.5 * _centres(times)
     ]
     parts = np.stack(pieces, axis=1)
@@ -152,8 +163,8 @@ def _centres(elements: int) -> np.ndarray:
 
 
 PARTS = 4  # points along each side of an element at which the pressure near the rim is averaged
-# The means replace the solved pressure if they keep at least KEPT of its maximum, and leave it unchanged if they keep
-# no more than CUT_OFF.
+# The means replace the solved pressure if they keep at least KEPT of its maximum, and leave it
+# unchanged if they keep no more than CUT_OFF.
 CUT_OFF, KEPT = 0.85, 0.93
 
 
@@ -167,9 +178,10 @@ def _moved(values: np.ndarray, step: int, axis: int) -> np.ndarray:
 def _spread(values: np.ndarray, known: np.ndarray, onward: bool) -> np.ndarray:
     """Continue values (ny, nx) by one ring of elements around the `known` ones.
 
-    With `onward` a new value lies on the line through the two nearest known values, otherwise it repeats the nearest
-    one. Where several directions give a value, the ring has their mean. Onward it is not above 0, because the rim lies
-    before it: without this limit an element that becomes loaded would change its neighbours in a jump.
+    With `onward` a new value lies on the line through the two nearest known values, otherwise it
+    repeats the nearest one. Where several directions give a value, the ring has their mean. Onward
+    it is not above 0, because the rim lies before it: without this limit an element that becomes
+    loaded would change its neighbours in a jump.
     """
     total, count = np.zeros_like(values), np.zeros_like(values)
     for axis in (0, 1):
@@ -185,10 +197,11 @@ def _spread(values: np.ndarray, known: np.ndarray, onward: bool) -> np.ndarray:
 def rim_means(pressure: np.ndarray) -> np.ndarray:
     """Replace collocated pressures by element means; the rim of the patch runs through elements.
 
-    Collocation treats an element as loaded or unloaded. Near the rim p^2 is linear, and it is quadratic in Hertz's
-    theory. This function therefore continues p^2 outward, interpolates it, and averages its root over each element.
-    Tractions in the adhesion area need these means: only with them do the rolling resultants converge as fast as on an
-    ellipse. A ridge of pressure that is only a few elements wide would lose its maximum; its pressure stays as solved.
+    Collocation treats an element as loaded or unloaded. Near the rim p^2 is linear, and it is
+    quadratic in Hertz's theory. This function therefore continues p^2 outward, interpolates it, and
+    averages its root over each element. Tractions in the adhesion area need these means: only with
+    them do the rolling resultants converge as fast as on an ellipse. A ridge of pressure that is
+    only a few elements wide would lose its maximum; its pressure stays as solved.
 
     Parameters
     ----------

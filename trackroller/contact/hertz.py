@@ -15,17 +15,24 @@ from trackroller.errors import InputError
 from trackroller.numerics.rows import Rows
 
 # Table of the published program: xi and eta over cos tau = |k_x - k_y|/(k_x + k_y).
-PUBLISHED_COS_TAU = np.array([0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 0.99, 0.995, 0.9995])
-PUBLISHED_XI = np.array([1.07, 1.15, 1.24, 1.35, 1.48, 1.66, 1.91, 2.3, 3.09, 4.12, 7.76, 10.15, 23.95])
-PUBLISHED_ETA = np.array([0.938, 0.879, 0.824, 0.771, 0.718, 0.664, 0.607, 0.544, 0.461, 0.396, 0.287, 0.251, 0.163])
+PUBLISHED_COS_TAU = np.array(
+    [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 0.99, 0.995, 0.9995]
+)
+PUBLISHED_XI = np.array(
+    [1.07, 1.15, 1.24, 1.35, 1.48, 1.66, 1.91, 2.3, 3.09, 4.12, 7.76, 10.15, 23.95]
+)
+PUBLISHED_ETA = np.array(
+    [0.938, 0.879, 0.824, 0.771, 0.718, 0.664, 0.607, 0.544, 0.461, 0.396, 0.287, 0.251, 0.163]
+)
 
 
 @dataclass(frozen=True)
 class HertzShape(Rows):
-    """Semi-axes a, b and largest pressure p_max for a unit normal force; all three scale with F_N^(1/3).
+    """Semi-axes a, b and largest pressure p_max for a unit normal force; all three scale with
+    F_N^(1/3).
 
-    They follow from geometry and material. Arrays of shape (n,): `lateral` and `rolling` [mm N^(-1/3)], `pressure`
-    [MPa N^(-1/3)].
+    They follow from geometry and material. Arrays of shape (n,): `lateral` and `rolling` [mm
+    N^(-1/3)], `pressure` [MPa N^(-1/3)].
     """
 
     lateral: np.ndarray
@@ -66,9 +73,11 @@ def contact_modulus(e_1, nu_1, e_2, nu_2) -> np.ndarray:
 
 
 def _elliptic(m_1: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return B = (E - (1-m) K)/m and D = (K - E)/m by Carlson's integrals, without cancellation for m -> 0.
+    """Return B = (E - (1-m) K)/m and D = (K - E)/m by Carlson's integrals, without cancellation for
+    m -> 0.
 
-    The argument is the complement m_1 = 1 - m = (b/a)^2, which keeps digits for very slender ellipses.
+    The argument is the complement m_1 = 1 - m = (b/a)^2, which keeps digits for very slender
+    ellipses.
     """
     zero, one = np.zeros_like(m_1), np.ones_like(m_1)
     return elliprd(zero, one, m_1) / 3.0 * m_1, elliprd(zero, m_1, one) / 3.0
@@ -77,7 +86,8 @@ def _elliptic(m_1: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 def axis_ratio(curvature_ratio: np.ndarray) -> np.ndarray:
     """Return the ratio of minor to major axis of the contact ellipse, (n,).
 
-    Solves A/B = (b/a)^2 D / B~ with D = (K - E)/m, B~ = (E - (1-m) K)/m, m = 1 - (b/a)^2: Johnson (4.26).
+    Solves A/B = (b/a)^2 D / B~ with D = (K - E)/m, B~ = (E - (1-m) K)/m, m = 1 - (b/a)^2: Johnson
+    (4.26).
 
     Parameters
     ----------
@@ -86,7 +96,8 @@ def axis_ratio(curvature_ratio: np.ndarray) -> np.ndarray:
 
     Notes
     -----
-    Newton's method on the logarithm, kept within bounds; relative error below 1e-14 for ratios down to 1e-12.
+    Newton's method on the logarithm, kept within bounds; relative error below 1e-14 for ratios down
+    to 1e-12.
     """
     target = np.log(np.asarray(curvature_ratio, dtype=float))
     x = target * (2.0 / 3.0)  # log(b/a); (A/B) ~ (b/a)^1.5 near the circle
@@ -104,7 +115,8 @@ def axis_ratio(curvature_ratio: np.ndarray) -> np.ndarray:
         low = np.where(f <= 0, np.maximum(low, x), low)
         new = x - f / ((ahead - behind) / (2 * step))
         new = np.where((new > low) & (new < high), new, np.where(f == 0, x, (low + high) / 2))
-        new = np.where(done, x, new)  # the last digit of a solved ratio must not depend on the other rows
+        # the last digit of a solved ratio must not depend on the other rows
+        new = np.where(done, x, new)
         done |= np.abs(new - x) <= 2e-15 * np.maximum(1.0, np.abs(x))
         x = new
         if done.all():
@@ -142,7 +154,9 @@ def exact_shape(k_x: np.ndarray, k_y: np.ndarray, modulus: np.ndarray) -> HertzS
     >>> bool(np.isclose(circle.lateral[0], (0.75 / (115e3 * 0.1)) ** (1 / 3)))
     True
     """
-    k_x, k_y, modulus = np.broadcast_arrays(*(np.asarray(v, dtype=float) for v in (k_x, k_y, modulus)))
+    k_x, k_y, modulus = np.broadcast_arrays(
+        *(np.asarray(v, dtype=float) for v in (k_x, k_y, modulus))
+    )
     small, large = np.minimum(k_x, k_y), np.maximum(k_x, k_y)
     kappa = _unique_axis_ratio(small / large)
     _, d = _elliptic(kappa**2)
@@ -162,7 +176,8 @@ def unit_approach(k_x: np.ndarray, k_y: np.ndarray, modulus: np.ndarray) -> np.n
     Returns
     -------
     numpy.ndarray
-        Approach [mm N^(-2/3)], shape (n,): 3 K(e)/(2 pi a E*) with the semi-major axis a, Johnson (4.26c).
+        Approach [mm N^(-2/3)], shape (n,): 3 K(e)/(2 pi a E*) with the semi-major axis a, Johnson
+        (4.26c).
 
     Examples
     --------
@@ -172,13 +187,18 @@ def unit_approach(k_x: np.ndarray, k_y: np.ndarray, modulus: np.ndarray) -> np.n
     True
     """
     shape = exact_shape(k_x, k_y, modulus)
-    major, minor = np.maximum(shape.lateral, shape.rolling), np.minimum(shape.lateral, shape.rolling)
+    major, minor = (
+        np.maximum(shape.lateral, shape.rolling),
+        np.minimum(shape.lateral, shape.rolling),
+    )
     b, d = _elliptic((minor / major) ** 2)
     return np.asarray(1.5 * (b + d) / (np.pi * major * modulus))  # K = B + D
 
 
 def _laid(major: np.ndarray, minor: np.ndarray, wide: np.ndarray) -> HertzShape:
-    """Return the shape with the major axis in the lateral direction where `wide`, else in the rolling direction."""
+    """Return the shape with the major axis in the lateral direction where `wide`, else in the
+    rolling direction.
+    """
     pressure = 3.0 / (2.0 * np.pi * major * minor)
     return HertzShape(np.where(wide, major, minor), np.where(wide, minor, major), pressure)
 
@@ -186,7 +206,8 @@ def _laid(major: np.ndarray, minor: np.ndarray, wide: np.ndarray) -> HertzShape:
 def published_shape(k_x: np.ndarray, k_y: np.ndarray, modulus: np.ndarray) -> HertzShape:
     """Return the Hertz shape by linear interpolation in the table of the published program.
 
-    The published program puts the long axis on x_C even for k_x > k_y; this function puts it on y_C there.
+    The published program puts the long axis on x_C even for k_x > k_y; this function puts it on y_C
+    there.
 
     Parameters
     ----------
@@ -202,7 +223,9 @@ def published_shape(k_x: np.ndarray, k_y: np.ndarray, modulus: np.ndarray) -> He
     -----
     Valid for 0.1 <= cos tau <= 0.9995; rows outside this range are NaN.
     """
-    k_x, k_y, modulus = np.broadcast_arrays(*(np.asarray(v, dtype=float) for v in (k_x, k_y, modulus)))
+    k_x, k_y, modulus = np.broadcast_arrays(
+        *(np.asarray(v, dtype=float) for v in (k_x, k_y, modulus))
+    )
     k_sum = k_x + k_y
     cos_tau = np.abs(k_x - k_y) / k_sum
     xi = np.interp(cos_tau, PUBLISHED_COS_TAU, PUBLISHED_XI, left=np.nan, right=np.nan)

@@ -1,10 +1,12 @@
 """Influence functions of steady rolling on the elastic half-space, and their fast products.
 
-The displacement differences of rectangular elements with constant traction are closed forms of Cerruti's and
-Boussinesq's solutions (Kalker 1990, Three-Dimensional Elastic Bodies in Rolling Contact, chapter 3). The slip needs
-their derivative in the rolling direction, which is y here and x in Kalker and CONTACT.
+The displacement differences of rectangular elements with constant traction are closed forms of
+Cerruti's and Boussinesq's solutions (Kalker 1990, Three-Dimensional Elastic Bodies in Rolling
+Contact, chapter 3). The slip needs their derivative in the rolling direction, which is y here and x
+in Kalker and CONTACT.
 
-Lengths are scaled by c = sqrt(a b), tractions by the largest traction bound, slips by this bound over G.
+Lengths are scaled by c = sqrt(a b), tractions by the largest traction bound, slips by this bound
+over G.
 """
 
 from __future__ import annotations
@@ -18,14 +20,19 @@ from rocket_fft import c2c
 
 from trackroller.numerics.compiled import compiled, fast, formula
 
-ROUND = 1e-5  # least |a^2 - b^2|/(a b) at which the closed form for ellipses keeps its digits; the form errs by less
+# least |a^2 - b^2|/(a b) at which the closed form for ellipses keeps its digits; the form errs by
+# less
+ROUND = 1e-5
 THIRD = 1.0 / 3.0
-# Elements of constant traction make the adhesion area end 0.16 elements too close to the leading edge, however many
-# elements there are. The tractions at its trailing end therefore err with first order. Subtracting SHARPER times the
-# second differences of the influence functions mends this: against the closed form of Carter's rolling contact,
-# the end of the adhesion area then errs by less than 0.03 elements in the mean.
+# Elements of constant traction make the adhesion area end 0.16 elements too close to the leading
+# edge, however many elements there are. The tractions at its trailing end therefore err with first
+# order. Subtracting SHARPER times the second differences of the influence functions mends this:
+# against the closed form of Carter's rolling contact, the end of the adhesion area then errs by
+# less than 0.03 elements in the mean.
 SHARPER = 1.0 / 12.0
-DIGITS = 13  # digits of element sizes and Poisson's ratio; patches that differ by rounding share influence functions
+# digits of element sizes and Poisson's ratio; patches that differ by rounding share influence
+# functions
+DIGITS = 13
 
 
 @fast
@@ -36,7 +43,8 @@ def _log_part(x, y):
 
 @compiled
 def displacements(hx, hy, poisson, ny, nx, below, above):
-    """Return the displacement differences at distances (j hy, i hx) of a unit traction on an element, for G = 1.
+    """Return the displacement differences at distances (j hy, i hx) of a unit traction on an
+    element, for G = 1.
 
     Kalker (1990) chapter 3: u_x = 1/(pi G) int [(1-nu)/r + nu x^2/r^3] tau_x + nu x y/r^3 tau_y.
 
@@ -66,7 +74,8 @@ def displacements(hx, hy, poisson, ny, nx, below, above):
                 for c in range(3):
                     corner[c, j, i] = corner[c, mirror, i] if c == 2 else -corner[c, mirror, i]
             else:
-                along_y, along_x = _log_part(x, y), _log_part(y, x)  # int int y^2/r^3, int int x^2/r^3
+                # int int y^2/r^3, int int x^2/r^3
+                along_y, along_x = _log_part(x, y), _log_part(y, x)
                 corner[0, j, i] = along_y * (1.0 - poisson) + along_x
                 corner[1, j, i] = along_x * (1.0 - poisson) + along_y
                 corner[2, j, i] = -poisson * math.sqrt(x * x + y * y)
@@ -77,7 +86,9 @@ def displacements(hx, hy, poisson, ny, nx, below, above):
 
 @compiled
 def _over_element(corner, factor):
-    """Turn corner values (m, rows + 1, columns + 1) of a double antiderivative into integrals over elements."""
+    """Turn corner values (m, rows + 1, columns + 1) of a double antiderivative into integrals over
+    elements.
+    """
     out = np.empty((corner.shape[0], corner.shape[1] - 1, corner.shape[2] - 1))
     for c in range(out.shape[0]):
         for j in range(out.shape[1]):
@@ -89,10 +100,11 @@ def _over_element(corner, factor):
 
 @compiled
 def pressure_displacements(hx, hy, ny, nx, below, above):
-    """Return the tangential displacement differences x, y of a unit pressure on an element for G = K = 1, (2, ., .).
+    """Return the tangential displacement differences x, y of a unit pressure on an element for G =
+    K = 1, (2, ., .).
 
-    u = -K/(pi G) int p r/|r|^2: the surfaces of both bodies move towards the load (Kalker 1990, section 1.5).
-    Parameters as in `displacements`.
+    u = -K/(pi G) int p r/|r|^2: the surfaces of both bodies move towards the load (Kalker 1990,
+    section 1.5). Parameters as in `displacements`.
     """
     rows, columns = 2 * ny - 1 + below + above, 2 * nx - 1
     corner = np.empty((2, rows + 1, columns + 1))
@@ -108,7 +120,9 @@ def pressure_displacements(hx, hy, ny, nx, below, above):
 
 @compiled
 def _multipliers(kernel, ny, nx):
-    """Return the spectrum (2 ny, 2 nx) of a complex influence function (2 ny - 1, 2 nx - 1) of the distances."""
+    """Return the spectrum (2 ny, 2 nx) of a complex influence function (2 ny - 1, 2 nx - 1) of the
+    distances.
+    """
     field = np.zeros((2 * ny, 2 * nx), np.complex128)
     for j in range(2 * ny - 1):
         for i in range(2 * nx - 1):
@@ -137,7 +151,8 @@ def convolve(field, p, q, work, out):
     `p` and `q` are the spectra of `Influence`; `work` (2, 2 ny, 2 nx) serves the transforms.
     """
     ny, nx = field.shape
-    # c2c(input, output, axes, forward, factor, threads); only the rows that hold tractions or slips are transformed
+    # c2c(input, output, axes, forward, factor, threads); only the rows that hold tractions or slips
+    # are transformed
     c2c(field, work[0, :ny], np.array([1]), True, 1.0, 1)
     c2c(work[0, :ny], work[1], np.array([0]), True, 1.0, 1)
     _combined(p, q, work[1], work[0])
@@ -150,28 +165,35 @@ def convolve(field, p, q, work, out):
 
 @formula
 def difference(behind, here, ahead, far, hy):
-    """Return -du/dy of four displacements, one row behind to two rows ahead, with an error of third order.
+    """Return -du/dy of four displacements, one row behind to two rows ahead, with an error of third
+    order.
 
-    The material enters at the leading edge, which is ahead. A central difference alone would leave the shortest waves
-    undetermined in the adhesion area. Upwind differences of second order, with two thirds of the central one, have no
-    error of second order. About the spin pole, where the slip turns, this error would act on F_T with first order.
+    The material enters at the leading edge, which is ahead. A central difference alone would leave
+    the shortest waves undetermined in the adhesion area. Upwind differences of second order, with
+    two thirds of the central one, have no error of second order. About the spin pole, where the
+    slip turns, this error would act on F_T with first order.
     """
     return (behind * THIRD + 0.5 * here - ahead + far * (0.5 * THIRD)) * (1.0 / hy)
 
 
 @compiled
 def _sharpened(u):
-    """Return influence functions (3, m, n) less `SHARPER` times their second differences, (3, m - 2, n - 2)."""
+    """Return influence functions (3, m, n) less `SHARPER` times their second differences, (3, m -
+    2, n - 2).
+    """
     along = u[:, 1:-1] - SHARPER * (u[:, 2:] - 2.0 * u[:, 1:-1] + u[:, :-2])
-    return along[:, :, 1:-1] - SHARPER * (along[:, :, 2:] - 2.0 * along[:, :, 1:-1] + along[:, :, :-2])
+    return along[:, :, 1:-1] - SHARPER * (
+        along[:, :, 2:] - 2.0 * along[:, :, 1:-1] + along[:, :, :-2]
+    )
 
 
 @compiled
 def plane_displacements(hy, poisson, ny, below, above):
     """Return the displacement differences of a unit traction on an element of two discs, for G = 1.
 
-    They are those of `displacements` for elements without end across the rolling direction, up to a constant that no
-    slip contains: lateral ones in antiplane shear, -2/pi int ln|y|, longitudinal ones in plane strain, 1 - nu times it.
+    They are those of `displacements` for elements without end across the rolling direction, up to a
+    constant that no slip contains: lateral ones in antiplane shear, -2/pi int ln|y|, longitudinal
+    ones in plane strain, 1 - nu times it.
 
     Parameters
     ----------
@@ -211,7 +233,9 @@ def _plane_functions(hy, poisson, ny, film):
 
 @compiled
 def _influence_of(u, hy, ny, nx, rolling, film):
-    """Return the fields of `Influence` of displacements `u`, to which a `film` adds under an element itself."""
+    """Return the fields of `Influence` of displacements `u`, to which a `film` adds under an
+    element itself.
+    """
     for c in range(2):
         u[c, ny, nx - 1] += film
     kernel = u[:, 1 : 2 * ny].copy()
@@ -219,7 +243,9 @@ def _influence_of(u, hy, ny, nx, rolling, film):
         for c in range(3):
             for j in range(2 * ny - 1):
                 for i in range(2 * nx - 1):
-                    kernel[c, j, i] = difference(u[c, j, i], u[c, j + 1, i], u[c, j + 2, i], u[c, j + 3, i], hy)
+                    kernel[c, j, i] = difference(
+                        u[c, j, i], u[c, j + 1, i], u[c, j + 2, i], u[c, j + 3, i], hy
+                    )
     p, q = 0.5 * (kernel[0] + kernel[1]) + 0j, 0.5 * (kernel[0] - kernel[1]) + 1j * kernel[2]
     own = 0.5 * (u[0, ny : ny + 3, nx - 1] + u[1, ny : ny + 3, nx - 1])
     scale = (1.5 * own[0] - 2.0 * own[1] + 0.5 * own[2]) / hy if rolling else own[0]
@@ -227,7 +253,8 @@ def _influence_of(u, hy, ny, nx, rolling, film):
 
 
 class Influence(NamedTuple):
-    """Influence functions of ny x nx elements for products by fast Fourier transforms; a field is x + iy.
+    """Influence functions of ny x nx elements for products by fast Fourier transforms; a field is x
+    + iy.
 
     They give the slips in rolling, or the displacements.
 
@@ -236,9 +263,11 @@ class Influence(NamedTuple):
     p, q : numpy.ndarray, shape (2 ny, 2 nx)
         Spectra in W = P Z + Q conj(Z(-k)) of slips W and tractions Z.
     own : float
-        Mean slip that an element's unit traction causes at itself, by upwind differences; the scale of slips.
+        Mean slip that an element's unit traction causes at itself, by upwind differences; the scale
+        of slips.
     column : numpy.ndarray, shape (2, 2 ny - 1)
-        Slips xx and yy that an element's unit traction causes in its own column, from ny - 1 rows behind it on.
+        Slips xx and yy that an element's unit traction causes in its own column, from ny - 1 rows
+        behind it on.
     """
 
     p: np.ndarray
@@ -255,7 +284,14 @@ class Influence(NamedTuple):
 
 @lru_cache(maxsize=64)
 def _influence(
-    hx: float, hy: float, poisson: float, ny: int, nx: int, rolling: bool, sharpened: bool, film: float
+    hx: float,
+    hy: float,
+    poisson: float,
+    ny: int,
+    nx: int,
+    rolling: bool,
+    sharpened: bool,
+    film: float,
 ) -> Influence:
     return Influence(*_functions(hx, hy, poisson, ny, nx, rolling, sharpened, film))
 
@@ -275,17 +311,21 @@ def influence(
     sharpened: bool = False,
     film: float = 0.0,
 ) -> Influence:
-    """Return the influence functions of ny x nx elements of size hy x hx for G = 1; the last ones used are kept.
+    """Return the influence functions of ny x nx elements of size hy x hx for G = 1; the last ones
+    used are kept.
 
-    `sharpened` influence functions place the trailing end of the adhesion area without an error of first order, see
-    `SHARPER`. A `film` between the bodies moves each element by this length under a unit traction of its own.
+    `sharpened` influence functions place the trailing end of the adhesion area without an error of
+    first order, see `SHARPER`. A `film` between the bodies moves each element by this length under
+    a unit traction of its own.
     """
     hx, hy, poisson, film = rounded(hx, hy, poisson, film)
     return _influence(hx, hy, poisson, ny, nx, rolling, sharpened, film)
 
 
 def plane_influence(hy: float, poisson: float, ny: int, film: float = 0.0) -> Influence:
-    """Return the influence functions of two discs with ny elements of length hy, for G = 1, see `influence`."""
+    """Return the influence functions of two discs with ny elements of length hy, for G = 1, see
+    `influence`.
+    """
     return _plane_influence(*rounded(hy, poisson, film), ny)
 
 
@@ -295,7 +335,9 @@ def _plane_influence(hy: float, poisson: float, film: float, ny: int) -> Influen
 
 
 def coupling_slip(pressure: np.ndarray, hx: float, hy: float) -> np.ndarray:
-    """Return the slip -du/dy (ny, nx), x + iy, of a pressure field (ny, nx) for K = G = 1, by central differences."""
+    """Return the slip -du/dy (ny, nx), x + iy, of a pressure field (ny, nx) for K = G = 1, by
+    central differences.
+    """
     ny, nx = pressure.shape
     u = pressure_displacements(hx, hy, ny, nx, 1, 1)
     slip = 0.5 * (u[:, :-2] - u[:, 2:]) / hy
@@ -305,7 +347,8 @@ def coupling_slip(pressure: np.ndarray, hx: float, hy: float) -> np.ndarray:
 
 @compiled
 def hertz_coupling_slip(a, b, ny, nx):
-    """Return the slip -du/dy, x + iy, of Hertz's pressure at the centres of elements, for p_max = K = G = 1.
+    """Return the slip -du/dy, x + iy, of Hertz's pressure at the centres of elements, for p_max = K
+    = G = 1.
 
     Parameters
     ----------
@@ -321,9 +364,10 @@ def hertz_coupling_slip(a, b, ny, nx):
 
     Notes
     -----
-    u is the field of `pressure_displacements`. The pressure is a pile of elliptical layers of constant pressure. Inside
-    a layer u is linear in x and y; outside, u follows from the analytic function z - sqrt(z^2 - c^2) of z = x + iy with
-    c^2 = a^2 - b^2. The integral of du/dy over the layers is a closed form. It is computed for one quadrant.
+    u is the field of `pressure_displacements`. The pressure is a pile of elliptical layers of
+    constant pressure. Inside a layer u is linear in x and y; outside, u follows from the analytic
+    function z - sqrt(z^2 - c^2) of z = x + iy with c^2 = a^2 - b^2. The integral of du/dy over the
+    layers is a closed form. It is computed for one quadrant.
     """
     square = a * a - b * b
     square = math.copysign(max(abs(square), ROUND * a * b), square)
@@ -338,7 +382,9 @@ def hertz_coupling_slip(a, b, ny, nx):
                 z = complex(1e-9 * a, 0.0)  # the centre of an odd number of elements
             height = math.sqrt(max(1.0 - (x / a) ** 2 - (y / b) ** 2, 0.0))
             root = z * np.sqrt(1.0 - (1.0 - height * height) * square / (z * z))
-            outside = (2j * a * b / square) * (1.0 - height - z / c * np.log((c + z) / (c * height + root)))
+            outside = (2j * a * b / square) * (
+                1.0 - height - z / c * np.log((c + z) / (c * height + root))
+            )
             slip = outside.conjugate() + (2j * a / (a + b)) * height
             mirror = complex(-slip.real, slip.imag)
             out[j, i] = out[ny - 1 - j, nx - 1 - i] = slip

@@ -1,9 +1,9 @@
 """Kalker's linear creepage coefficients for any ellipse, and the forces of the linear theory.
 
-The coefficients come from a stored table, which `python -m validation.derivations.linear_creepage` writes. Chebyshev
-polynomials interpolate it in the logarithm of the axis ratio and in Poisson's ratio. `tests/contact` compares the
-coefficients with Kalker's printed table (1990, table E.3) and with rectangular elements. The printed table is about
-1 % low at the axis ratios 5 and 10.
+The coefficients come from a stored table, which `python -m validation.derivations.linear_creepage`
+writes. Chebyshev polynomials interpolate it in the logarithm of the axis ratio and in Poisson's
+ratio. `tests/contact` compares the coefficients with Kalker's printed table (1990, table E.3) and
+with rectangular elements. The printed table is about 1 % low at the axis ratios 5 and 10.
 """
 
 from __future__ import annotations
@@ -28,7 +28,9 @@ TABLE = "kalker_linear.csv"
 
 @dataclass(frozen=True)
 class CreepageCoefficients:
-    """C11 (rolling direction), C22 (lateral), C23 (lateral force by spin), C33 (spin moment) [1], arrays (n,)."""
+    """C11 (rolling direction), C22 (lateral), C23 (lateral force by spin), C33 (spin moment) [1],
+    arrays (n,).
+    """
 
     c11: np.ndarray
     c22: np.ndarray
@@ -43,7 +45,9 @@ def nodes() -> tuple[np.ndarray, np.ndarray]:
 
 @lru_cache(maxsize=1)
 def chebyshev() -> np.ndarray:
-    """Return Chebyshev coefficients of the logarithms of C11, C22, C23, C33, (4, nodes of ratio, nodes of nu)."""
+    """Return Chebyshev coefficients of the logarithms of C11, C22, C23, C33, (4, nodes of ratio,
+    nodes of nu).
+    """
     text = resources.files("trackroller.contact").joinpath(TABLE).read_text(encoding="utf-8")
     values = np.loadtxt(text.splitlines(), delimiter=",")[:, 2:].reshape(*NODES, 4)
     u, v = (np.linalg.inv(chebvander(chebpts1(n), n - 1)) for n in NODES)
@@ -52,7 +56,9 @@ def chebyshev() -> np.ndarray:
 
 @compiled
 def logarithm(ratio, poisson_ratio, series):
-    """Return the logarithm of the creepage coefficient with the Chebyshev `series` (nodes of ratio, nodes of nu)."""
+    """Return the logarithm of the creepage coefficient with the Chebyshev `series` (nodes of ratio,
+    nodes of nu).
+    """
     u, v = math.log(ratio) / math.log(LARGEST_RATIO), 4.0 * poisson_ratio - 1.0
     total, now, before = 0.0, 1.0, u  # Chebyshev polynomials of u, and of v below
     for i in range(series.shape[0]):
@@ -79,7 +85,8 @@ def creepage_coefficients(axis_ratio, poisson_ratio) -> CreepageCoefficients:
     Parameters
     ----------
     axis_ratio : array_like, shape (n,)
-        b/a, the semi-axis in the rolling direction over the lateral one, from 0.02 to 50 [1]. Kalker calls it a/b.
+        b/a, the semi-axis in the rolling direction over the lateral one, from 0.02 to 50 [1].
+        Kalker calls it a/b.
     poisson_ratio : array_like, shape (n,)
         Combined Poisson's ratio from 0 to 0.5 [1].
 
@@ -99,13 +106,17 @@ def creepage_coefficients(axis_ratio, poisson_ratio) -> CreepageCoefficients:
         allowed = f"values between {1 / LARGEST_RATIO:g} and {LARGEST_RATIO:g}"
         raise InputError("axis_ratio", axis_ratio, allowed, "Leave out more slender patches.")
     if not np.all((nu >= 0) & (nu <= 0.5)):
-        raise InputError("poisson_ratio", poisson_ratio, "values between 0 and 0.5", "Correct the material.")
+        raise InputError(
+            "poisson_ratio", poisson_ratio, "values between 0 and 0.5", "Correct the material."
+        )
     values = np.empty((4, ratio.size))
     _logarithms(np.array(ratio.reshape(-1)), np.array(nu.reshape(-1)), chebyshev(), values)
     return CreepageCoefficients(*np.exp(values).reshape(4, *ratio.shape))
 
 
-def linear_resultants(a, b, creep: Creepage, shear_modulus, coefficients: CreepageCoefficients) -> Resultants:
+def linear_resultants(
+    a, b, creep: Creepage, shear_modulus, coefficients: CreepageCoefficients
+) -> Resultants:
     """Return the forces and the spin moment of the linear theory, in which no element slides.
 
     Parameters
@@ -139,12 +150,15 @@ def linear_resultants(a, b, creep: Creepage, shear_modulus, coefficients: Creepa
 
 @lru_cache(maxsize=1)
 def _sliding_integrals() -> np.ndarray:
-    """Return Chebyshev coefficients in ln(ratio) of the logarithms of the integrals of `sliding_flexibility`."""
+    """Return Chebyshev coefficients in ln(ratio) of the logarithms of the integrals of
+    `sliding_flexibility`.
+    """
     ratio, _ = nodes()
     a, b = 1.0 / ratio[:, None], 1.0
     t = np.pi * (np.arange(8192) + 0.5) / 8192
     cos, sin = np.cos(t), np.sin(t)
-    # The substitution tan(phi) = (b/a) tan(t) places the directions phi densely where the integrand is steep.
+    # The substitution tan(phi) = (b/a) tan(t) places the directions phi densely where the integrand
+    # is steep.
     size = np.hypot(a * cos, b * sin)
     c, s, step = a * cos / size, b * sin / size, a * b / size**2 * np.pi / t.size
     cube = step * size**3
@@ -168,12 +182,13 @@ def sliding_flexibility(axis_ratio, poisson_ratio) -> np.ndarray:
 
     Notes
     -----
-    With a distant pole, the traction is mu p along y, and its lateral part follows the rigid slip, q_x ~ y mu p. The
-    displacements of both tractions are polynomials (Galin's theorem). The flexibility L is chosen so that u and L tau
-    give the same lateral force to first order in the elasticity:
+    With a distant pole, the traction is mu p along y, and its lateral part follows the rigid slip,
+    q_x ~ y mu p. The displacements of both tractions are polynomials (Galin's theorem). The
+    flexibility L is chosen so that u and L tau give the same lateral force to first order in the
+    elasticity:
 
-        L_x = 8/(15 G) int_0^pi (1 - nu + nu cos^2) cos^2/(a^2 l^3)
-        L_y = 8/(15 G) int_0^pi [(1 - nu + nu sin^2) cos^2/a^2 + nu sin^2 cos^2/b^2]/l^3,  l^2 = cos^2/a^2 + sin^2/b^2
+        L_x = 8/(15 G) int_0^pi (1 - nu + nu cos^2) cos^2/(a^2 l^3) L_y = 8/(15 G) int_0^pi [(1 - nu
+        + nu sin^2) cos^2/a^2 + nu sin^2 cos^2/b^2]/l^3,  l^2 = cos^2/a^2 + sin^2/b^2
     """
     ratio, nu = np.broadcast_arrays(np.asarray(axis_ratio, float), np.asarray(poisson_ratio, float))
     one, four, mixed = np.exp(chebval(np.log(ratio) / np.log(LARGEST_RATIO), _sliding_integrals()))

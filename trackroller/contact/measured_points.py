@@ -1,4 +1,6 @@
-"""Examine the points of a cross-section: their order, points off the curve, and scatter that would count as shape."""
+"""Examine the points of a cross-section: their order, points off the curve, and scatter that would
+count as shape.
+"""
 
 from __future__ import annotations
 
@@ -8,19 +10,24 @@ from typing import NamedTuple
 
 import numpy as np
 
-SAFETY = 1.05  # factor on the noise found in points: too little smoothing does more harm than too much
+# factor on the noise found in points: too little smoothing does more harm than too much
+SAFETY = 1.05
 
-# A cubic spline through points that scatter by s at distances h raises the largest pressure of a steel circle by about
-# 200 s/h: 2 % from TOLD on, 5 to 30 % from MISLEADING on (guide 6 mm, groove -7 mm, h from 0.01 to 0.2 mm).
+# A cubic spline through points that scatter by s at distances h raises the largest pressure of a
+# steel circle by about 200 s/h: 2 % from TOLD on, 5 to 30 % from MISLEADING on (guide 6 mm, groove
+# -7 mm, h from 0.01 to 0.2 mm).
 TOLD, MISLEADING = 2e-4, 1e-3
 
-# White noise of the deviation s at distances h, smoothed, changes the largest pressure of steel bodies by about
-# 10 % (s^2 h / LOUD)^0.2: 3 to 6 % at 1e-9 mm3, 17 to 43 % at 5e-6 (guide 6 mm, groove -7 mm, s from 0.1 to 5 um,
-# h from 0.01 to 0.2 mm). Waves whose curvature changes by WAVY of the median one change the pressure by 6 % and more.
+# White noise of the deviation s at distances h, smoothed, changes the largest pressure of steel
+# bodies by about 10 % (s^2 h / LOUD)^0.2: 3 to 6 % at 1e-9 mm3, 17 to 43 % at 5e-6 (guide 6 mm,
+# groove -7 mm, s from 0.1 to 5 um, h from 0.01 to 0.2 mm). Waves whose curvature changes by WAVY of
+# the median one change the pressure by 6 % and more.
 LOUD = 5e-8  # mm3
-WAVY, FLAT = 0.3, 5e-3  # of the median curvature; 1/mm, smallest change of the curvature that counts
+# of the median curvature; 1/mm, smallest change of the curvature that counts
+WAVY, FLAT = 0.3, 5e-3
 MOST_TURNS = 5  # of the curvature of a drawn section
-GAP = 8.0  # step over the median step, and over twice each step beside it, from which on it is a gap
+# step over the median step, and over twice each step beside it, from which on it is a gap
+GAP = 8.0
 
 SAME = 1e-9  # mm; heights of one point that was written twice differ by no more
 LONGEST_RUN = 5  # points off the curve in a row that are found
@@ -28,23 +35,30 @@ STEEP = 2.75  # tangent of 70 degrees; an instrument does not follow such a wall
 LONGEST_MARK = 12  # points of the height 0 in a row that are lost ones
 LARGE = 2.5  # smallest step to lost points of the height 0 over the three steps beside it
 FEWEST = 9  # points from which on points off the curve are sought
-FEWEST_AT_END, HIGHEST_AT_END = 30, 0.05  # points from which on a speck is sought at an end; its largest height [mm]
+# points from which on a speck is sought at an end; its largest height [mm]
+FEWEST_AT_END, HIGHEST_AT_END = 30, 0.05
 FARTHEST = 1e7  # mm; a longer length is a mark of lost points
 
-# Degree and number of points of the polynomials beside a run; few points see details, many points average noise.
+# Degree and number of points of the polynomials beside a run; few points see details, many points
+# average noise.
 _FITS = ((1, 3), (2, 4), (3, 5), (4, 6), (2, 7), (3, 9), (5, 9))
-_CERTAIN = 4.0  # smallest distance from both curves beside a run, in standard deviations of their prediction
+# smallest distance from both curves beside a run, in standard deviations of their prediction
+_CERTAIN = 4.0
 _NOISE = 6.0  # smallest distance of a run in standard deviations of the noise
-_AGREE = 0.5  # largest distance of the two curves beside a run from each other, over that of the run
+# largest distance of the two curves beside a run from each other, over that of the run
+_AGREE = 0.5
 _ALIKE = 0.3  # largest range of the distances of a step, over the smallest of them
-_RANDOM = 0.6  # share of differences of opposite sign in a row; 0.5 without relation, 0.8 for noise, 0 for a curve
+# share of differences of opposite sign in a row; 0.5 without relation, 0.8 for noise, 0 for a curve
+_RANDOM = 0.6
 _UNEVEN = 2e-3  # smallest step over half the width of a window whose polynomial is trusted
 _TINY = 1e-12  # mm; smallest standard deviation of a prediction
 _COARSEST = 0.2  # mm; largest step to which heights are rounded
 
 
 class Run(NamedTuple):
-    """Points first to last (indices) that lie off the curve through their neighbours by `off` [mm]."""
+    """Points first to last (indices) that lie off the curve through their neighbours by `off`
+    [mm].
+    """
 
     first: int
     last: int
@@ -59,13 +73,16 @@ class Findings(NamedTuple):
     runs : tuple of Run
         Points off the curve.
     jumps : tuple of int
-        Points behind which the height jumps, or behind which x has a gap wider than all other points.
+        Points behind which the height jumps, or behind which x has a gap wider than all other
+        points.
     scatter : float
-        Standard deviation of random scatter and of rounding [mm]; 0 where neighbours follow one curve.
+        Standard deviation of random scatter and of rounding [mm]; 0 where neighbours follow one
+        curve.
     spacing : float
         Median distance of neighbours [mm].
     at_ends : tuple of Run
-        Outermost points that may be off the curve, or shape: no points beyond them confirm the curve.
+        Outermost points that may be off the curve, or shape: no points beyond them confirm the
+        curve.
     """
 
     runs: tuple[Run, ...]
@@ -76,23 +93,31 @@ class Findings(NamedTuple):
 
     @property
     def roughness(self) -> float:
-        """Return the scatter over the distance of the points, which decides how far the pressure is wrong."""
+        """Return the scatter over the distance of the points, which decides how far the pressure is
+        wrong.
+        """
         return self.scatter / self.spacing
 
     @property
     def error_if_smoothed(self) -> float:
-        """Return about how far the largest pressure of steel bodies is wrong if the scatter is smoothed, as a share."""
+        """Return about how far the largest pressure of steel bodies is wrong if the scatter is
+        smoothed, as a share.
+        """
         return float(0.1 * (self.scatter**2 * self.spacing / LOUD) ** 0.2)
 
     @property
     def pressure_rise(self) -> str:
-        """Return about how far the scatter can raise the largest pressure of steel bodies, in words."""
+        """Return about how far the scatter can raise the largest pressure of steel bodies, in
+        words.
+        """
         rise = 200.0 * self.roughness
         return f"{float(f'{100 * rise:.1g}'):g} %" if rise < 1.0 else "a multiple"
 
 
 class Waves(NamedTuple):
-    """Waves on a section: number of turns of its curvature, length of a wave [mm], half its height [mm]."""
+    """Waves on a section: number of turns of its curvature, length of a wave [mm], half its height
+    [mm].
+    """
 
     turns: int
     length: float
@@ -102,7 +127,8 @@ class Waves(NamedTuple):
 def waves(x: np.ndarray, z: np.ndarray, scatter: float) -> Waves | None:
     """Return the waves on a section whose curvature goes to and fro, None if there are none.
 
-    The curvature is that of circles through three points. Arcs and lines have no waves, however their points lie.
+    The curvature is that of circles through three points. Arcs and lines have no waves, however
+    their points lie.
 
     Parameters
     ----------
@@ -121,11 +147,15 @@ def waves(x: np.ndarray, z: np.ndarray, scatter: float) -> Waves | None:
     if len(changes) <= MOST_TURNS:
         return None
     length = 2.0 * float(x[-1] - x[0]) / len(changes)
-    return Waves(len(changes), length, 0.5 * float(np.median(changes)) * (length / (2.0 * np.pi)) ** 2)
+    return Waves(
+        len(changes), length, 0.5 * float(np.median(changes)) * (length / (2.0 * np.pi)) ** 2
+    )
 
 
 def _curvatures(x: np.ndarray, z: np.ndarray, apart: int) -> np.ndarray:
-    """Return the curvatures of the circles through points k, k + apart and k + 2 apart [1/mm], > 0 hollow."""
+    """Return the curvatures of the circles through points k, k + apart and k + 2 apart [1/mm], > 0
+    hollow.
+    """
     x0, x1, x2 = x[: -2 * apart], x[apart:-apart], x[2 * apart :]
     z0, z1, z2 = z[: -2 * apart], z[apart:-apart], z[2 * apart :]
     area = (x1 - x0) * (z2 - z0) - (x2 - x0) * (z1 - z0)
@@ -148,7 +178,9 @@ def _changes(values: np.ndarray, least: float) -> list[float]:
 
 
 def gap(x: np.ndarray) -> int | None:
-    """Return the point behind which no points lie over a length that all others cover densely, None for none."""
+    """Return the point behind which no points lie over a length that all others cover densely, None
+    for none.
+    """
     steps = np.diff(x)
     if steps.size < FEWEST:
         return None
@@ -159,7 +191,9 @@ def gap(x: np.ndarray) -> int | None:
 
 
 def in_order(points: np.ndarray) -> np.ndarray:
-    """Return the indices (m,) that sort points (n, 2) by x and leave out points that stand twice."""
+    """Return the indices (m,) that sort points (n, 2) by x and leave out points that stand
+    twice.
+    """
     order = np.lexsort((points[:, 1], points[:, 0]))
     ordered = points[order]
     steps = np.abs(np.diff(ordered, axis=0))
@@ -177,15 +211,21 @@ def examined(x: np.ndarray, z: np.ndarray) -> Findings:
 
     Notes
     -----
-    A run of points lies off the curve if polynomials through the points before and behind it predict each other but
-    not the run. A kink, a chamfer or a rounding does not pass this test: there the two sides do not predict each other.
+    A run of points lies off the curve if polynomials through the points before and behind it
+    predict each other but not the run. A kink, a chamfer or a rounding does not pass this test:
+    there the two sides do not predict each other.
     """
-    return _examined(np.ascontiguousarray(x, dtype=float).tobytes(), np.ascontiguousarray(z, dtype=float).tobytes())
+    return _examined(
+        np.ascontiguousarray(x, dtype=float).tobytes(),
+        np.ascontiguousarray(z, dtype=float).tobytes(),
+    )
 
 
 @lru_cache(maxsize=64)  # a case is checked, asked about and solved with the same points
 def _examined(x_bytes: bytes, z_bytes: bytes) -> Findings:
-    """Examine points whose coordinates are given as bytes, by which the results are kept; see `examined`."""
+    """Examine points whose coordinates are given as bytes, by which the results are kept; see
+    `examined`.
+    """
     x, z = np.frombuffer(x_bytes), np.frombuffer(z_bytes)
     spacing = float(np.median(np.diff(x)))
     if x.size < FEWEST:
@@ -194,19 +234,28 @@ def _examined(x_bytes: bytes, z_bytes: bytes) -> Findings:
     noise = max(_deviation(_differences(x, z, 4)), grain)
     fits = [_Fits(x, z, degree, count) for degree, count in _FITS if x.size >= 2 * count]
     runs = _runs(x, z, noise, fits)
-    runs += tuple(mark for mark in _marks(x, z) if all(mark.last < run.first or mark.first > run.last for run in runs))
+    runs += tuple(
+        mark
+        for mark in _marks(x, z)
+        if all(mark.last < run.first or mark.first > run.last for run in runs)
+    )
     inside = {place for run in runs for place in range(run.first - 1, run.last + 1)}
-    jumps = {*_jumps(x, z, noise), *(place for place in _steps(x, z, noise, fits) if place not in inside)}
+    jumps = {
+        *_jumps(x, z, noise),
+        *(place for place in _steps(x, z, noise, fits) if place not in inside),
+    }
     scatter = max(_random_scatter(x, z), grain)
-    return Findings(tuple(sorted(runs)), tuple(sorted(jumps)), scatter, spacing, _runs_at_ends(x, z, noise))
+    return Findings(
+        tuple(sorted(runs)), tuple(sorted(jumps)), scatter, spacing, _runs_at_ends(x, z, noise)
+    )
 
 
 def noise_of(u: np.ndarray, height: np.ndarray) -> float:
     """Return the standard deviation of the noise of heights [mm], of their rounding at least.
 
-    It comes from divided differences of five neighbours. These differences vanish for cubics and nearly vanish for arcs
-    and parabolas. Kinks and steps give few large values, which the median leaves out. Noise that neighbours share is
-    not detected.
+    It comes from divided differences of five neighbours. These differences vanish for cubics and
+    nearly vanish for arcs and parabolas. Kinks and steps give few large values, which the median
+    leaves out. Noise that neighbours share is not detected.
 
     Parameters
     ----------
@@ -217,10 +266,12 @@ def noise_of(u: np.ndarray, height: np.ndarray) -> float:
 
 
 def rounding_of(x: np.ndarray, z: np.ndarray) -> float:
-    """Return the standard deviation of heights that were rounded [mm], or 0 if the rounding is not seen.
+    """Return the standard deviation of heights that were rounded [mm], or 0 if the rounding is not
+    seen.
 
-    All differences of rounded heights are multiples of one step. Heights that a designer chose on a grid are so as
-    well, but rounded ones also bend to and fro by about one step from point to point.
+    All differences of rounded heights are multiples of one step. Heights that a designer chose on a
+    grid are so as well, but rounded ones also bend to and fro by about one step from point to
+    point.
 
     Parameters
     ----------
@@ -245,7 +296,8 @@ def rounding_of(x: np.ndarray, z: np.ndarray) -> float:
 
 
 def _rounding_across(x: np.ndarray, z: np.ndarray) -> float:
-    """Return the standard deviation of heights whose x were rounded [mm], or 0 if the rounding is not seen.
+    """Return the standard deviation of heights whose x were rounded [mm], or 0 if the rounding is
+    not seen.
 
     Even steps become steps of two widths, while the heights rise evenly.
     """
@@ -266,7 +318,9 @@ def _rounding_across(x: np.ndarray, z: np.ndarray) -> float:
 
 
 def _differences(x: np.ndarray, z: np.ndarray, order: int) -> np.ndarray:
-    """Return divided differences whose standard deviation is that of the noise of z, (n - order,)."""
+    """Return divided differences whose standard deviation is that of the noise of z, (n -
+    order,).
+    """
     count = x.size - order
     near = np.stack([x[k : k + count] for k in range(order + 1)])
     near = near / (near[-1] - near[0])
@@ -287,9 +341,11 @@ def _deviation(differences: np.ndarray) -> float:
 
 
 def _random_scatter(x: np.ndarray, z: np.ndarray) -> float:
-    """Return the standard deviation of the scatter of z [mm], 0 if its differences do not change their sign at random.
+    """Return the standard deviation of the scatter of z [mm], 0 if its differences do not change
+    their sign at random.
 
-    Differences of higher order vanish for more curves, but few points leave few of them; the smallest deviation counts.
+    Differences of higher order vanish for more curves, but few points leave few of them; the
+    smallest deviation counts.
     """
     found = []
     for order in (4, 6, 8):
@@ -301,10 +357,11 @@ def _random_scatter(x: np.ndarray, z: np.ndarray) -> float:
 
 
 def _is_random(differences: np.ndarray) -> bool:
-    """Return whether the signs of neighbouring differences change as often as those of random scatter, or oftener.
+    """Return whether the signs of neighbouring differences change as often as those of random
+    scatter, or oftener.
 
-    Few differences change their signs often by chance: 0.6 over the root of their number is 1.2 standard deviations of
-    the share of changes of independent signs.
+    Few differences change their signs often by chance: 0.6 over the root of their number is 1.2
+    standard deviations of the share of changes of independent signs.
     """
     signs = np.sign(differences)
     both = (signs[1:] != 0) & (signs[:-1] != 0)
@@ -315,7 +372,9 @@ def _is_random(differences: np.ndarray) -> bool:
 
 
 def _marks(x: np.ndarray, z: np.ndarray) -> list[Run]:
-    """Return runs of the height 0 between two steps that are larger than the steps beside them, as lost points have."""
+    """Return runs of the height 0 between two steps that are larger than the steps beside them, as
+    lost points have.
+    """
     steps = np.abs(np.diff(z))
     zero = np.concatenate([[False], z == 0.0, [False]])
     starts, ends = np.flatnonzero(zero[1:] & ~zero[:-1]), np.flatnonzero(zero[:-1] & ~zero[1:]) - 1
@@ -331,7 +390,9 @@ def _marks(x: np.ndarray, z: np.ndarray) -> list[Run]:
 
 
 def _jumps(x: np.ndarray, z: np.ndarray, noise: float) -> tuple[int, ...]:
-    """Return the points behind which a single step is a wall, or behind which lies a gap in x at one end."""
+    """Return the points behind which a single step is a wall, or behind which lies a gap in x at
+    one end.
+    """
     steps, rises = np.diff(x), np.diff(z)
     slopes = rises / steps
     steep = (np.abs(slopes) > STEEP) & (np.abs(rises) > 2.0 * _NOISE * noise)
@@ -347,7 +408,9 @@ def _jumps(x: np.ndarray, z: np.ndarray, noise: float) -> tuple[int, ...]:
 
 
 class _Fits:
-    """Polynomials through each window of `count` neighbours, and how far their predictions can be trusted."""
+    """Polynomials through each window of `count` neighbours, and how far their predictions can be
+    trusted.
+    """
 
     def __init__(self, x: np.ndarray, z: np.ndarray, degree: int, count: int) -> None:
         self.count = count
@@ -383,7 +446,9 @@ class _Fits:
 
 
 def _runs(x: np.ndarray, z: np.ndarray, noise: float, polynomials: list[_Fits]) -> tuple[Run, ...]:
-    """Return the runs of points off the curve; of runs that overlap, the one that is most certain."""
+    """Return the runs of points off the curve; of runs that overlap, the one that is most
+    certain.
+    """
     found: list[tuple[float, Run]] = []
     for fits in polynomials:
         count = fits.count
@@ -396,12 +461,15 @@ def _runs(x: np.ndarray, z: np.ndarray, noise: float, polynomials: list[_Fits]) 
             off = np.minimum(from_left, from_right)
             spacing = (x[last + 1] - x[first - 1]) / (length + 1)
             large = np.flatnonzero(off > np.maximum(_NOISE * noise, MISLEADING * spacing))
-            first, last, before, behind, off = (values[large] for values in (first, last, before, behind, off))
+            first, last, before, behind, off = (
+                values[large] for values in (first, last, before, behind, off)
+            )
             from_left = from_left[large] / fits.error(before, x[first], noise)
             from_right = from_right[large] / fits.error(behind, x[last], noise)
             certainty = np.minimum(from_left, from_right)
             apart = [
-                np.abs(z[at] - fits.height(windows, x[at])) for windows, at in ((before, last + 1), (behind, first - 1))
+                np.abs(z[at] - fits.height(windows, x[at]))
+                for windows, at in ((before, last + 1), (behind, first - 1))
             ]
             for k in np.flatnonzero((certainty > _CERTAIN) & (np.maximum(*apart) < _AGREE * off)):
                 found.append((float(certainty[k]), Run(int(first[k]), int(last[k]), float(off[k]))))
@@ -413,16 +481,22 @@ def _runs(x: np.ndarray, z: np.ndarray, noise: float, polynomials: list[_Fits]) 
 
 
 def _runs_at_ends(x: np.ndarray, z: np.ndarray, noise: float) -> tuple[Run, ...]:
-    """Return the runs of 2 to `LONGEST_RUN` outermost points that leave the curve and turn back to its direction.
+    """Return the runs of 2 to `LONGEST_RUN` outermost points that leave the curve and turn back to
+    its direction.
 
-    Nothing beyond the end confirms the curve there. A chamfer, a rounding or another curvature leaves the curve ever
-    faster, so that only points whose distance from the curve grows more slowly again are taken for a speck.
+    Nothing beyond the end confirms the curve there. A chamfer, a rounding or another curvature
+    leaves the curve ever faster, so that only points whose distance from the curve grows more
+    slowly again are taken for a speck.
     """
     if x.size < FEWEST_AT_END:
         return ()
     last = x.size - 1
     found = [(_run_at_end(x, z, noise), False), (_run_at_end(-x[::-1], z[::-1], noise), True)]
-    return tuple(Run(0, last - run.first, run.off) if is_first else run for run, is_first in found if run is not None)
+    return tuple(
+        Run(0, last - run.first, run.off) if is_first else run
+        for run, is_first in found
+        if run is not None
+    )
 
 
 def _run_at_end(x: np.ndarray, z: np.ndarray, noise: float) -> Run | None:
@@ -451,9 +525,11 @@ def _run_at_end(x: np.ndarray, z: np.ndarray, noise: float) -> Run | None:
 
 
 def _steps(x: np.ndarray, z: np.ndarray, noise: float, polynomials: list[_Fits]) -> tuple[int, ...]:
-    """Return the points behind which the curve goes on at another height: both sides miss each other by one distance.
+    """Return the points behind which the curve goes on at another height: both sides miss each
+    other by one distance.
 
-    Where slope or curvature change, the distance grows from the first to the second point of the other side.
+    Where slope or curvature change, the distance grows from the first to the second point of the
+    other side.
     """
     found: dict[int, list[float]] = {}
     for fits in polynomials:
@@ -464,10 +540,18 @@ def _steps(x: np.ndarray, z: np.ndarray, noise: float, polynomials: list[_Fits])
         back, earlier = (fits.height(behind, x[last - k]) - z[last - k] for k in (0, 1))
         misses = np.stack([ahead, further, back, earlier])
         height = np.abs(misses).min(axis=0)
-        error = np.maximum(fits.error(before, x[last + 2], noise), fits.error(behind, x[last - 1], noise))
+        error = np.maximum(
+            fits.error(before, x[last + 2], noise), fits.error(behind, x[last - 1], noise)
+        )
         least = np.maximum(_NOISE * noise, MISLEADING * (x[last + 1] - x[last]))
-        alike = (np.ptp(misses, axis=0) < _ALIKE * height) & (np.abs(misses.sum(axis=0)) > 3.0 * height)
+        alike = (np.ptp(misses, axis=0) < _ALIKE * height) & (
+            np.abs(misses.sum(axis=0)) > 3.0 * height
+        )
         for k in np.flatnonzero(alike & (height > least) & (height > _CERTAIN * error)):
             found.setdefault(int(last[k]), []).append(float(misses[:, k].mean()))
     # a single polynomial may miss by chance
-    return tuple(k for k, by in found.items() if len(by) > 1 and max(by) - min(by) < _ALIKE * min(map(abs, by)))
+    return tuple(
+        k
+        for k, by in found.items()
+        if len(by) > 1 and max(by) - min(by) < _ALIKE * min(map(abs, by))
+    )

@@ -31,7 +31,8 @@ CLASSES: dict[str, type[ContactModel]] = {
 
 
 def register(model: type[ContactModel]) -> type[ContactModel]:
-    """Add a contact model to `solve`, study files, command line and plan; usable as a decorator of its class.
+    """Add a contact model to `solve`, study files, command line and plan; usable as a decorator of
+    its class.
 
     Parameters
     ----------
@@ -50,8 +51,9 @@ def register(model: type[ContactModel]) -> type[ContactModel]:
 
     Notes
     -----
-    The model exists in this process. The identity of stored cases holds its name and the source of its module, so
-    that a changed model solves its cases anew. Other modules that it imports do not count.
+    The model exists in this process. The identity of stored cases holds its name and the source of
+    its module, so that a changed model solves its cases anew. Other modules that it imports do not
+    count.
     """
     declare(replace(model.declaration, source=_digest(model)))
     CLASSES[model.declaration.name] = model
@@ -59,13 +61,19 @@ def register(model: type[ContactModel]) -> type[ContactModel]:
 
 
 def _digest(model: type[ContactModel]) -> str:
-    """Return a digest of the source of a model's module, or of the code of its methods if there is no source."""
+    """Return a digest of the source of a model's module, or of the code of its methods if there is
+    no source.
+    """
     try:
         source = inspect.getsource(sys.modules[model.__module__])
     except (OSError, TypeError):
         codes = [part.__code__ for part in vars(model).values() if inspect.isfunction(part)]
-        constants = [[value for value in code.co_consts if not inspect.iscode(value)] for code in codes]
-        source = repr([(code.co_code, code.co_names, own) for code, own in zip(codes, constants, strict=True)])
+        constants = [
+            [value for value in code.co_consts if not inspect.iscode(value)] for code in codes
+        ]
+        source = repr(
+            [(code.co_code, code.co_names, own) for code, own in zip(codes, constants, strict=True)]
+        )
     return hashlib.sha256(source.encode()).hexdigest()
 
 
@@ -84,7 +92,8 @@ def contact_model(
     Parameters
     ----------
     name : str
-        Name of a registered model. Its declaration says which patches, slips and friction it serves.
+        Name of a registered model. Its declaration says which patches, slips and friction it
+        serves.
     settings : Accuracy
         Discretisation.
     elastic : Elastic
@@ -96,8 +105,8 @@ def contact_model(
     travel_speed : ndarray, shape (n,), or float
         Travel speed of the rollers [mm/s].
     slip_terms : collection of str
-        With 'profile' the rigid slip follows the guide's profile instead of its tangent; 'sliding' always does.
-        'curve' changes the slip that a model is given, see `slip.Slip`.
+        With 'profile' the rigid slip follows the guide's profile instead of its tangent; 'sliding'
+        always does. 'curve' changes the slip that a model is given, see `slip.Slip`.
     patches : NormalSolver, optional
         Solver of the normal problem of the rollers; Hertz's ellipses if not given.
 
@@ -112,7 +121,9 @@ def contact_model(
         For an unknown name, or a model that does not serve solved patches.
     """
     check_names("contact_model", [name], list(CLASSES))
-    travel = np.array(np.broadcast_to(np.asarray(travel_speed, float), np.shape(elastic.shear_modulus)))
+    travel = np.array(
+        np.broadcast_to(np.asarray(travel_speed, float), np.shape(elastic.shear_modulus))
+    )
     given = Rollers(elastic, law or constant(), travel, spin_model, "profile" in slip_terms)
     if patches is None:
         return CLASSES[name](given, settings)

@@ -1,8 +1,10 @@
-"""What a contact model receives and returns: patches, elastic constants, forces, tractions and works.
+"""What a contact model receives and returns: patches, elastic constants, forces, tractions and
+works.
 
-Every array has one entry for each contact patch, shape (n,), unless stated otherwise. Units: N, mm, MPa, rad.
-The contact frame has x_C in the lateral direction, y_C in the rolling direction and z_C along the common normal, into
-the body considered. Kalker and CONTACT use x for the rolling direction instead.
+Every array has one entry for each contact patch, shape (n,), unless stated otherwise. Units: N, mm,
+MPa, rad. The contact frame has x_C in the lateral direction, y_C in the rolling direction and z_C
+along the common normal, into the body considered. Kalker and CONTACT use x for the rolling
+direction instead.
 """
 
 from __future__ import annotations
@@ -20,8 +22,8 @@ from trackroller.numerics.rows import Rows
 if TYPE_CHECKING:
     from trackroller.contact.slip import Slip
 
-# Share of the largest possible error of the friction work, see `error_of_work`. The error exceeded this share in 1 of
-# 100 designs.
+# Share of the largest possible error of the friction work, see `error_of_work`. The error exceeded
+# this share in 1 of 100 designs.
 WORK_SHARE = 0.7
 
 
@@ -33,7 +35,8 @@ class Patch(Protocol):
 
     @property
     def is_hertzian(self) -> bool:
-        """Return True for the ellipses of Hertz's theory, whose pressure follows from a, b and p_max.
+        """Return True for the ellipses of Hertz's theory, whose pressure follows from a, b and
+        p_max.
 
         False if the pressure was solved element by element.
         """
@@ -80,7 +83,9 @@ class Patch(Protocol):
 
 @dataclass(frozen=True)
 class Ellipse(Rows):
-    """Contact ellipses of Hertz's theory: a along x_C (lateral), b along y_C (rolling) [mm], p_max [MPa]; (n,)."""
+    """Contact ellipses of Hertz's theory: a along x_C (lateral), b along y_C (rolling) [mm], p_max
+    [MPa]; (n,).
+    """
 
     semi_axis_lateral: np.ndarray
     semi_axis_rolling: np.ndarray
@@ -91,7 +96,9 @@ class Ellipse(Rows):
     @property
     def normal_force(self) -> np.ndarray:
         """Return F_N = 2/3 pi a b p_max [N]."""
-        return 2.0 / 3.0 * np.pi * self.semi_axis_lateral * self.semi_axis_rolling * self.max_pressure
+        return (
+            2.0 / 3.0 * np.pi * self.semi_axis_lateral * self.semi_axis_rolling * self.max_pressure
+        )
 
     @property
     def centre(self) -> np.ndarray:
@@ -119,19 +126,29 @@ class Ellipse(Rows):
         return np.zeros(len(self.semi_axis_lateral), bool)
 
     def grid(self, elements: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return x and y of element centres, (n, elements) [mm], and the pressure there, (n, y, x) [MPa]."""
+        """Return x and y of element centres, (n, elements) [mm], and the pressure there, (n, y, x)
+        [MPa].
+        """
         return self.pressures((2.0 * np.arange(elements) + 1.0) / elements - 1.0)
 
     def pressures(self, unit: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return x and y over the places `unit` (m,) in the unit circle [mm], and Hertz's pressure, eq. (26)."""
+        """Return x and y over the places `unit` (m,) in the unit circle [mm], and Hertz's pressure,
+        eq. (26).
+        """
         root = np.sqrt(np.maximum(1.0 - unit[None, :] ** 2 - unit[:, None] ** 2, 0.0))
         pressure = self.max_pressure[:, None, None] * root
-        return self.semi_axis_lateral[:, None] * unit, self.semi_axis_rolling[:, None] * unit, pressure
+        return (
+            self.semi_axis_lateral[:, None] * unit,
+            self.semi_axis_rolling[:, None] * unit,
+            pressure,
+        )
 
 
 @dataclass(frozen=True)
 class Resultants(Rows):
-    """Lateral and driving friction force on the roller [N] and spin moment about z_C [N mm], arrays (n,)."""
+    """Lateral and driving friction force on the roller [N] and spin moment about z_C [N mm], arrays
+    (n,).
+    """
 
     lateral_force: np.ndarray
     driving_force: np.ndarray
@@ -164,8 +181,8 @@ class Works(Rows):
     dissipated : numpy.ndarray, shape (n,)
         Energy that friction dissipates.
     by_pressure : numpy.ndarray, shape (n,)
-        Part of this energy that the pressures supply. On unlike materials shear moves the surfaces along the normal,
-        and the pressures do work on this motion.
+        Part of this energy that the pressures supply. On unlike materials shear moves the surfaces
+        along the normal, and the pressures do work on this motion.
     """
 
     dissipated: np.ndarray
@@ -200,7 +217,9 @@ class Elastic(Rows):
 
     @classmethod
     def of_pair(cls, e_1, nu_1, e_2, nu_2) -> Elastic:
-        """Return the combined constants from Young's moduli [MPa] and Poisson's ratios of roller and guide."""
+        """Return the combined constants from Young's moduli [MPa] and Poisson's ratios of roller
+        and guide.
+        """
         g_1, g_2 = e_1 / (2 * (1 + nu_1)), e_2 / (2 * (1 + nu_2))
         g = 2.0 / (1 / g_1 + 1 / g_2)
         nu = g * (nu_1 / g_1 + nu_2 / g_2) / 2
@@ -222,9 +241,13 @@ class SurfaceTractions(Tractions):
 
     @classmethod
     def of_sliding(cls, x, y, pressure, shear, slip) -> SurfaceTractions:
-        """Return the tractions of patches that stick nowhere; `shear` and `slip` are pairs of fields."""
+        """Return the tractions of patches that stick nowhere; `shear` and `slip` are pairs of
+        fields.
+        """
         moved = [np.where(pressure > 0, part, 0.0) for part in slip]
-        return cls(x, y, pressure, shear[0], shear[1], moved[0], moved[1], np.zeros(pressure.shape, bool))
+        return cls(
+            x, y, pressure, shear[0], shear[1], moved[0], moved[1], np.zeros(pressure.shape, bool)
+        )
 
     @property
     def stick_share(self) -> np.ndarray:
@@ -252,7 +275,9 @@ class SurfaceTractions(Tractions):
 
 @lru_cache(maxsize=16)
 def _nearest(empty: bytes, columns: int) -> np.ndarray:
-    """Return row and column of the nearest loaded element, (2, ny, nx), from a mask of the others."""
+    """Return row and column of the nearest loaded element, (2, ny, nx), from a mask of the
+    others.
+    """
     # a heavy package, and only stresses under tractions on a grid need it
     from scipy.ndimage import distance_transform_edt  # noqa: PLC0415
 
@@ -261,7 +286,9 @@ def _nearest(empty: bytes, columns: int) -> np.ndarray:
 
 
 def filled(fields: np.ndarray, pressure: np.ndarray) -> np.ndarray:
-    """Return fields (n, 2, ny, nx) with the values of the nearest loaded element where `pressure` (ny, nx) is 0."""
+    """Return fields (n, 2, ny, nx) with the values of the nearest loaded element where `pressure`
+    (ny, nx) is 0.
+    """
     row, column = _nearest((pressure <= 0.0).tobytes(), pressure.shape[1])
     return fields[:, :, row, column]
 
@@ -269,11 +296,12 @@ def filled(fields: np.ndarray, pressure: np.ndarray) -> np.ndarray:
 def error_of_work(
     patch: Patch, slip: Slip, friction: np.ndarray, driving: np.ndarray, moment: np.ndarray
 ) -> np.ndarray:
-    """Return the error of the friction work over that of the friction forces over mu F_N, at least 1, (m,) [1].
+    """Return the error of the friction work over that of the friction forces over mu F_N, at least
+    1, (m,) [1].
 
-    Errors of F_A by mu F_N and of M_R by mu F_N c change the work by at most mu F_N (|xi| + |phi| c).
-    These errors partly cancel, so that WORK_SHARE of this bound is the estimate. The work itself may be small, because
-    the works of F_A and M_R cancel too.
+    Errors of F_A by mu F_N and of M_R by mu F_N c change the work by at most mu F_N (|xi| + |phi|
+    c). These errors partly cancel, so that WORK_SHARE of this bound is the estimate. The work
+    itself may be small, because the works of F_A and M_R cancel too.
 
     Parameters
     ----------
@@ -282,9 +310,14 @@ def error_of_work(
     driving, moment : F_A [N] and M_R [N mm], (m,)
     """
     arm = np.sqrt(patch.semi_axis_lateral * patch.semi_axis_rolling)
-    speed, work = np.abs(slip.longitudinal) + np.abs(slip.spin) * arm, slip.longitudinal * driving + slip.spin * moment
+    speed, work = (
+        np.abs(slip.longitudinal) + np.abs(slip.spin) * arm,
+        slip.longitudinal * driving + slip.spin * moment,
+    )
     with np.errstate(divide="ignore", invalid="ignore"):
-        return np.asarray(np.fmax(WORK_SHARE * friction * patch.normal_force * speed / np.abs(work), 1.0))
+        return np.asarray(
+            np.fmax(WORK_SHARE * friction * patch.normal_force * speed / np.abs(work), 1.0)
+        )
 
 
 def slenderness(patch: Patch) -> np.ndarray:
@@ -294,7 +327,9 @@ def slenderness(patch: Patch) -> np.ndarray:
 
 
 def force_scales(patch: Patch, friction: np.ndarray) -> np.ndarray:
-    """Return the scales of F_T, F_A and M_R: mu F_N, mu F_N and mu F_N c, (m, 3); 1e-300 where there is no friction."""
+    """Return the scales of F_T, F_A and M_R: mu F_N, mu F_N and mu F_N c, (m, 3); 1e-300 where
+    there is no friction.
+    """
     scale = np.empty((len(friction), 3))
     scale[:] = np.maximum(friction * patch.normal_force, 1e-300)[:, None]
     scale[:, 2] *= np.sqrt(patch.semi_axis_lateral * patch.semi_axis_rolling)

@@ -17,7 +17,9 @@ CONVERGED_PRESSURE = 1e-7  # largest residual of the normal problem of patches t
 
 
 def converged_up_to(contact_model: str, normal: str) -> float:
-    """Return the largest residual with which a row of a contact model and a normal problem counts as converged."""
+    """Return the largest residual with which a row of a contact model and a normal problem counts
+    as converged.
+    """
     own = DECLARED[contact_model].converged_up_to
     return own if normal == "hertz" else max(own, CONVERGED_PRESSURE)
 
@@ -37,7 +39,8 @@ class Rollers:
     spin_model : str
         'concentric', 'edge' or 'skewed', for sliding only.
     profile_slip : bool
-        True if the rigid slip follows the profile of the guide instead of its tangent; sliding always does so.
+        True if the rigid slip follows the profile of the guide instead of its tangent; sliding
+        always does so.
     """
 
     elastic: Elastic

@@ -1,7 +1,8 @@
 """Full sliding with an empirical spin pole: the model of Wenzel et al. 2022, eqs (20)-(30).
 
-The friction traction opposes the rigid slip everywhere, tau = -mu f(|v|) p v/|v|, with a friction law f of the local
-slip speed; f = 1 is the paper's model. `contact.slip` has the slip, `contact.sliding_kernels` the integrals.
+The friction traction opposes the rigid slip everywhere, tau = -mu f(|v|) p v/|v|, with a friction
+law f of the local slip speed; f = 1 is the paper's model. `contact.slip` has the slip,
+`contact.sliding_kernels` the integrals.
 
 Frame: x_C lateral, y_C in the rolling direction (Kalker and CONTACT use x for rolling).
 """
@@ -31,10 +32,11 @@ from trackroller.numerics.threads import share_rows
 
 @dataclass(frozen=True)
 class Integrals:
-    """Resultants on the roller, and dissipation int |tau| |v| per angular speed omega [N mm per rad], (n,).
+    """Resultants on the roller, and dissipation int |tau| |v| per angular speed omega [N mm per
+    rad], (n,).
 
-    The dissipation is the local product of the published model. With its empirical spin pole it need not equal the
-    work done by the drive and tilting forces.
+    The dissipation is the local product of the published model. With its empirical spin pole it
+    need not equal the work done by the drive and tilting forces.
     """
 
     resultants: Resultants
@@ -71,16 +73,20 @@ def integrals(
     Returns
     -------
     Integrals
-        F_T = int tau_x, F_A = int tau_y [N], M_R = int (x tau_y - y tau_x) [N mm], and the dissipation, (n,).
+        F_T = int tau_x, F_A = int tau_y [N], M_R = int (x tau_y - y tau_x) [N mm], and the
+        dissipation, (n,).
 
     Notes
     -----
-    Relative error against adaptive quadrature: about 1e-4 at 6 nodes and 1e-8 at 16 (tests/contact/test_sliding.py);
-    1e-5 at 12 nodes under smooth laws and laws with few knots (tests/contact/test_friction_laws.py).
+    Relative error against adaptive quadrature: about 1e-4 at 6 nodes and 1e-8 at 16
+    (tests/contact/test_sliding.py); 1e-5 at 12 nodes under smooth laws and laws with few knots
+    (tests/contact/test_friction_laws.py).
     """
     n = np.size(friction)
     law = constant() if law is None or law.is_constant else law  # a law that stays at 1 is constant
-    patches = SlidingPatches(*np.array((*_geometry(ellipse, slip), travel_speed / slip.rolling_radius)))
+    patches = SlidingPatches(
+        *np.array((*_geometry(ellipse, slip), travel_speed / slip.rolling_radius))
+    )
     sums = np.empty((4, n))
     out = Sums(*sums)
     model, table, rule = spin_model_index(spin_model), law.knots, Rule(*clustered_rule(nodes))
@@ -90,19 +96,24 @@ def integrals(
 
 
 def _geometry(patch: Patch, slip: Slip) -> tuple[np.ndarray, ...]:
-    """Return a, b, sine and cosine of the contact angle, r_C,G and r_Delta0: `SlidingPatches` without speed."""
+    """Return a, b, sine and cosine of the contact angle, r_C,G and r_Delta0: `SlidingPatches`
+    without speed.
+    """
     axes = patch.semi_axis_lateral, patch.semi_axis_rolling
     return *axes, slip.sine, slip.cosine, slip.guide_profile_radius, slip.shift
 
 
-def slip_lines(patch: Patch, slip: Slip, x: np.ndarray, spin_model: str) -> tuple[np.ndarray, np.ndarray]:
-    """Return v_y/omega and the y_C where v_x vanishes at lateral positions x, eqs (21), (22) and (25).
+def slip_lines(
+    patch: Patch, slip: Slip, x: np.ndarray, spin_model: str
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return v_y/omega and the y_C where v_x vanishes at lateral positions x, eqs (21), (22) and
+    (25).
 
     Parameters
     ----------
     patch, slip : Patch, Slip
-        Patches and their kinematics, arrays (n,). Half the sides of its box stand for the semi-axes of a patch that is
-        not elliptical.
+        Patches and their kinematics, arrays (n,). Half the sides of its box stand for the semi-axes
+        of a patch that is not elliptical.
     x : ndarray, shape (n, ...)
         Lateral positions [mm].
     spin_model : str
@@ -137,7 +148,9 @@ def slip_field(patch: Patch, slip: Slip, x: np.ndarray, y: np.ndarray, spin_mode
         Lateral and rolling part [1].
     """
     along, offset = slip_lines(patch, slip, x, spin_model)
-    sine, r_a = (np.reshape(v, (-1, *(1,) * (x.ndim - 1))) for v in (slip.sine, slip.rolling_radius))
+    sine, r_a = (
+        np.reshape(v, (-1, *(1,) * (x.ndim - 1))) for v in (slip.sine, slip.rolling_radius)
+    )
     return lateral_slip(y, offset, sine) / r_a, along / r_a
 
 
@@ -151,7 +164,8 @@ def tractions(
     law: FrictionLaw | None = None,
     travel_speed=1.0,
 ) -> SurfaceTractions:
-    """Return pressure, shear and slip on a grid of `points` x `points` over each patch, by eqs (26)-(30).
+    """Return pressure, shear and slip on a grid of `points` x `points` over each patch, by eqs
+    (26)-(30).
 
     All fields are 0 outside the ellipse.
 
@@ -178,10 +192,16 @@ def tractions(
     bound = friction[:, None, None] * pressure / np.where(speed > 0, speed, np.inf)
     if law is not None:
         bound = bound * law(speed * np.broadcast_to(travel_speed, len(x))[:, None, None])
-    return SurfaceTractions.of_sliding(x, y, pressure, (-bound * slip_x, -bound * slip_y), (slip_x, slip_y))
+    return SurfaceTractions.of_sliding(
+        x, y, pressure, (-bound * slip_x, -bound * slip_y), (slip_x, slip_y)
+    )
 
 
-def tractions_full_slip(ellipse: Ellipse, friction: np.ndarray, direction: np.ndarray) -> Resultants:
-    """Return the resultants of tau_y = direction mu p everywhere, direction = -sign(F_Motor); arrays (n,)."""
+def tractions_full_slip(
+    ellipse: Ellipse, friction: np.ndarray, direction: np.ndarray
+) -> Resultants:
+    """Return the resultants of tau_y = direction mu p everywhere, direction = -sign(F_Motor);
+    arrays (n,).
+    """
     zero = np.zeros_like(friction)
     return Resultants(zero, direction * friction * ellipse.normal_force, zero)

@@ -1,9 +1,10 @@
 """Compiled integrals of the friction traction in full sliding, eq. (30), over elliptical patches.
 
-The integrals are taken column by column. Across the rolling direction, x is split where the slip field has a kink or
-a zero. Along it, the substitution y = y_delta + eps sinh(u) makes the kernel (y - y_delta)/sqrt((y - y_delta)^2 +
-eps^2) smooth for every eps. Both directions use Gauss-Legendre points clustered at the ends, where the pressure has a
-root. Under a friction law with few knots the integrals are also split where the slip speed passes a knot.
+The integrals are taken column by column. Across the rolling direction, x is split where the slip
+field has a kink or a zero. Along it, the substitution y = y_delta + eps sinh(u) makes the kernel (y
+- y_delta)/sqrt((y - y_delta)^2 + eps^2) smooth for every eps. Both directions use Gauss-Legendre
+points clustered at the ends, where the pressure has a root. Under a friction law with few knots the
+integrals are also split where the slip speed passes a knot.
 """
 
 from __future__ import annotations
@@ -13,20 +14,29 @@ from typing import Generic, NamedTuple, TypeVar
 
 import numpy as np
 
-from trackroller.contact.slip import pole_lateral, pole_line, pole_offset, pole_rolling, rolling_slip, slip_zeros
+from trackroller.contact.slip import (
+    pole_lateral,
+    pole_line,
+    pole_offset,
+    pole_rolling,
+    rolling_slip,
+    slip_zeros,
+)
 from trackroller.halfspace.vectors import exp
 from trackroller.numerics.compiled import compiled, inner
 from trackroller.numerics.knots import polyline
 
 T = TypeVar("T", float, np.ndarray)  # one patch, or arrays over the patches
-_TINY = 1e-13  # keeps logarithms finite on the column through the pole; its weight there is of order eps^2
+# keeps logarithms finite on the column through the pole; its weight there is of order eps^2
+_TINY = 1e-13
 FEW_KNOTS = 8  # laws with more knots are smooth enough for one rule
 
 
 class SlidingPatches(NamedTuple):
     """Sliding patches, arrays (n,), or one of them.
 
-    a, b : semi-axes [mm]; sine, cosine : of the signed contact angle; radius : r_C,G [mm]; shift : r_Delta0 [mm];
+    a, b : semi-axes [mm]; sine, cosine : of the signed contact angle; radius : r_C,G [mm]; shift :
+        r_Delta0 [mm];
     speed : angular speed omega [1/s].
     """
 
@@ -47,7 +57,9 @@ class Rule(NamedTuple):
 
 
 class Sums(NamedTuple, Generic[T]):
-    """F_T, F_A [mm^2], M_R [mm^3] and power [mm^3 times omega] over mu p_max, of one patch or arrays (n,)."""
+    """F_T, F_A [mm^2], M_R [mm^3] and power [mm^3 times omega] over mu p_max, of one patch or
+    arrays (n,).
+    """
 
     lateral: T
     driving: T
@@ -57,7 +69,9 @@ class Sums(NamedTuple, Generic[T]):
 
 @compiled
 def _insert(value, ends, count):
-    """Insert `value` into the sorted first `count` of `ends`, if it lies between them; return the new number."""
+    """Insert `value` into the sorted first `count` of `ends`, if it lies between them; return the
+    new number.
+    """
     if not ends[0] < value < ends[count - 1]:
         return count
     j = count
@@ -70,16 +84,21 @@ def _insert(value, ends, count):
 
 @compiled
 def _slip_breaks(patch, shift, ends, count):
-    """Insert the zeros of the rolling slip at another `shift` and its kink at the equator; return the new number."""
+    """Insert the zeros of the rolling slip at another `shift` and its kink at the equator; return
+    the new number.
+    """
     for zero in slip_zeros(patch.sine, patch.cosine, patch.radius, shift):
         count = _insert(zero, ends, count)
-    equator = patch.radius * (1.0 - abs(patch.sine)) / patch.cosine  # beyond it the slip is constant
+    # beyond it the slip is constant
+    equator = patch.radius * (1.0 - abs(patch.sine)) / patch.cosine
     return _insert(equator if patch.sine > 0 else -equator, ends, count)
 
 
 @compiled
 def _ends_across(patch, model, law, ends):
-    """Write the sorted ends along x_C of the pieces with smooth slip and friction; return their number."""
+    """Write the sorted ends along x_C of the pieces with smooth slip and friction; return their
+    number.
+    """
     ends[0], ends[1], count = -patch.a, patch.a, 2
     if model == 2:
         count = _insert(pole_lateral(patch.shift, patch.sine), ends, count)
@@ -94,7 +113,9 @@ def _ends_across(patch, model, law, ends):
 
 @compiled
 def _ends_along(low, high, eps, unit, knots, ends):
-    """Write the sorted ends of the pieces of (low, high) in u between which eps cosh(u) unit passes no knot."""
+    """Write the sorted ends of the pieces of (low, high) in u between which eps cosh(u) unit passes
+    no knot.
+    """
     ends[0], ends[1], count = low, high, 2
     if knots.size <= FEW_KNOTS:
         for k in range(knots.size):
@@ -115,7 +136,8 @@ def _column(d, eps, rule):
     eps = max(eps, _TINY)
     middle = d if abs(d) < 1.0 else 0.0
     phi = phi_t = psi = work = 0.0
-    if eps > 30.0:  # far from the pole the substitution would cancel, and the kernel is smooth without it
+    # far from the pole the substitution would cancel, and the kernel is smooth without it
+    if eps > 30.0:
         for j in range(nodes.size):
             t = 2.0 * nodes[j] - 1.0
             rho = math.sqrt((t - d) * (t - d) + eps * eps)

@@ -29,7 +29,13 @@ class SlidingModel(ContactModel):
     def _integrals(self, ellipse, slip, friction, rows, nodes: int) -> sliding.Integrals:
         g, travel = self.given, self.given.travel_speed[rows]
         return sliding.integrals(
-            ellipse, slip, friction, spin_model=g.spin_model, nodes=nodes, law=g.law, travel_speed=travel
+            ellipse,
+            slip,
+            friction,
+            spin_model=g.spin_model,
+            nodes=nodes,
+            law=g.law,
+            travel_speed=travel,
         )
 
     def law(self, ellipse, slip, friction, rows, fine):
@@ -39,10 +45,18 @@ class SlidingModel(ContactModel):
     def surface(self, ellipse, slip, friction, rows):
         g, travel, points = self.given, self.given.travel_speed[rows], self.settings.traction_points
         if self.full_sliding:
-            return sliding.tractions(ellipse, slip, friction, spin_model=g.spin_model, points=points)
+            return sliding.tractions(
+                ellipse, slip, friction, spin_model=g.spin_model, points=points
+            )
         points = FINER * self.settings.on_grids
         return sliding.tractions(
-            ellipse, slip, friction, spin_model=g.spin_model, points=points, law=g.law, travel_speed=travel
+            ellipse,
+            slip,
+            friction,
+            spin_model=g.spin_model,
+            points=points,
+            law=g.law,
+            travel_speed=travel,
         )
 
     def power(self, ellipse, slip, friction, rows):

@@ -1,7 +1,8 @@
-"""The rigid slip, eqs (20)-(25): formulas, creepages, and the terms of a curved guide or a drawn contour.
+"""The rigid slip, eqs (20)-(25): formulas, creepages, and the terms of a curved guide or a drawn
+contour.
 
-The formulas stand in `trackroller.halfspace.rigid_slip`, because the stress kernels of the room below need them too.
-Kernels and models of this room import them from this module.
+The formulas stand in `trackroller.halfspace.rigid_slip`, because the stress kernels of the room
+below need them too. Kernels and models of this room import them from this module.
 
 Frame: x_C lateral, y_C in the rolling direction (Kalker and CONTACT use x for rolling).
 """
@@ -46,7 +47,8 @@ __all__ = [
 ]
 
 STEPS = 60  # limit of Newton's method; four or five steps are usual
-FLATTEST = 0.05  # smallest slope of the guide's contour, as a sine, at which the contour is followed
+# smallest slope of the guide's contour, as a sine, at which the contour is followed
+FLATTEST = 0.05
 
 
 def spin_model_index(name: str) -> int:
@@ -82,8 +84,8 @@ class Slip(Rows):
     shift : ndarray, shape (n,)
         Rolling radius shift r_Delta0 [mm].
     turning : ndarray, shape (n,), optional
-        Angle by which the roller turns with the guide's curve per distance travelled [1/mm], see `turning_of`. It
-        adds to the spin creepage.
+        Angle by which the roller turns with the guide's curve per distance travelled [1/mm], see
+        `turning_of`. It adds to the spin creepage.
     contour : ndarray of callables, shape (n,), optional
         Shape of a drawn guide, see `contour_over_tangent`; None stands for the circle.
     """
@@ -103,7 +105,9 @@ class Slip(Rows):
 
     @property
     def spin(self) -> np.ndarray:
-        """Return the spin creepage phi = -sin(alpha) (1/r_A + turning) [1/mm], of opposite sign in the two contacts."""
+        """Return the spin creepage phi = -sin(alpha) (1/r_A + turning) [1/mm], of opposite sign in
+        the two contacts.
+        """
         if self.turning is None:
             return -self.sine / self.rolling_radius
         return -self.sine * (1.0 / self.rolling_radius + self.turning)
@@ -114,10 +118,11 @@ class Slip(Rows):
         return pole_lateral(self.shift, self.sine)
 
     def beyond_tangent(self, x: np.ndarray) -> np.ndarray:
-        """Return the rolling slip of the guide's circle, eq. (20), or contour, less that of its tangent.
+        """Return the rolling slip of the guide's circle, eq. (20), or contour, less that of its
+        tangent.
 
-        The rolling slip of the tangent is xi + phi x. ASSUME: beyond the equator of the guide's circle the slip keeps
-        the value that it has at the equator.
+        The rolling slip of the tangent is xi + phi x. ASSUME: beyond the equator of the guide's
+        circle the slip keeps the value that it has at the equator.
 
         Parameters
         ----------
@@ -129,11 +134,16 @@ class Slip(Rows):
         ndarray, shape (n, m)
             Slip per travel speed [1].
         """
-        sine, cosine, radius = self.sine[:, None], self.cosine[:, None], self.guide_profile_radius[:, None]
+        sine, cosine, radius = (
+            self.sine[:, None],
+            self.cosine[:, None],
+            self.guide_profile_radius[:, None],
+        )
         out = (x * sine + profile_slip(x, sine, cosine, radius)) / self.rolling_radius[:, None]
         for i, height in enumerate(() if self.contour is None else self.contour):
             if height is not None:
-                out[i] = height(np.sign(self.sine[i]) * x[i]) / self.rolling_radius[i]  # x counts outward in a contour
+                # x counts outward in a contour
+                out[i] = height(np.sign(self.sine[i]) * x[i]) / self.rolling_radius[i]
         return out
 
 
@@ -180,11 +190,14 @@ class Creepage(Rows):
         return tangent if self.profile is None else tangent + self.profile.beyond_tangent(x)
 
 
-def turning_of(curve_radius: np.ndarray, profile_radius: np.ndarray, cosine: np.ndarray) -> np.ndarray:
-    """Return the angle by which a roller turns with the guide's curve per distance travelled [1/mm].
+def turning_of(
+    curve_radius: np.ndarray, profile_radius: np.ndarray, cosine: np.ndarray
+) -> np.ndarray:
+    """Return the angle by which a roller turns with the guide's curve per distance travelled
+    [1/mm].
 
-    The angle is 1/(r_Curve + r_C,G cos(alpha)). The points of contact travel on a circle of this radius about the
-    axis of the curve, and the carrier of the roller turns with them.
+    The angle is 1/(r_Curve + r_C,G cos(alpha)). The points of contact travel on a circle of this
+    radius about the axis of the curve, and the carrier of the roller turns with them.
 
     Parameters
     ----------
@@ -198,7 +211,8 @@ def turning_of(curve_radius: np.ndarray, profile_radius: np.ndarray, cosine: np.
     Returns
     -------
     ndarray, shape (n,)
-        0 on a straight guide, < 0 on a concave one, NaN where the contact lies beyond the axis of a concave guide.
+        0 on a straight guide, < 0 on a concave one, NaN where the contact lies beyond the axis of a
+        concave guide.
     """
     radius = curve_radius + profile_radius * cosine
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -206,10 +220,12 @@ def turning_of(curve_radius: np.ndarray, profile_radius: np.ndarray, cosine: np.
 
 
 def contour_over_tangent(guide: CrossSection, alpha: float) -> Callable[[np.ndarray], np.ndarray]:
-    """Return the radial height of the guide's own contour over its tangent, the circle's part of eq. (20).
+    """Return the radial height of the guide's own contour over its tangent, the circle's part of
+    eq. (20).
 
-    A point (u, h) of the contour lies at u cos(alpha) + h sin(alpha) across the roller, which is x cos(alpha) in
-    eq. (20), and at h cos(alpha) - u sin(alpha) in the radial direction. Newton's method finds u.
+    A point (u, h) of the contour lies at u cos(alpha) + h sin(alpha) across the roller, which is x
+    cos(alpha) in eq. (20), and at h cos(alpha) - u sin(alpha) in the radial direction. Newton's
+    method finds u.
 
     Parameters
     ----------
@@ -232,7 +248,9 @@ def contour_over_tangent(guide: CrossSection, alpha: float) -> Callable[[np.ndar
             rise = np.maximum(1.0 + tangent * guide.slope(u), FLATTEST)
             change = (u + tangent * guide.full_height(u) - x) / rise
             u = np.clip(u - change, low, high)
-            if np.max(np.abs(change), initial=0.0) <= 1e-14 * (1.0 + np.max(np.abs(x), initial=0.0)):
+            if np.max(np.abs(change), initial=0.0) <= 1e-14 * (
+                1.0 + np.max(np.abs(x), initial=0.0)
+            ):
                 break
         return guide.full_height(u) * cosine - u * sine + x * sine
 
@@ -242,11 +260,12 @@ def contour_over_tangent(guide: CrossSection, alpha: float) -> Callable[[np.ndar
 def pole_split(
     a: np.ndarray, sine: np.ndarray, cosine: np.ndarray, radius: np.ndarray, shift: np.ndarray
 ) -> np.ndarray:
-    """Return the distance between the model's spin pole and the point where its slip vanishes, over a.
+    """Return the distance between the model's spin pole and the point where its slip vanishes, over
+    a.
 
-    The pole of eq. (22) lies where the tangent to the guide's profile has no slip; the slip of eq. (21) vanishes where
-    the circle has none. Between both points eq. (25) turns the shear obliquely, and the stress at the point without
-    slip grows as a logarithm without bound.
+    The pole of eq. (22) lies where the tangent to the guide's profile has no slip; the slip of eq.
+    (21) vanishes where the circle has none. Between both points eq. (25) turns the shear obliquely,
+    and the stress at the point without slip grows as a logarithm without bound.
 
     Parameters
     ----------

@@ -5,10 +5,14 @@ from __future__ import annotations
 import numpy as np
 
 
-def determinant(sine: np.ndarray, cosine: np.ndarray, one: np.ndarray, two: np.ndarray) -> np.ndarray:
-    """Return the determinant of eqs (7), (9) for the ratios F_T/F_N of contacts 1 (`one`) and 2 (`two`), (n,).
+def determinant(
+    sine: np.ndarray, cosine: np.ndarray, one: np.ndarray, two: np.ndarray
+) -> np.ndarray:
+    """Return the determinant of eqs (7), (9) for the ratios F_T/F_N of contacts 1 (`one`) and 2
+    (`two`), (n,).
 
-    An error of F_T in one contact, divided by the determinant, is the error of F_N that it causes in the other contact.
+    An error of F_T in one contact, divided by the determinant, is the error of F_N that it causes
+    in the other contact.
 
     Examples
     --------
@@ -25,7 +29,8 @@ def own_change(sine: np.ndarray, cosine: np.ndarray, beside: np.ndarray) -> np.n
 
     Examples
     --------
-    >>> float(round(own_change(0.5**0.5, 0.5**0.5, 0.2), 3))  # at 45 degrees only by the friction of the other contact
+    >>> # at 45 degrees only by the friction of the other contact
+    >>> float(round(own_change(0.5**0.5, 0.5**0.5, 0.2), 3))
     0.2
     """
     return np.abs((cosine - sine) * (cosine + sine) + 2.0 * sine * cosine * beside)

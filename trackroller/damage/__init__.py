@@ -1,4 +1,6 @@
-"""Limits of roller and guide, one file each behind the protocol of `limit`, and the damage sum of a spectrum."""
+"""Limits of roller and guide, one file each behind the protocol of `limit`, and the damage sum of a
+spectrum.
+"""
 
 from __future__ import annotations
 
@@ -78,16 +80,20 @@ def _names(limit: Limit, kind: str) -> set[str]:
 
 
 def limits_of(outputs: Collection[str], not_checked: Collection[str] = ()) -> tuple[Limit, ...]:
-    """Return the limits that groups of outputs ask for: those of single limits, and with `limits` all with a verdict.
+    """Return the limits that groups of outputs ask for: those of single limits, and with `limits`
+    all with a verdict.
 
     `not_checked` names limits that the verdict leaves out.
     """
     of_verdict = judged(outputs, not_checked)
-    return tuple(limit for limit in LIMITS.values() if limit in of_verdict or limit.group in outputs)
+    return tuple(
+        limit for limit in LIMITS.values() if limit in of_verdict or limit.group in outputs
+    )
 
 
 def groups_of(field: str, names: Collection[str]) -> tuple[str, ...]:
-    """Return the groups of outputs of limits and of their verdict; `field` stands in the error of an unknown name.
+    """Return the groups of outputs of limits and of their verdict; `field` stands in the error of
+    an unknown name.
 
     `all` stands for all limits that have a verdict.
     """
@@ -105,11 +111,16 @@ def groups_of(field: str, names: Collection[str]) -> tuple[str, ...]:
 
 
 def check_used(
-    given: Mapping[str, Any], outputs: Collection[str], not_checked: Collection[str], where: str = ""
+    given: Mapping[str, Any],
+    outputs: Collection[str],
+    not_checked: Collection[str],
+    where: str = "",
 ) -> None:
-    """Refuse a field of a case that only limits use which the outputs do not ask for, and a duty without lives.
+    """Refuse a field of a case that only limits use which the outputs do not ask for, and a duty
+    without lives.
 
-    A field of a limit that `not_checked` leaves out is left out on purpose. `travel` also changes the profiles.
+    A field of a limit that `not_checked` leaves out is left out on purpose. `travel` also changes
+    the profiles.
 
     Parameters
     ----------
@@ -132,7 +143,9 @@ def check_used(
     for name in (name for name in given if name != "travel"):
         users = [limit for limit in judged() if name in fields_of(limit)]
         if users and not any(limit in asked_for or limit.name in not_checked for limit in users):
-            wrong = f"is used by no output: it belongs to {', '.join(limit.name for limit in users)}"
+            wrong = (
+                f"is used by no output: it belongs to {', '.join(limit.name for limit in users)}"
+            )
             remedy = f"Add limits to outputs, or remove {name}."
             raise InputError(f"{where}{name}", given[name], "", remedy, wrong)
 
@@ -147,7 +160,9 @@ def fields_of(limit: Limit) -> set[str]:
 
 
 def others(names: Collection[str]) -> tuple[str, ...]:
-    """Return the limits of the verdict that a choice of limits leaves out; `all` leaves none out."""
+    """Return the limits of the verdict that a choice of limits leaves out; `all` leaves none
+    out.
+    """
     if "all" in names:
         return ()
     return tuple(limit.name for limit in judged() if limit.name not in names)
@@ -158,14 +173,22 @@ def limit_word(name: str) -> str:
     return LIMITS[name].word if name in LIMITS else name
 
 
-def judged(outputs: Collection[str] = (verdict.GROUP,), not_checked: Collection[str] = ()) -> tuple[Limit, ...]:
-    """Return the limits of the verdict: all that have one, without those of `not_checked`; none without `limits`."""
+def judged(
+    outputs: Collection[str] = (verdict.GROUP,), not_checked: Collection[str] = ()
+) -> tuple[Limit, ...]:
+    """Return the limits of the verdict: all that have one, without those of `not_checked`; none
+    without `limits`.
+    """
     if verdict.GROUP not in outputs:
         return ()
-    return tuple(own for own in LIMITS.values() if own.verdict is not None and own.name not in not_checked)
+    return tuple(
+        own for own in LIMITS.values() if own.verdict is not None and own.name not in not_checked
+    )
 
 
-def computed(outputs: Collection[str], not_checked: Collection[str], life_criterion: str) -> tuple[Limit, ...]:
+def computed(
+    outputs: Collection[str], not_checked: Collection[str], life_criterion: str
+) -> tuple[Limit, ...]:
     """Return the limits asked for, after the one whose stress the life needs by its criterion."""
     limits = limits_of(outputs, not_checked)
     paths = fatigue.LIMIT in limits and life_criterion in fatigue.STRESS_OF

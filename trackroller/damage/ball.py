@@ -1,4 +1,6 @@
-"""Compiled search for smallest balls, around the stress path of a point and around the stresses of a plane."""
+"""Compiled search for smallest balls, around the stress path of a point and around the stresses of
+a plane.
+"""
 
 from __future__ import annotations
 
@@ -34,10 +36,11 @@ def _slope(point, base, centre):  # pragma: no cover (compiled)
 
 @compiled
 def _even_weights(points, base, centre):  # pragma: no cover (compiled)
-    """Return weights of sum 1, of any sign, of the points from whose mean all these points are equally far.
+    """Return weights of sum 1, of any sign, of the points from whose mean all these points are
+    equally far.
 
-    Gaussian elimination of 2 (u_i - c)(u_k - c) w_k + lambda = |u_i - c|^2 + h_i. A small ridge serves points that
-    depend on each other.
+    Gaussian elimination of 2 (u_i - c)(u_k - c) w_k + lambda = |u_i - c|^2 + h_i. A small ridge
+    serves points that depend on each other.
     """
     n = len(points)
     rows = np.ones((n + 1, n + 2))
@@ -68,7 +71,8 @@ def _even_weights(points, base, centre):  # pragma: no cover (compiled)
 def _held(points, base, few, weight, centre):  # pragma: no cover (compiled)
     """Return the points among `few` that hold their smallest ball, and their weights.
 
-    The weights go straight to those of equal distances; a point whose weight vanishes on the way leaves.
+    The weights go straight to those of equal distances; a point whose weight vanishes on the way
+    leaves.
     """
     while True:
         even, share = _even_weights(points[few], base[few], centre), 1.0
@@ -104,12 +108,13 @@ def smallest_ball(points, height, gap):  # pragma: no cover (compiled)
     few : numpy.ndarray
         Numbers of the points that hold the ball, (s,).
     weight : numpy.ndarray
-        Their weights in the centre, (s,) [1]; the value changes by these shares of changes of |u - c|^2 + h.
+        Their weights in the centre, (s,) [1]; the value changes by these shares of changes of |u -
+        c|^2 + h.
 
     Notes
     -----
-    The centre is a weighted mean of a few points (active set of the dual problem). The farthest of all points joins
-    them until the ball holds all points; points whose weight vanishes leave.
+    The centre is a weighted mean of a few points (active set of the dual problem). The farthest of
+    all points joins them until the ball holds all points; points whose weight vanishes leave.
     """
     base = height.copy()
     for i in range(len(points)):
@@ -137,14 +142,19 @@ def smallest_ball(points, height, gap):  # pragma: no cover (compiled)
 
 @compiled
 def _gain(before, here, after):  # pragma: no cover (compiled)
-    """Return how far the vertex of the parabola through three values lies above the middle one, the largest."""
+    """Return how far the vertex of the parabola through three values lies above the middle one, the
+    largest.
+    """
     curve = before - 2.0 * here + after
-    return -((after - before) ** 2) / (8.0 * curve) if curve < 0.0 and before <= here >= after else 0.0
+    return (
+        -((after - before) ** 2) / (8.0 * curve) if curve < 0.0 and before <= here >= after else 0.0
+    )
 
 
 @compiled
 def ball_of_plane(stress):  # pragma: no cover (compiled)
-    """Return the smallest largest J2 of a plane that a constant residual stress in xx, yy and xy allows.
+    """Return the smallest largest J2 of a plane that a constant residual stress in xx, yy and xy
+    allows.
 
     Parameters
     ----------
@@ -154,29 +164,37 @@ def ball_of_plane(stress):  # pragma: no cover (compiled)
     Returns
     -------
     float
-        Largest |u|^2 + h [MPa2] with J2 = |u|^2 + h; a residual stress shifts u by any vector. The unloaded state
-        counts as a point of the plane. Parabolas give the largest values between the places of the grid.
+        Largest |u|^2 + h [MPa2] with J2 = |u|^2 + h; a residual stress shifts u by any vector. The
+        unloaded state counts as a point of the plane. Parabolas give the largest values between the
+        places of the grid.
     """
     _, ny, nx = stress.shape
     u, h = np.zeros((ny * nx + 1, 3)), np.zeros(ny * nx + 1)
     for j in range(ny):
         for i in range(nx):
             x, y, z, at = stress[0, j, i], stress[1, j, i], stress[2, j, i], j * nx + i
-            u[at, 0], u[at, 1], u[at, 2] = (x - y) / 2.0, (2.0 * z - x - y) / math.sqrt(12.0), stress[3, j, i]
+            u[at, 0], u[at, 1], u[at, 2] = (
+                (x - y) / 2.0,
+                (2.0 * z - x - y) / math.sqrt(12.0),
+                stress[3, j, i],
+            )
             h[at] = stress[4, j, i] ** 2 + stress[5, j, i] ** 2
     value, centre, few, weight = smallest_ball(u, h, GAP)
     for k in range(len(few)):
         row, column = few[k] // nx, few[k] % nx
         for inside, step in ((0 < row < ny - 1, nx), (0 < column < nx - 1 and row < ny, 1)):
             if inside:
-                ends = [squared(u[at] - centre) + h[at] for at in (few[k] - step, few[k], few[k] + step)]
+                ends = [
+                    squared(u[at] - centre) + h[at] for at in (few[k] - step, few[k], few[k] + step)
+                ]
                 value += weight[k] * _gain(ends[0], ends[1], ends[2])
     return value
 
 
 @compiled
 def shakedown_shears(stress, log_depth):  # pragma: no cover (compiled)
-    """Return the shear stress k at which the stresses of planes just shake down, the largest over the depths.
+    """Return the shear stress k at which the stresses of planes just shake down, the largest over
+    the depths.
 
     Parameters
     ----------
@@ -188,7 +206,8 @@ def shakedown_shears(stress, log_depth):  # pragma: no cover (compiled)
     Returns
     -------
     numpy.ndarray
-        k, (body,) [MPa]; between the planes by the parabola through the largest value and its neighbours.
+        k, (body,) [MPa]; between the planes by the parabola through the largest value and its
+        neighbours.
     """
     out = np.empty(len(stress))
     for body in range(len(stress)):
@@ -198,7 +217,10 @@ def shakedown_shears(stress, log_depth):  # pragma: no cover (compiled)
         if 0 < top < len(k) - 1:
             left, right = log_depth[top] - log_depth[top - 1], log_depth[top + 1] - log_depth[top]
             fall, rise = (k[top] - k[top - 1]) / left, (k[top + 1] - k[top]) / right
-            curve, slope = (rise - fall) / (left + right), (fall * right + rise * left) / (left + right)
+            curve, slope = (
+                (rise - fall) / (left + right),
+                (fall * right + rise * left) / (left + right),
+            )
             if curve < 0.0:
                 out[body] -= 0.25 * slope**2 / curve
     return out

@@ -1,10 +1,12 @@
-"""The bearing inside the roller: rating life and static safety (ISO 281, ISO 76), and the force of ring or stud.
+"""The bearing inside the roller: rating life and static safety (ISO 281, ISO 76), and the force of
+ring or stud.
 
-Two rows share the loads by statics: the radial force F_rad and the drive force F_Motor act in the middle between the
-rows, the moments M_yR and M_zR turn into a couple of row forces.
+Two rows share the loads by statics: the radial force F_rad and the drive force F_Motor act in the
+middle between the rows, the moments M_yR and M_zR turn into a couple of row forces.
 
 ASSUME: the row with the larger radial force carries the axial force alone, which is the worst case.
-ASSUME: a moment loads a single row as far as its permissible moment, and leaves the rating life as it is.
+ASSUME: a moment loads a single row as far as its permissible moment, and leaves the rating life as
+it is.
 """
 
 from __future__ import annotations
@@ -19,11 +21,13 @@ from trackroller.errors import InputError
 from trackroller.numerics.variable import LIFE
 
 LIFE_EXPONENT = {"ball": 3.0, "roller": 10.0 / 3.0}
-WEIBULL = {"ball": 10.0 / 9.0, "roller": 9.0 / 8.0}  # slope of the lives, also of rows that run together
+# slope of the lives, also of rows that run together
+WEIBULL = {"ball": 10.0 / 9.0, "roller": 9.0 / 8.0}
 
 
 class BearingLoads(NamedTuple):
-    """Loads on the bearing: radial force along and across the track normal [N], axial force [N], moments [N mm], (n,).
+    """Loads on the bearing: radial force along and across the track normal [N], axial force [N],
+    moments [N mm], (n,).
 
     `pressing` is F_rad and `driving` F_Motor; `tilting` is M_yR and `yawing` M_zR.
     """
@@ -53,7 +57,9 @@ class BearingLoads(NamedTuple):
         return np.asarray(np.hypot(self.tilting, self.yawing))
 
 
-def row_forces(loads: BearingLoads, rows: np.ndarray, distance: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def row_forces(
+    loads: BearingLoads, rows: np.ndarray, distance: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
     """Return the radial and axial force of each row.
 
     Parameters
@@ -83,8 +89,11 @@ def row_forces(loads: BearingLoads, rows: np.ndarray, distance: np.ndarray) -> t
     )
 
 
-def equivalent(radial: np.ndarray, axial: np.ndarray, given: dict[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
-    """Return the equivalent loads P = X F_r + Y F_a (F_r up to F_a/F_r = e) and P_0 = max(X_0 F_r + Y_0 F_a, F_r) [N].
+def equivalent(
+    radial: np.ndarray, axial: np.ndarray, given: dict[str, np.ndarray]
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the equivalent loads P = X F_r + Y F_a (F_r up to F_a/F_r = e) and P_0 = max(X_0 F_r +
+    Y_0 F_a, F_r) [N].
 
     `given` holds e, X, Y, X0 and Y0 of the bearings, of shapes that broadcast with the forces [1].
     """
@@ -107,26 +116,38 @@ def rating_life(load: np.ndarray, rating: np.ndarray, kind: np.ndarray) -> np.nd
     Returns
     -------
     numpy.ndarray
-        (sum over rows of (C/P)^(-p e))^(-1/e), (n,), with p = 3 and e = 10/9 of ball bearings, 10/3 and 9/8 of others.
+        (sum over rows of (C/P)^(-p e))^(-1/e), (n,), with p = 3 and e = 10/9 of ball bearings, 10/3
+        and 9/8 of others.
     """
-    p, e = (np.array([table.get(str(word), np.nan) for word in kind])[:, None] for table in (LIFE_EXPONENT, WEIBULL))
+    p, e = (
+        np.array([table.get(str(word), np.nan) for word in kind])[:, None]
+        for table in (LIFE_EXPONENT, WEIBULL)
+    )
     with np.errstate(divide="ignore"):
         total = np.nansum((load / rating[:, None]) ** (p * e), axis=1)
         return np.where(np.isnan(load).all(axis=1), np.nan, total ** (-1.0 / e[:, 0]))
 
 
 def life_at(life: np.ndarray, probability: float, slope: np.ndarray) -> np.ndarray:
-    """Return the life at a failure probability from L10, by Weibull: L10 (ln(1 - F)/ln 0.9)^(1/slope)."""
+    """Return the life at a failure probability from L10, by Weibull: L10 (ln(1 - F)/ln
+    0.9)^(1/slope).
+    """
     return np.asarray(life * (np.log1p(-probability) / np.log(0.9)) ** (1.0 / slope))
 
 
 def evaluate(solved: SolvedRollers) -> Values:
-    """Return `bearing_life_hours` (L10) [h], `bearing_static_safety` and `bearing_utilisation` [1], (n,)."""
+    """Return `bearing_life_hours` (L10) [h], `bearing_static_safety` and `bearing_utilisation` [1],
+    (n,).
+    """
     loads = BearingLoads.of(solved)
     b = FIELD.columns(solved.cases["bearing"])
     each = {name: b[name][:, None] for name in ("e", "X", "Y", "X0", "Y0")}
     dynamic, static = equivalent(*row_forces(loads, b["rows"], b["row_distance"]), each)
-    hours = 1e6 * rating_life(dynamic, b["dynamic_rating"], b["kind"]) / solved.overrollings_per_hour[:, 0]
+    hours = (
+        1e6
+        * rating_life(dynamic, b["dynamic_rating"], b["kind"])
+        / solved.overrollings_per_hour[:, 0]
+    )
     with np.errstate(divide="ignore"):
         safety = b["static_rating"] / np.fmax.reduce(static, axis=1)
         shares = 1.0 / safety, loads.moment / b["permissible_moment"]
@@ -139,14 +160,25 @@ def evaluate(solved: SolvedRollers) -> Values:
 
 
 def verdict(solved: SolvedRollers, results: Values) -> Verdict:
-    """Return the utilisation, and the hours at the failure probability, (n, body); the guide has neither."""
-    slope = np.array([WEIBULL.get(str(kind), np.nan) for kind in FIELD.columns(solved.cases["bearing"])["kind"]])
+    """Return the utilisation, and the hours at the failure probability, (n, body); the guide has
+    neither.
+    """
+    slope = np.array(
+        [WEIBULL.get(str(kind), np.nan) for kind in FIELD.columns(solved.cases["bearing"])["kind"]]
+    )
     hours = life_at(results["bearing_life_hours"], solved.options["failure_probability"], slope)
-    return Verdict(*(np.stack([v, np.full_like(v, np.nan)], axis=1) for v in (results["bearing_utilisation"], hours)))
+    return Verdict(
+        *(
+            np.stack([v, np.full_like(v, np.nan)], axis=1)
+            for v in (results["bearing_utilisation"], hours)
+        )
+    )
 
 
 def check(given: dict[str, Any]) -> None:
-    """Refuse a number of rows other than 1 or 2, and rows without the value that carries a moment."""
+    """Refuse a number of rows other than 1 or 2, and rows without the value that carries a
+    moment.
+    """
     if given["rows"] not in (1, 2):
         raise InputError("bearing.rows", given["rows"], "1 or 2")
     carries = "row_distance"
@@ -154,13 +186,17 @@ def check(given: dict[str, Any]) -> None:
         carries = "permissible_moment"
     if carries not in given:
         wrong = f"lacks {carries}, because the roller loads it with moments"
-        raise InputError("bearing", given, "", f"Add {carries}, or take another number of rows.", wrong)
+        raise InputError(
+            "bearing", given, "", f"Add {carries}, or take another number of rows.", wrong
+        )
 
 
 FIELD = MappingField(
     "bearing",
-    "bearing inside the roller, with the ratings of one row: {rows: 2, row_distance: 8, kind: ball, dynamic_rating: "
-    "3000, static_rating: 1500, e: 0.3, X: 0.56, Y: 1.5, X0: 0.6, Y0: 0.5}; one row needs permissible_moment [N mm]",
+    "bearing inside the roller, with the ratings of one row: {rows: 2, row_distance: 8, "
+    "kind: ball, dynamic_rating: "
+    "3000, static_rating: 1500, e: 0.3, X: 0.56, Y: 1.5, X0: 0.6, Y0: 0.5}; one row needs "
+    "permissible_moment [N mm]",
     words={"kind": ("ball", "roller")},
     numbers=(
         optional("rows", "", "-", "number of rows, 1 or 2", 1.0, 2.0, closed=True),
@@ -183,21 +219,45 @@ LIMIT = Limit(
     title="bearing inside the roller, ring or stud",
     short="bearing",
     group="bearing",
-    meaning="rating life and static safety of the bearing inside, and utilisation by a maker's catalogue",
+    meaning="rating life and static safety of the bearing inside, and utilisation by a maker's "
+    "catalogue",
     evaluate=evaluate,
     verdict=verdict,
     results=variables(
         "bearing",
-        ("bearing_life_hours", (), "h", "L_10h", "basic rating life of the bearing inside (10 % failed)", LIFE),
+        (
+            "bearing_life_hours",
+            (),
+            "h",
+            "L_10h",
+            "basic rating life of the bearing inside (10 % failed)",
+            LIFE,
+        ),
         ("bearing_static_safety", (), "1", "C_0/P_0", "static safety of the bearing inside"),
-        ("bearing_utilisation", (), "1", "", "largest of P_0/C_0, moment and radial force over what is permissible"),
+        (
+            "bearing_utilisation",
+            (),
+            "1",
+            "",
+            "largest of P_0/C_0, moment and radial force over what is permissible",
+        ),
     ),
-    parameters=(optional("permissible_radial_force", "F_r,zul", "N", "permissible radial force of ring or stud", 0.0),),
+    parameters=(
+        optional(
+            "permissible_radial_force",
+            "F_r,zul",
+            "N",
+            "permissible radial force of ring or stud",
+            0.0,
+        ),
+    ),
     mappings=(FIELD,),
     requires=("bearing",),
     bodies=("roller",),
     distribution="Weibull 10/9 (ball) or 9/8 (roller)",
     compares=("bearing_utilisation", "permissible load"),
     standard="ISO 281 and ISO 76",
-    assumes=("Bearing inside: the row with the larger radial force carries the axial force alone.",),
+    assumes=(
+        "Bearing inside: the row with the larger radial force carries the axial force alone.",
+    ),
 )

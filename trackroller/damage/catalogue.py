@@ -39,11 +39,16 @@ def travel_km(
         Kilometres, inf without any load.
     """
     with np.errstate(divide="ignore"):
-        return np.asarray(basic_life * (offset + (1.0 - offset) * np.asarray(load_factor)) ** -power)
+        return np.asarray(
+            basic_life * (offset + (1.0 - offset) * np.asarray(load_factor)) ** -power
+        )
 
 
 def catalogue_km(
-    load_factor: np.ndarray, basic_life: np.ndarray, law: np.ndarray, offset: np.ndarray | float = np.nan
+    load_factor: np.ndarray,
+    basic_life: np.ndarray,
+    law: np.ndarray,
+    offset: np.ndarray | float = np.nan,
 ) -> np.ndarray:
     """Return the kilometres that a load factor allows.
 
@@ -54,8 +59,8 @@ def catalogue_km(
     basic_life : numpy.ndarray
         Kilometres at a load factor of 1, (n,) [km].
     law : numpy.ndarray of str
-        "dry": BL/(0.03 + 0.97 LF)^2, "lubricated": the same with exponent 3 (a maker's laws from tests), or "cubic":
-        BL/LF^3, (n,).
+        "dry": BL/(0.03 + 0.97 LF)^2, "lubricated": the same with exponent 3 (a maker's laws from
+        tests), or "cubic": BL/LF^3, (n,).
     offset : numpy.ndarray or float
         Load factor that counts without any load [1]; NaN stands for that of the law.
 
@@ -65,7 +70,10 @@ def catalogue_km(
         Kilometres, (n,); NaN without a law.
     """
     offsets = [np.where(np.isnan(offset), OFFSETS[word], offset) for word in LAWS]
-    lives = [travel_km(load_factor, basic_life, POWERS[word], own) for word, own in zip(LAWS, offsets, strict=True)]
+    lives = [
+        travel_km(load_factor, basic_life, POWERS[word], own)
+        for word, own in zip(LAWS, offsets, strict=True)
+    ]
     return np.asarray(np.select([law == word for word in LAWS], lives, np.nan))
 
 
@@ -86,20 +94,26 @@ def verdict(solved: SolvedRollers, results: Values) -> Verdict:
     """Return load factor and hours of travel, (n, body); the guide has neither."""
     hours = results["catalogue_life_km"] * 1e3 / (solved.cases["velocity"] * 60.0)
     factor = results["catalogue_load_factor"]
-    return Verdict(*(np.stack([value, np.full_like(value, np.nan)], axis=1) for value in (factor, hours)))
+    return Verdict(
+        *(np.stack([value, np.full_like(value, np.nan)], axis=1) for value in (factor, hours))
+    )
 
 
 FIELD = MappingField(
     "catalogue",
-    "limits of a maker's catalogue: {radial_force: 800, axial_force: 300, basic_life: 100, law: dry} [N, N, km]; "
-    "moment [N mm] counts if it is given; law: dry (the default), lubricated or cubic; offset: the load factor that "
+    "limits of a maker's catalogue: {radial_force: 800, axial_force: 300, basic_life: 100, "
+    "law: dry} [N, N, km]; "
+    "moment [N mm] counts if it is given; law: dry (the default), lubricated or cubic; "
+    "offset: the load factor that "
     "counts without any load, 0.03 or, if cubic, 0",
     numbers=(
         optional("radial_force", "", "N", "permissible radial force", 0.0),
         optional("axial_force", "", "N", "permissible axial force", 0.0),
         optional("basic_life", "BL", "km", "life at a load factor of 1", 0.0),
         optional("moment", "", "N mm", "permissible moment across the axis", 0.0),
-        optional("offset", "", "-", "load factor that counts without any load", 0.0, 1.0, closed=True),
+        optional(
+            "offset", "", "-", "load factor that counts without any load", 0.0, 1.0, closed=True
+        ),
     ),
     words={"law": LAWS},
     may_miss=("moment", "law", "offset"),
@@ -120,7 +134,13 @@ LIMIT = Limit(
     verdict=verdict,
     results=variables(
         "bearing",
-        ("catalogue_load_factor", (), "1", "LF", "sum of the loads over the limits of the catalogue"),
+        (
+            "catalogue_load_factor",
+            (),
+            "1",
+            "LF",
+            "sum of the loads over the limits of the catalogue",
+        ),
         ("catalogue_life_km", (), "km", "L_km", "travel that the catalogue allows", LIFE),
     ),
     mappings=(FIELD,),

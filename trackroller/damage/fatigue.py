@@ -1,37 +1,52 @@
 """Rolling-contact fatigue by the S-N curve: overrollings and hours to failure of both bodies.
 
-ASSUME: the stress of the life criterion is the fully reversed amplitude, without a correction for size, and one
-overrolling is one cycle. The published criterion takes the peak von Mises stress, without a correction for mean stress;
-`goodman` corrects for it.
+ASSUME: the stress of the life criterion is the fully reversed amplitude, without a correction for
+size, and one overrolling is one cycle. The published criterion takes the peak von Mises stress,
+without a correction for mean stress; `goodman` corrects for it.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-from trackroller.damage.limit import SN_SCATTER, Limit, SolvedRollers, Values, Verdict, variables, worst
+from trackroller.damage.limit import (
+    SN_SCATTER,
+    Limit,
+    SolvedRollers,
+    Values,
+    Verdict,
+    variables,
+    worst,
+)
 from trackroller.damage.pair import first_failure
 from trackroller.damage.sn_curve import SNCurve
 from trackroller.numerics.variable import ESTIMATE, LARGEST, LIFE, SMALLEST
 
-# results of `multiaxial` that enter the S-N curve by a life criterion; of the ratios to a limit, 1 stands for sigma_D
+# results of `multiaxial` that enter the S-N curve by a life criterion; of the ratios to a limit, 1
+# stands for sigma_D
 STRESS_OF = {
     "von_mises_amplitude": "von_mises_amplitude",
     "goodman": "goodman_stress",
     "findley": "findley_utilisation",
     "dang_van": "dang_van_utilisation",
 }
-AMPLITUDE = "peak von Mises stress taken as amplitude, one cycle an overrolling, 50 % failure probability"
+AMPLITUDE = (
+    "peak von Mises stress taken as amplitude, one cycle an overrolling, 50 % failure probability"
+)
 
 
 def curve_of(solved: SolvedRollers) -> SNCurve:
-    """Return the S-N curves of roller and guide at a failure probability of 50 %, values (n, 1, 2)."""
+    """Return the S-N curves of roller and guide at a failure probability of 50 %, values (n,
+    1, 2).
+    """
     materials = {name: value[:, None] for name, value in solved.materials.items()}
     return SNCurve.of(materials, solved.options["life_rule"])
 
 
 def amplitude(solved: SolvedRollers) -> np.ndarray:
-    """Return the stress that enters the S-N curve by the option `life_criterion`, (n, contact, body) [MPa]."""
+    """Return the stress that enters the S-N curve by the option `life_criterion`, (n, contact,
+    body) [MPa].
+    """
     criterion = solved.options["life_criterion"]
     values = solved.values
     if criterion not in STRESS_OF:
@@ -45,7 +60,8 @@ def amplitude(solved: SolvedRollers) -> np.ndarray:
 
 
 def overloaded(peak_stress: np.ndarray, tensile_strength: np.ndarray) -> np.ndarray:
-    """Return where a body breaks at once, (n, body) bool: its peak stress exceeds its tensile strength in a contact.
+    """Return where a body breaks at once, (n, body) bool: its peak stress exceeds its tensile
+    strength in a contact.
 
     Parameters
     ----------
@@ -62,34 +78,40 @@ def _overloaded(solved: SolvedRollers) -> np.ndarray:
 
 
 def _without_life(solved: SolvedRollers) -> np.ndarray:
-    """Return where a body has no fatigue life, (n, body) bool: it breaks at once, or the roller skids."""
+    """Return where a body has no fatigue life, (n, body) bool: it breaks at once, or the roller
+    skids.
+    """
     return np.asarray(_overloaded(solved) | solved.skids)
 
 
 def _error_of_life(exponent: np.ndarray, error: np.ndarray) -> np.ndarray:
-    """Return the error of a life as a factor less 1, for relative errors of the stress and exponents."""
+    """Return the error of a life as a factor less 1, for relative errors of the stress and
+    exponents.
+    """
     return np.asarray(np.expm1(exponent * np.log1p(error)))
 
 
 def life(solved: SolvedRollers) -> Values:
-    """Return overrollings and hours to failure at 50 % failure probability, and the relative error of the life.
+    """Return overrollings and hours to failure at 50 % failure probability, and the relative error
+    of the life.
 
-    A stress that is larger by the factor 1 + e shortens the life by the factor (1 + e)^k with the exponent k of the
-    S-N curve, so that the relative error of the life is (1 + e)^k - 1. A body that breaks at once or skids has no
-    fatigue life: NaN, and so has its pair.
+    A stress that is larger by the factor 1 + e shortens the life by the factor (1 + e)^k with the
+    exponent k of the S-N curve, so that the relative error of the life is (1 + e)^k - 1. A body
+    that breaks at once or skids has no fatigue life: NaN, and so has its pair.
 
     Parameters
     ----------
     solved : SolvedRollers
-        With `peak_stress` [MPa] and `error_estimate` [1], (n, contact, body), and by the option `life_criterion` with
-        the results of `multiaxial`.
+        With `peak_stress` [MPa] and `error_estimate` [1], (n, contact, body), and by the option
+        `life_criterion` with the results of `multiaxial`.
 
     Returns
     -------
     dict of str to numpy.ndarray
         `life_cycles` [1], `life_error_estimate` [1], `life_hours` [h], each (n, contact, body);
-        `roller_life_hours`, `guide_life_hours`, `pair_life_hours` [h] and the flag `first_to_fail`, each (n,). With a
-        criterion other than the published one also `fatigue_stress` [MPa], (n, contact, body).
+        `roller_life_hours`, `guide_life_hours`, `pair_life_hours` [h] and the flag `first_to_fail`,
+        each (n,). With a criterion other than the published one also `fatigue_stress` [MPa], (n,
+        contact, body).
 
     Notes
     -----
@@ -111,7 +133,9 @@ def life(solved: SolvedRollers) -> Values:
     pair = np.where(lifeless.any(axis=1), np.nan, pair)
     results = {
         "life_cycles": cycles,
-        "life_error_estimate": np.where(np.isnan(cycles), np.nan, _error_of_life(curve.slope(stress), error)),
+        "life_error_estimate": np.where(
+            np.isnan(cycles), np.nan, _error_of_life(curve.slope(stress), error)
+        ),
         "life_hours": hours,
         "roller_life_hours": roller,
         "guide_life_hours": guide,
@@ -124,7 +148,9 @@ def life(solved: SolvedRollers) -> Values:
 
 
 def verdict(solved: SolvedRollers, results: Values) -> Verdict:
-    """Return the utilisation of the fatigue limit and the life at the failure probability, (n, body)."""
+    """Return the utilisation of the fatigue limit and the life at the failure probability, (n,
+    body).
+    """
     p = solved.options["failure_probability"]
     curve = curve_of(solved).changed(failure_probability=p)
     stress = amplitude(solved)
@@ -155,7 +181,14 @@ LIMIT = Limit(
             "estimated relative error of the life",
             ESTIMATE,
         ),
-        ("fatigue_stress", ("contact", "body"), "MPa", "sigma_a,eq", "amplitude that enters the S-N curve", LARGEST),
+        (
+            "fatigue_stress",
+            ("contact", "body"),
+            "MPa",
+            "sigma_a,eq",
+            "amplitude that enters the S-N curve",
+            LARGEST,
+        ),
         ("life_hours", ("contact", "body"), "h", "L_h", "life in hours of travel", SMALLEST | LIFE),
         (
             "roller_life_hours",
@@ -183,14 +216,18 @@ LIMIT = Limit(
         ),
     ),
     requires=("guide_overrollings_per_hour",),
-    requires_by={"life_criterion": dict.fromkeys(("findley", "dang_van"), ("fatigue_limit_torsion",))},
+    requires_by={
+        "life_criterion": dict.fromkeys(("findley", "dang_van"), ("fatigue_limit_torsion",))
+    },
     bounded=False,
     distribution=SN_SCATTER,
     compares=("fatigue_stress peak_stress", "fatigue limit sigma_D; above it the life is finite"),
     standard="DIN 50100:2016 for the form of the S-N curve",
     assumes=(
-        "Fatigue: no size effect; one overrolling is one cycle. The published life_criterion takes the peak von Mises "
-        "stress as amplitude, with no mean stress. A roller that skids and a body above its tensile strength have no "
+        "Fatigue: no size effect; one overrolling is one cycle. The published life_criterion "
+        "takes the peak von Mises "
+        "stress as amplitude, with no mean stress. A roller that skids and a body above its "
+        "tensile strength have no "
         "fatigue life.",
     ),
 )

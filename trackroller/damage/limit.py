@@ -1,8 +1,9 @@
 """Protocol of a limit: what one file of this room declares, and what its function receives.
 
-A limit ends the life of a roller or of its guide. Its file holds the formulas and one object `LIMIT`. Output groups,
-result variables, fields of a case, values of a material, the JSON schema and the documentation follow from it.
-A life in hours is overrollings over `SolvedRollers.overrollings_per_hour`. A case gives its own value of a material as
+A limit ends the life of a roller or of its guide. Its file holds the formulas and one object
+`LIMIT`. Output groups, result variables, fields of a case, values of a material, the JSON schema
+and the documentation follow from it. A life in hours is overrollings over
+`SolvedRollers.overrollings_per_hour`. A case gives its own value of a material as
 `roller_material={"like": "PA6", "permissible_pressure": 60.0}`.
 """
 
@@ -28,7 +29,9 @@ Values = dict[str, np.ndarray]  # results by name
 
 
 def missing(column: np.ndarray) -> np.ndarray:
-    """Return where a column of a case has no value, (n,) bool: a number is NaN, or the text of a mapping is empty."""
+    """Return where a column of a case has no value, (n,) bool: a number is NaN, or the text of a
+    mapping is empty.
+    """
     if column.dtype == object:
         return np.asarray(column == "")
     return np.asarray(np.isnan(column))
@@ -55,7 +58,8 @@ def roller_overrollings(velocity: ArrayLike, rolling_radius: ArrayLike) -> np.nd
 def skidding(regime: np.ndarray) -> np.ndarray:
     """Return which of n rollers skid by their regime, (n, 1) bool.
 
-    A skidding roller wears and heats up until it fails, and its overrollings are no cycles of fatigue.
+    A skidding roller wears and heats up until it fails, and its overrollings are no cycles of
+    fatigue.
     """
     return np.asarray((np.asarray(regime) == REGIMES.index("full_slip"))[:, None])
 
@@ -75,26 +79,30 @@ class SolvedRollers:
     Parameters
     ----------
     cases : mapping of str to numpy.ndarray
-        Parameters of the cases by name, (n,), in the units of `PARAMETERS`; fields that are mappings as JSON texts.
+        Parameters of the cases by name, (n,), in the units of `PARAMETERS`; fields that are
+        mappings as JSON texts.
     materials : mapping of str to numpy.ndarray
-        Values of the materials of roller and guide by name, (n, 2), in the units of `PROPERTIES`; NaN if not given.
+        Values of the materials of roller and guide by name, (n, 2), in the units of `PROPERTIES`;
+        NaN if not given.
     values : mapping of str to numpy.ndarray
-        Results of the solver and of the groups that the limit needs, by name: (n,), (n, contact), or
-        (n, contact, body).
+        Results of the solver and of the groups that the limit needs, by name: (n,), (n, contact),
+        or (n, contact, body).
     rolling_radius : numpy.ndarray
         r_A, (n,) [mm].
     options : mapping
         Options of the solution by name, such as `life_rule` and `failure_probability`.
     tractions : callable
-        Function that returns the tractions of the patches; limits that need "tractions" may call it.
+        Function that returns the tractions of the patches; limits that need "tractions" may call
+        it.
     unworn_gap : callable
-        Function of the number of a case, the place of a contact (0 or 1), and lateral places outward (m,) [mm], which
-        returns the gap of the unworn, undeformed profiles there, (m,) [mm].
+        Function of the number of a case, the place of a contact (0 or 1), and lateral places
+        outward (m,) [mm], which returns the gap of the unworn, undeformed profiles there, (m,)
+        [mm].
     regime : numpy.ndarray, optional
         Number in `REGIMES` of each case, (n,); None before the balance is known.
     ends : mapping of str to numpy.ndarray
-        By the name of a value that is a placeholder with a range, the worse and the better end of the range over the
-        value, (n, body, 2) [1].
+        By the name of a value that is a placeholder with a range, the worse and the better end of
+        the range over the value, (n, body, 2) [1].
     """
 
     cases: Mapping[str, np.ndarray]
@@ -108,8 +116,12 @@ class SolvedRollers:
     ends: Mapping[str, np.ndarray] = field(default_factory=dict)
 
     def at_end(self, end: int) -> SolvedRollers:
-        """Return the rollers with the values of `ends` at the worse (0) or the better (1) ends of their ranges."""
-        moved = {name: self.materials[name] * shares[..., end] for name, shares in self.ends.items()}
+        """Return the rollers with the values of `ends` at the worse (0) or the better (1) ends of
+        their ranges.
+        """
+        moved = {
+            name: self.materials[name] * shares[..., end] for name, shares in self.ends.items()
+        }
         return replace(self, materials=dict(self.materials) | moved, ends={})
 
     @property
@@ -121,7 +133,9 @@ class SolvedRollers:
 
     @property
     def overrollings_per_hour(self) -> np.ndarray:
-        """Return the overrollings of a point of roller and guide, (n, 2) [1/h]; NaN for a guide without a number."""
+        """Return the overrollings of a point of roller and guide, (n, 2) [1/h]; NaN for a guide
+        without a number.
+        """
         roller = roller_overrollings(self.cases["velocity"], self.rolling_radius)
         return np.stack([roller, self.cases["guide_overrollings_per_hour"]], axis=1)
 
@@ -132,9 +146,10 @@ class Verdict:
 
     Both have the shape (n, body), and are None where the limit has none.
 
-    `utilisation` is the load over the load at which the limit is reached [1]. NaN stands for a value that is not known.
-    `at_once`, (n, body), marks bodies that break at once, so that the limit is reached without a life. `life_low` and
-    `life_high`, (n, body) [h], are given by a limit whose own formula knows its life within a range.
+    `utilisation` is the load over the load at which the limit is reached [1]. NaN stands for a
+    value that is not known. `at_once`, (n, body), marks bodies that break at once, so that the
+    limit is reached without a life. `life_low` and `life_high`, (n, body) [h], are given by a limit
+    whose own formula knows its life within a range.
     """
 
     utilisation: np.ndarray | None
@@ -145,7 +160,9 @@ class Verdict:
 
 
 def worst(values: np.ndarray) -> np.ndarray:
-    """Return the largest value of both contacts, (n, contact, body) to (n, body); NaN if a contact has none."""
+    """Return the largest value of both contacts, (n, contact, body) to (n, body); NaN if a contact
+    has none.
+    """
     return np.asarray(np.max(values, axis=1))
 
 
@@ -156,22 +173,24 @@ class Limit:
     Parameters
     ----------
     name, title : str
-        Name in data sets, and its words where it is defined: in the proof of a page and in the documentation.
+        Name in data sets, and its words where it is defined: in the proof of a page and in the
+        documentation.
     group : str
         Group of `outputs` that brings the results.
     evaluate : callable
         Function of a `SolvedRollers` that returns the results by name.
     verdict : callable
-        Function of `SolvedRollers` and of the results that returns a `Verdict`; None if the verdict leaves the limit
-        out.
+        Function of `SolvedRollers` and of the results that returns a `Verdict`; None if the verdict
+        leaves the limit out.
     meaning : str
         Meaning of the group for the documentation. A group of the solver has its meaning there.
     needs : tuple of str
-        What has to be computed first: the groups "peak_stress" and "friction_work" of the solver, and `TRACTIONS`.
+        What has to be computed first: the groups "peak_stress" and "friction_work" of the solver,
+        and `TRACTIONS`.
     shared : callable, optional
-        Function of a `SolvedRollers` that returns what `evaluate` needs of the tractions. Cases with equal forces and
-        tractions share its values, so it must not use the speed or values of strength and wear. A name that begins
-        with an underscore is no result.
+        Function of a `SolvedRollers` that returns what `evaluate` needs of the tractions. Cases
+        with equal forces and tractions share its values, so it must not use the speed or values of
+        strength and wear. A name that begins with an underscore is no result.
     results : tuple of Variable
         What `evaluate` returns.
     parameters : tuple of Parameter
@@ -185,24 +204,27 @@ class Limit:
     requires_by : mapping of str to mapping of str to tuple of str
         What else is required, by option and by those of its values that require more.
     instead : mapping of str to tuple of str
-        By a required value of a material, the mark and the value that takes its place where the mark is 1.
+        By a required value of a material, the mark and the value that takes its place where the
+        mark is 1.
     bodies : tuple of str
         Bodies that the limit concerns.
     bounded : bool
         Whether a utilisation above 1 exceeds the limit. False where it only makes the life finite.
     beside : bool
-        Whether the limit is a second model of an end that another limit has. It does not enter the first limit.
+        Whether the limit is a second model of an end that another limit has. It does not enter the
+        first limit.
     distribution : str
         What the failure probability of the life rests on: "S-N scatter", "Weibull 10/9", "none".
     compares : tuple of str
-        The result of which the largest value is compared, or the first of several that is there, and the words of the
-        value that it must not exceed.
+        The result of which the largest value is compared, or the first of several that is there,
+        and the words of the value that it must not exceed.
     standard : str
         The standard that the limit follows, or an empty text.
     assumes : tuple of str
         Assumptions as sentences, for the sheet.
     short : str
-        Word for it in headlines and tables; the title without its remark in brackets if it is not given.
+        Word for it in headlines and tables; the title without its remark in brackets if it is not
+        given.
     """
 
     name: str
@@ -235,7 +257,9 @@ class Limit:
         return self.short or self.title.partition(" (")[0]
 
     def required(self, options: Mapping[str, Any]) -> tuple[str, ...]:
-        """Return the fields of a case and values of a material that a verdict requires under options of a solution."""
+        """Return the fields of a case and values of a material that a verdict requires under
+        options of a solution.
+        """
         return self.requires + tuple(
             name for key, own in self.requires_by.items() for name in own.get(options[key], ())
         )
@@ -260,27 +284,56 @@ class Limit:
         return out
 
     def served(self, solved: SolvedRollers) -> bool:
-        """Return whether a case has all that a verdict requires, or gives a field that serves this limit alone."""
-        own = [*(one.name for one in self.parameters if one.allow_missing), *(one.name for one in self.mappings)]
+        """Return whether a case has all that a verdict requires, or gives a field that serves this
+        limit alone.
+        """
+        own = [
+            *(one.name for one in self.parameters if one.allow_missing),
+            *(one.name for one in self.mappings),
+        ]
         columns = [solved.cases[name] for name in own if name in solved.cases]
         given = not all(missing(column).all() for column in columns)
         return given or not self.lacking(solved).all()
 
     def moves(self, solved: SolvedRollers) -> bool:
-        """Return whether the verdict rests on a value of a material that is known within a range only."""
+        """Return whether the verdict rests on a value of a material that is known within a range
+        only.
+        """
         return any(name in solved.ends for name, _ in self.required_of(solved))
 
 
 def variables(group: str, *rows: tuple[Any, ...]) -> tuple[Variable, ...]:
-    """Return variables from rows of name, dimensions, unit, symbol, long name, and perhaps further fields (mapping)."""
-    return tuple(Variable(name, group, *columns[:4], **dict(*columns[4:])) for name, *columns in rows)
+    """Return variables from rows of name, dimensions, unit, symbol, long name, and perhaps further
+    fields (mapping).
+    """
+    return tuple(
+        Variable(name, group, *columns[:4], **dict(*columns[4:])) for name, *columns in rows
+    )
 
 
 def optional(
-    name: str, symbol: str, unit: str, meaning: str, lower: float, upper: float = math.inf, closed: bool = False
+    name: str,
+    symbol: str,
+    unit: str,
+    meaning: str,
+    lower: float,
+    upper: float = math.inf,
+    closed: bool = False,
 ) -> Parameter:
-    """Return a field of a case or a value of a material that may be left out; `closed` allows its bounds."""
+    """Return a field of a case or a value of a material that may be left out; `closed` allows its
+    bounds.
+    """
     open_upper = not closed and math.isfinite(upper)
     return Parameter(
-        name, symbol, unit, math.nan, meaning, lower, upper, not closed, open_upper, allow_missing=True, label=meaning
+        name,
+        symbol,
+        unit,
+        math.nan,
+        meaning,
+        lower,
+        upper,
+        not closed,
+        open_upper,
+        allow_missing=True,
+        label=meaning,
     )

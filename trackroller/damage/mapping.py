@@ -1,4 +1,6 @@
-"""Fields of a case that are mappings of numbers, words and lists, such as the ratings of a bearing."""
+"""Fields of a case that are mappings of numbers, words and lists, such as the ratings of a
+bearing.
+"""
 
 from __future__ import annotations
 
@@ -48,12 +50,16 @@ class MappingField:
     check: Callable[[dict[str, Any]], None] | None = None
 
     def canonical(self, value: Mapping[str, Any]) -> dict[str, Any]:
-        """Return the checked mapping; raise the errors of unknown, missing or impossible entries together."""
+        """Return the checked mapping; raise the errors of unknown, missing or impossible entries
+        together.
+        """
         keys = [*self.words, *(number.name for number in (*self.numbers, *self.lists))]
         for old, new in self.renamed.items():
             if old in value:
                 known = ", ".join(keys)
-                raise InputError(f"{self.name}.{old}", value[old], known, f"Write {new}.", "has another name now")
+                raise InputError(
+                    f"{self.name}.{old}", value[old], known, f"Write {new}.", "has another name now"
+                )
         check_names(f"{self.name}: key", value, keys)
         missing = [key for key in keys if value.get(key) is None and key not in self.may_miss]
         if missing:
@@ -80,7 +86,9 @@ class MappingField:
         if number not in self.lists:
             return self._number(number, value)
         if not isinstance(value, (list, tuple)):
-            raise InputError(f"{self.name}.{number.name}", value, f"a list of numbers [{number.unit}]")
+            raise InputError(
+                f"{self.name}.{number.name}", value, f"a list of numbers [{number.unit}]"
+            )
         return [self._number(number, one) for one in value]
 
     def _number(self, number: Parameter, value: Any) -> float:
@@ -96,7 +104,14 @@ class MappingField:
         return json.loads(text) if text else {}
 
     def columns(self, texts: np.ndarray) -> dict[str, np.ndarray]:
-        """Return the entries of n cases by key, (n,), from their canonical JSON: NaN and "" where not given."""
+        """Return the entries of n cases by key, (n,), from their canonical JSON: NaN and "" where
+        not given.
+        """
         parsed = once_each(self.parsed, texts)
-        out = {n.name: np.array([own.get(n.name, np.nan) for own in parsed], dtype=float) for n in self.numbers}
-        return out | {key: np.array([own.get(key, "") for own in parsed], dtype=object) for key in self.words}
+        out = {
+            n.name: np.array([own.get(n.name, np.nan) for own in parsed], dtype=float)
+            for n in self.numbers
+        }
+        return out | {
+            key: np.array([own.get(key, "") for own in parsed], dtype=object) for key in self.words
+        }

@@ -21,14 +21,17 @@ def block_damage(applied: ArrayLike, bearable: ArrayLike) -> np.ndarray:
     Returns
     -------
     numpy.ndarray
-        Damage [1] of the broadcast shape; 0 for a block without cycles whatever its stress, NaN where N is NaN.
+        Damage [1] of the broadcast shape; 0 for a block without cycles whatever its stress, NaN
+        where N is NaN.
 
     Raises
     ------
     InputError
         If a block has a negative number of cycles.
     """
-    n, life = np.broadcast_arrays(np.asarray(applied, dtype=float), np.asarray(bearable, dtype=float))
+    n, life = np.broadcast_arrays(
+        np.asarray(applied, dtype=float), np.asarray(bearable, dtype=float)
+    )
     if np.any(n < 0):
         raise InputError("cycles", float(np.nanmin(n)), "cycles of a block >= 0")
     with np.errstate(divide="ignore", invalid="ignore"):

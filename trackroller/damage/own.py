@@ -1,8 +1,9 @@
-"""Limits of a user's own, `config/limits/NAME.py`: whether they are allowed, and how they are loaded.
+"""Limits of a user's own, `config/limits/NAME.py`: whether they are allowed, and how they are
+loaded.
 
-The files are programs, so they are loaded only where the user allows code: by `--allow-code` on the command line, or by
-the environment variable TRACKROLLER_ALLOW_CODE with the folder, which worker processes and the jobs of a workflow
-inherit.
+The files are programs, so they are loaded only where the user allows code: by `--allow-code` on the
+command line, or by the environment variable TRACKROLLER_ALLOW_CODE with the folder, which worker
+processes and the jobs of a workflow inherit.
 """
 
 from __future__ import annotations
@@ -31,7 +32,9 @@ FUNCTIONS = ("evaluate", "verdict", "shared")  # of a limit, which a file of a u
 
 
 def hint(name: Any) -> str:
-    """Return how to load the file of the folder config/limits that declares a limit; an empty text if none does."""
+    """Return how to load the file of the folder config/limits that declares a limit; an empty text
+    if none does.
+    """
     file = FOLDER / f"{name}.py"
     return _how(file) if file.is_file() else ""
 
@@ -40,18 +43,27 @@ def _how(file: Path) -> str:
     return f"{file} declares it: add --allow-code."
 
 
-def unknown_field(kind: str, name: str, options: Iterable[str], elsewhere: Iterable[str] = ()) -> InputError:
+def unknown_field(
+    kind: str, name: str, options: Iterable[str], elsewhere: Iterable[str] = ()
+) -> InputError:
     """Return the error for a field of a case or a material that is not known, see `unknown_name`.
 
-    A limit of a user declares fields, too. Where the text of a file that is not loaded holds the name, the remedy is to
-    load it.
+    A limit of a user declares fields, too. Where the text of a file that is not loaded holds the
+    name, the remedy is to load it.
     """
     error = unknown_name(kind, name, options, elsewhere)
     files: list[Path] = []
     if VARIABLE not in os.environ:
         files = sorted(FOLDER.glob("*.py"))
     quoted = re.compile(rf"""["']{re.escape(name)}["']""")
-    file = next((file for file in files if quoted.search(file.read_text(encoding="utf-8", errors="replace"))), None)
+    file = next(
+        (
+            file
+            for file in files
+            if quoted.search(file.read_text(encoding="utf-8", errors="replace"))
+        ),
+        None,
+    )
     if file is None:
         return error
     return InputError(kind, name, error.allowed, _how(file), error.wrong)
@@ -65,7 +77,9 @@ def check_fields(kind: str, names: Iterable[object], options: Iterable[str]) -> 
 
 @cache
 def digests() -> dict[Path, str]:
-    """Return the SHA-256 of each allowed file, sorted by name; the files are read once, before they are loaded."""
+    """Return the SHA-256 of each allowed file, sorted by name; the files are read once, before they
+    are loaded.
+    """
     folder = os.environ.get(VARIABLE)
     files: list[Path] = []
     if folder:
@@ -85,7 +99,9 @@ def own_limits() -> dict[str, Limit]:
         return {}
     if not digests():
         allowed = "a folder with limits, one file NAME.py each"
-        raise InputError("--allow-code", os.environ[VARIABLE], allowed, "Add a file, or leave out --allow-code.")
+        raise InputError(
+            "--allow-code", os.environ[VARIABLE], allowed, "Add a file, or leave out --allow-code."
+        )
     return {path.stem: _load(path) for path in digests()}
 
 
@@ -94,14 +110,17 @@ def _load(path: Path) -> Limit:
     spec = importlib.util.spec_from_file_location(f"own_limit_{path.stem}", path)
     assert spec is not None and spec.loader is not None
     module = importlib.util.module_from_spec(spec)
-    with _errors_of(path), contextlib.redirect_stdout(sys.stderr):  # its prints must not stand among the results
+    # its prints must not stand among the results
+    with _errors_of(path), contextlib.redirect_stdout(sys.stderr):
         spec.loader.exec_module(module)
     limit = getattr(module, "LIMIT", None)
     if not isinstance(limit, Limit) or limit.name != path.stem:
         declares = f"{path.name} must declare LIMIT = Limit(name='{path.stem}', ...)"
         raise InputError("limits", str(path), "a file that declares one LIMIT", declares)
     own: dict[str, Any] = {
-        name: _guarded(getattr(limit, name), path) for name in FUNCTIONS if getattr(limit, name) is not None
+        name: _guarded(getattr(limit, name), path)
+        for name in FUNCTIONS
+        if getattr(limit, name) is not None
     }
     return replace(limit, **own)
 
@@ -139,5 +158,7 @@ def _line_of(error: BaseException, path: Path) -> int:
     """Return the line of a file in which an error began, 1 if the traceback does not name it."""
     if isinstance(error, SyntaxError) and error.filename == str(path):
         return error.lineno or 1
-    lines = [one.lineno for one in traceback.extract_tb(error.__traceback__) if one.filename == str(path)]
+    lines = [
+        one.lineno for one in traceback.extract_tb(error.__traceback__) if one.filename == str(path)
+    ]
     return lines[-1] or 1 if lines else 1

@@ -9,7 +9,9 @@ from trackroller.numerics.variable import BODIES
 
 FIRST_TO_FAIL = (*BODIES, "none", "unknown")
 
-ALIKE = 1e-4  # relative difference of lives that rounding can cause: bodies that are alike must not change places by it
+# relative difference of lives that rounding can cause: bodies that are alike must not change places
+# by it
+ALIKE = 1e-4
 
 
 def first_failure(roller: ArrayLike, guide: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
@@ -23,12 +25,19 @@ def first_failure(roller: ArrayLike, guide: ArrayLike) -> tuple[np.ndarray, np.n
     Returns
     -------
     tuple of numpy.ndarray
-        Life of the pair [h], shape (n,): the shorter life, or the roller's where the guide's is not known. Then the
-        number in `FIRST_TO_FAIL` of the body that fails first, shape (n,): `none` where both lives are infinite,
-        `unknown` where one of them is NaN. The roller comes first where both lives are equal up to ALIKE.
+        Life of the pair [h], shape (n,): the shorter life, or the roller's where the guide's is not
+        known. Then the number in `FIRST_TO_FAIL` of the body that fails first, shape (n,): `none`
+        where both lives are infinite, `unknown` where one of them is NaN. The roller comes first
+        where both lives are equal up to ALIKE.
     """
     lives = np.asarray(roller, dtype=float), np.asarray(guide, dtype=float)
     pair = np.where(np.isnan(lives[1]), lives[0], np.minimum(*lives))
-    first = np.where(lives[1] < (1.0 - ALIKE) * lives[0], FIRST_TO_FAIL.index("guide"), FIRST_TO_FAIL.index("roller"))
+    first = np.where(
+        lives[1] < (1.0 - ALIKE) * lives[0],
+        FIRST_TO_FAIL.index("guide"),
+        FIRST_TO_FAIL.index("roller"),
+    )
     first = np.where(np.isposinf(pair), FIRST_TO_FAIL.index("none"), first)
-    return pair, np.where(np.isnan(lives[0]) | np.isnan(lives[1]), FIRST_TO_FAIL.index("unknown"), first)
+    return pair, np.where(
+        np.isnan(lives[0]) | np.isnan(lives[1]), FIRST_TO_FAIL.index("unknown"), first
+    )

@@ -1,8 +1,9 @@
 """Compiled search for the stress paths that govern the multiaxial criteria.
 
-A path is the stress history of one point, (t, 6) in the order of `halfspace.stress.COMPONENTS`. Each search holds an
-upper bound for every path and sharpens the largest one until it belongs to a path whose value is known. Paths that
-cannot govern are left with a cheap bound, so the search never changes the result.
+A path is the stress history of one point, (t, 6) in the order of `halfspace.stress.COMPONENTS`.
+Each search holds an upper bound for every path and sharpens the largest one until it belongs to a
+path whose value is known. Paths that cannot govern are left with a cheap bound, so the search never
+changes the result.
 """
 
 from __future__ import annotations
@@ -14,12 +15,15 @@ import numpy as np
 from trackroller.damage.ball import FINE, smallest_ball, squared
 from trackroller.numerics.compiled import compiled
 
-COARSE, KEPT, ROUNDS = 95, 3, 7  # planes searched first, those refined, and how often the step is halved
+# planes searched first, those refined, and how often the step is halved
+COARSE, KEPT, ROUNDS = 95, 3, 7
 
 
 @compiled
 def deviator(s, u):  # pragma: no cover (compiled)
-    """Write coordinates u (5,) of the deviator with |u|^2 = J2 of a stress s (6,), and return the mean stress."""
+    """Write coordinates u (5,) of the deviator with |u|^2 = J2 of a stress s (6,), and return the
+    mean stress.
+    """
     u[0], u[1] = (s[0] - s[1]) / 2.0, (2.0 * s[2] - s[0] - s[1]) / math.sqrt(12.0)
     u[2], u[3], u[4] = s[3], s[4], s[5]
     return (s[0] + s[1] + s[2]) / 3.0
@@ -27,20 +31,26 @@ def deviator(s, u):  # pragma: no cover (compiled)
 
 @compiled
 def principal_deviators(u):  # pragma: no cover (compiled)
-    """Return the largest and the smallest principal stress of a deviator, from its coordinates u (5,)."""
+    """Return the largest and the smallest principal stress of a deviator, from its coordinates u
+    (5,).
+    """
     square = squared(u)
     if square == 0.0:
         return 0.0, 0.0
     third, size = u[1] / math.sqrt(3.0), math.sqrt(square / 3.0)
     x, y, z = u[0] - third, -u[0] - third, 2.0 * third
-    determinant = x * (y * z - u[3] ** 2) - u[2] * (u[2] * z - u[3] * u[4]) + u[4] * (u[2] * u[3] - y * u[4])
+    determinant = (
+        x * (y * z - u[3] ** 2) - u[2] * (u[2] * z - u[3] * u[4]) + u[4] * (u[2] * u[3] - y * u[4])
+    )
     turn = math.acos(min(1.0, max(-1.0, 0.5 * determinant / size**3))) / 3.0
     return 2.0 * size * math.cos(turn), 2.0 * size * math.cos(turn + 2.0 * math.pi / 3.0)
 
 
 @compiled
 def chords(u):  # pragma: no cover (compiled)
-    """Return the longest distance of two points u (t, 5), and the largest shear of a difference of two."""
+    """Return the longest distance of two points u (t, 5), and the largest shear of a difference of
+    two.
+    """
     longest, shear, between = 0.0, 0.0, np.empty(5)
     for i in range(len(u)):
         for k in range(i):
@@ -57,7 +67,8 @@ def chords(u):  # pragma: no cover (compiled)
 
 @compiled
 def goodman(u, strength):  # pragma: no cover (compiled)
-    """Return the largest fully reversed von Mises stress [MPa] to which Goodman's line turns two states of a path.
+    """Return the largest fully reversed von Mises stress [MPa] to which Goodman's line turns two
+    states of a path.
 
     Parameters
     ----------
@@ -80,10 +91,11 @@ def goodman(u, strength):  # pragma: no cover (compiled)
 
 @compiled
 def goodman_bound(amplitude, peak, strength):  # pragma: no cover (compiled)
-    """Return a stress that `goodman` does not exceed for a path with an amplitude and a largest von Mises stress.
+    """Return a stress that `goodman` does not exceed for a path with an amplitude and a largest von
+    Mises stress.
 
-    Two states p and q keep |p - q|^2 + |p + q|^2 = 2 |p|^2 + 2 |q|^2, so that amplitude and mean lie within a circle
-    whose radius is the largest stress.
+    Two states p and q keep |p - q|^2 + |p + q|^2 = 2 |p|^2 + 2 |q|^2, so that amplitude and mean
+    lie within a circle whose radius is the largest stress.
     """
     if peak >= strength:
         return np.inf
@@ -95,7 +107,9 @@ def goodman_bound(amplitude, peak, strength):  # pragma: no cover (compiled)
 
 @compiled
 def on_plane(path, normal, k, step):  # pragma: no cover (compiled)
-    """Return tau_a + k sigma_n,max on a plane with its normal (3,), from every `step`-th stress of a path."""
+    """Return tau_a + k sigma_n,max on a plane with its normal (3,), from every `step`-th stress of
+    a path.
+    """
     x, y, z = normal[0], normal[1], normal[2]
     if abs(x) < 0.6:
         size = math.sqrt(y * y + z * z)
@@ -108,7 +122,11 @@ def on_plane(path, normal, k, step):  # pragma: no cover (compiled)
     first, second, highest = np.empty(n), np.empty(n), -np.inf
     for i in range(n):
         s = path[i * step]
-        tx, ty, tz = s[0] * x + s[3] * y + s[5] * z, s[3] * x + s[1] * y + s[4] * z, s[5] * x + s[4] * y + s[2] * z
+        tx, ty, tz = (
+            s[0] * x + s[3] * y + s[5] * z,
+            s[3] * x + s[1] * y + s[4] * z,
+            s[5] * x + s[4] * y + s[2] * z,
+        )
         first[i], second[i] = tx * a0 + ty * a1 + tz * a2, tx * b0 + ty * b1 + tz * b2
         highest = max(highest, tx * x + ty * y + tz * z)
     chord = 0.0
@@ -120,7 +138,8 @@ def on_plane(path, normal, k, step):  # pragma: no cover (compiled)
 
 @compiled
 def findley(path, k):  # pragma: no cover (compiled)
-    """Return the largest tau_a + k sigma_n,max over all planes [MPa], tau_a as half the longest chord of the shear.
+    """Return the largest tau_a + k sigma_n,max over all planes [MPa], tau_a as half the longest
+    chord of the shear.
 
     Parameters
     ----------
@@ -154,7 +173,9 @@ def findley(path, k):  # pragma: no cover (compiled)
             first /= np.linalg.norm(first)
             second, at = np.cross(normal, first), normal.copy()
             for i in range(6):
-                tried = at + step * (math.cos(i * math.pi / 3) * first + math.sin(i * math.pi / 3) * second)
+                tried = at + step * (
+                    math.cos(i * math.pi / 3) * first + math.sin(i * math.pi / 3) * second
+                )
                 tried /= np.linalg.norm(tried)
                 turned = on_plane(path, tried, k, 1)
                 if turned > value:
@@ -166,10 +187,11 @@ def findley(path, k):  # pragma: no cover (compiled)
 
 @compiled
 def dang_van(path, a):  # pragma: no cover (compiled)
-    """Return the largest tau(t) + a sigma_h(t) of a path (t, 6) with and without credit of pressure [MPa].
+    """Return the largest tau(t) + a sigma_h(t) of a path (t, 6) with and without credit of pressure
+    [MPa].
 
-    tau is the largest shear of the deviator around the centre of the smallest ball that holds the path. Without credit
-    a negative sigma_h counts as 0.
+    tau is the largest shear of the deviator around the centre of the smallest ball that holds the
+    path. Without credit a negative sigma_h counts as 0.
     """
     u, mean = np.empty((len(path), 5)), np.empty(len(path))
     for i in range(len(path)):
@@ -195,10 +217,15 @@ def _bounds(paths, k, a, strength):  # pragma: no cover (compiled)
             mean = deviator(paths[i, t], u[t])
             square = 0.0
             for j in range(5):
-                low[j], high[j], square = min(low[j], u[t, j]), max(high[j], u[t, j]), square + u[t, j] ** 2
+                low[j], high[j], square = (
+                    min(low[j], u[t, j]),
+                    max(high[j], u[t, j]),
+                    square + u[t, j] ** 2,
+                )
             normal, pressed = max(normal, mean + 2.0 * math.sqrt(square / 3.0)), max(pressed, mean)
             longest = max(longest, square)
-        radius = 0.0  # of a ball around the middle, which holds the path: no smaller than the smallest one
+        # of a ball around the middle, which holds the path: no smaller than the smallest one
+        radius = 0.0
         for t in range(len(u)):
             square = 0.0
             for j in range(5):
@@ -214,7 +241,9 @@ def _bounds(paths, k, a, strength):  # pragma: no cover (compiled)
 
 @compiled
 def _governing_goodman(paths, own, strength):  # pragma: no cover (compiled)
-    """Return Goodman's largest stress over paths with upper bounds `own` (m,), which it overwrites [MPa]."""
+    """Return Goodman's largest stress over paths with upper bounds `own` (m,), which it overwrites
+    [MPa].
+    """
     best, u = -np.inf, np.empty((paths.shape[1], 5))
     while True:
         i = np.argmax(own)
@@ -227,7 +256,8 @@ def _governing_goodman(paths, own, strength):  # pragma: no cover (compiled)
 
 @compiled
 def governing(paths, k, a, strength):  # pragma: no cover (compiled)
-    """Return the largest half chord, Findley's and Dang Van's stress with and without credit, and Goodman's over paths.
+    """Return the largest half chord, Findley's and Dang Van's stress with and without credit, and
+    Goodman's over paths.
 
     Parameters
     ----------

@@ -1,7 +1,8 @@
 """Standard rating of wheels and rails after EN 13001-3-3, as limits of the Hertzian pressure.
 
-The standard gives forces of line contacts; through Hertz's line contact they are limits of p_0. The text of the
-standard was not at hand; the numbers are those of a public implementation, without factors for edges and use.
+The standard gives forces of line contacts; through Hertz's line contact they are limits of p_0. The
+text of the standard was not at hand; the numbers are those of a public implementation, without
+factors for edges and use.
 
 ASSUME: the limits of p_0 hold for elliptical contacts too.
 """
@@ -11,7 +12,15 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from trackroller.damage.limit import Limit, SolvedRollers, Values, Verdict, optional, variables, worst
+from trackroller.damage.limit import (
+    Limit,
+    SolvedRollers,
+    Values,
+    Verdict,
+    optional,
+    variables,
+    worst,
+)
 from trackroller.numerics.variable import LARGEST, LIFE, SMALLEST
 
 RESISTANCE = 1.1  # partial factor of the material, on the force
@@ -19,7 +28,9 @@ CONTACTS = 6.4e6  # contacts that the fatigue limit stands for
 EXPONENT = 20.0 / 3.0  # of the pressure; 10/3 of the force
 
 
-def static_pressure(hardness: ArrayLike, yield_strength: ArrayLike, hardened: ArrayLike) -> np.ndarray:
+def static_pressure(
+    hardness: ArrayLike, yield_strength: ArrayLike, hardened: ArrayLike
+) -> np.ndarray:
     """Return the largest p_0 of a single load.
 
     Parameters
@@ -51,8 +62,13 @@ def contacts_to_limit(
 
 
 def evaluate(solved: SolvedRollers) -> Values:
-    """Return `rating_utilisation_static` [1] and `rating_life_hours` [h], (n, contact, body); NaN if it skids."""
-    m = {name: solved.materials[name][:, None, :] for name in ("hardness", "yield_strength", "surface_hardened")}
+    """Return `rating_utilisation_static` [1] and `rating_life_hours` [h], (n, contact, body); NaN
+    if it skids.
+    """
+    m = {
+        name: solved.materials[name][:, None, :]
+        for name in ("hardness", "yield_strength", "surface_hardened")
+    }
     strength = m["hardness"], m["yield_strength"], m["surface_hardened"] == 1
     pressure = solved.values["max_pressure"][:, :, None]
     hours = contacts_to_limit(pressure, *strength) / solved.overrollings_per_hour[:, None, :]
@@ -64,7 +80,9 @@ def evaluate(solved: SolvedRollers) -> Values:
 
 def verdict(solved: SolvedRollers, results: Values) -> Verdict:
     """Return utilisation and hours of the worse contact, (n, body)."""
-    return Verdict(worst(results["rating_utilisation_static"]), -worst(-results["rating_life_hours"]))
+    return Verdict(
+        worst(results["rating_utilisation_static"]), -worst(-results["rating_life_hours"])
+    )
 
 
 LIMIT = Limit(
@@ -77,7 +95,14 @@ LIMIT = Limit(
     verdict=verdict,
     results=variables(
         "rating",
-        ("rating_utilisation_static", ("contact", "body"), "1", "p_0/p_Rd", "pressure over its static limit", LARGEST),
+        (
+            "rating_utilisation_static",
+            ("contact", "body"),
+            "1",
+            "p_0/p_Rd",
+            "pressure over its static limit",
+            LARGEST,
+        ),
         (
             "rating_life_hours",
             ("contact", "body"),
@@ -90,7 +115,13 @@ LIMIT = Limit(
     materials=(
         optional("hardness", "HB", "HB", "Brinell hardness", 0.0, 2000.0),
         optional(
-            "surface_hardened", "", "-", "1 where the surface is hardened, 0 where it is not", 0.0, 1.0, closed=True
+            "surface_hardened",
+            "",
+            "-",
+            "1 where the surface is hardened, 0 where it is not",
+            0.0,
+            1.0,
+            closed=True,
         ),
         optional("yield_strength", "R_e", "MPa", "yield strength", 0.0, 2e5),
     ),

@@ -1,12 +1,14 @@
 """Plastic limits: elastic limit, elastic shakedown by Melan's theorem, and surface fatigue.
 
-A residual stress that depends on depth alone and loads no surface has the components xx, yy and xy. At each depth the
-one that makes the largest J2 over the plane smallest is the centre of a smallest ball; yz and zx cannot be relieved.
-Stresses shake down while the radius of this ball stays below the shear yield stress k = yield/sqrt(3) at every depth.
+A residual stress that depends on depth alone and loads no surface has the components xx, yy and xy.
+At each depth the one that makes the largest J2 over the plane smallest is the centre of a smallest
+ball; yz and zx cannot be relieved. Stresses shake down while the radius of this ball stays below
+the shear yield stress k = yield/sqrt(3) at every depth.
 
-ASSUME: residual stress depends on depth alone; by Melan the limit found is a lower bound of the true one.
-ASSUME: at the surface itself only the shear traction counts, as in Johnson's 1/mu. Stresses in the plane of the surface
-would lower the limit of a patch that slides with mu = 0.4 by 4 to 7 % more.
+ASSUME: residual stress depends on depth alone; by Melan the limit found is a lower bound of the
+true one. ASSUME: at the surface itself only the shear traction counts, as in Johnson's 1/mu.
+Stresses in the plane of the surface would lower the limit of a patch that slides with mu = 0.4 by 4
+to 7 % more.
 """
 
 from __future__ import annotations
@@ -14,7 +16,15 @@ from __future__ import annotations
 import numpy as np
 
 from trackroller.damage.histories import DEPTHS, RollerTractions, deep_planes
-from trackroller.damage.limit import TRACTIONS, Limit, SolvedRollers, Values, Verdict, variables, worst
+from trackroller.damage.limit import (
+    TRACTIONS,
+    Limit,
+    SolvedRollers,
+    Values,
+    Verdict,
+    variables,
+    worst,
+)
 from trackroller.numerics.variable import LARGEST
 
 
@@ -33,7 +43,8 @@ def shears(t: RollerTractions, poisson_ratio: np.ndarray) -> np.ndarray:
     numpy.ndarray
         k, (n, contact, body) [MPa].
     """
-    from trackroller.damage.ball import shakedown_shears  # numba compiles on import, and planning needs none of it
+    # numba compiles on import, and planning needs none of it
+    from trackroller.damage.ball import shakedown_shears
 
     def of_patch(*at: int) -> np.ndarray:
         surface = np.sqrt(np.max(t.shear_lateral[at] ** 2 + t.shear_rolling[at] ** 2))
@@ -46,8 +57,8 @@ def shears(t: RollerTractions, poisson_ratio: np.ndarray) -> np.ndarray:
 def of_mechanics(solved: SolvedRollers) -> Values:
     """Return what does not depend on strength and speed.
 
-    These are the shear yield stress that just shakes down, `_shaken`, (n, contact, body) [MPa], and the largest |tau|/p
-    of each patch, `_traction`, (n, contact) [1].
+    These are the shear yield stress that just shakes down, `_shaken`, (n, contact, body) [MPa], and
+    the largest |tau|/p of each patch, `_traction`, (n, contact) [1].
     """
     t = solved.tractions()
     pressed = t.pressure > 0.02 * np.nanmax(t.pressure, axis=(2, 3), keepdims=True, initial=0.0)
@@ -62,8 +73,8 @@ def of_mechanics(solved: SolvedRollers) -> Values:
 def evaluate(solved: SolvedRollers) -> Values:
     """Return utilisations, (n, contact, body), and surface fatigue indices, (n, contact) [1].
 
-    The indices are mu_used - k/p_max of the weaker body, with mu_used as |F_T, F_A|/F_N of the whole patch and as the
-    largest |tau|/p in it; the two differ under spin.
+    The indices are mu_used - k/p_max of the weaker body, with mu_used as |F_T, F_A|/F_N of the
+    whole patch and as the largest |tau|/p in it; the two differ under spin.
     """
     v = solved.values
     strength = solved.materials["yield_strength"]

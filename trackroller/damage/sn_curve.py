@@ -1,8 +1,8 @@
 """The S-N curve (Wöhler line): cycles to failure for a stress, its scatter and its inverse.
 
-The curve is straight in logarithms through (N_Rm, R_m) and the knee (N_k, sigma_D) (Wenzel et al. 2022 after
-DIN 50100:2016), or through the points that a material gives, whose last one is the knee. Stresses are in MPa, cycles
-and probabilities in 1; arrays may have any shapes that broadcast.
+The curve is straight in logarithms through (N_Rm, R_m) and the knee (N_k, sigma_D) (Wenzel et al.
+2022 after DIN 50100:2016), or through the points that a material gives, whose last one is the knee.
+Stresses are in MPa, cycles and probabilities in 1; arrays may have any shapes that broadcast.
 
 ASSUME: the curve of the database holds for a failure probability of 50 %.
 """
@@ -24,9 +24,13 @@ CONVENTIONS = {
     "haibach": "Haibach: slope 2k-1 below the fatigue limit",
     "unlimited": "Miner original: unlimited life below the fatigue limit",
 }
-GIVEN_SLOPE = "a second exponent that a material gives holds below its fatigue limit, except with unlimited life"
+GIVEN_SLOPE = (
+    "a second exponent that a material gives holds below its fatigue limit, except with "
+    "unlimited life"
+)
 PROBABILITIES = (0.1, 0.5, 0.9)
-DEVIATES_10_TO_90 = 2.5631031310892007  # standard deviations of a normal distribution from 10 % to 90 %
+# standard deviations of a normal distribution from 10 % to 90 %
+DEVIATES_10_TO_90 = 2.5631031310892007
 
 
 def curve_exponent(cycles: np.ndarray | float, stresses: np.ndarray | float) -> np.ndarray | float:
@@ -51,19 +55,20 @@ def curve_exponent(cycles: np.ndarray | float, stresses: np.ndarray | float) -> 
 
 
 def segments(points: Any) -> np.ndarray | None:
-    """Return where the exponent of a line by points changes: stress over sigma_D, and the exponent above it.
+    """Return where the exponent of a line by points changes: stress over sigma_D, and the exponent
+    above it.
 
     Parameters
     ----------
     points : None, sequence of pairs, or numpy.ndarray of str
-        Stresses [MPa] and cycles [1] of one line, (m, 2), from the largest stress to the knee. Or the lines of an
-        array of materials of any shape as JSON, "" for none.
+        Stresses [MPa] and cycles [1] of one line, (m, 2), from the largest stress to the knee. Or
+        the lines of an array of materials of any shape as JSON, "" for none.
 
     Returns
     -------
     numpy.ndarray or None
-        Rising stresses over sigma_D from 1 on, and exponents, (..., m - 1, 2) [1]; NaN behind a line that has fewer
-        points than others. None without any line.
+        Rising stresses over sigma_D from 1 on, and exponents, (..., m - 1, 2) [1]; NaN behind a
+        line that has fewer points than others. None without any line.
 
     Examples
     --------
@@ -85,7 +90,11 @@ def _of_line(points: Any) -> np.ndarray:
     """Return starts and exponents of the pieces of one line by points, (m - 1, 2)."""
     stresses, cycles = np.asarray(points, dtype=float)[::-1].T
     return np.stack(
-        [stresses[:-1] / stresses[0], curve_exponent(cycles[:-1] / cycles[1:], stresses[1:] / stresses[:-1])], axis=1
+        [
+            stresses[:-1] / stresses[0],
+            curve_exponent(cycles[:-1] / cycles[1:], stresses[1:] / stresses[:-1]),
+        ],
+        axis=1,
     )
 
 
@@ -102,23 +111,26 @@ class SNCurve:
     n_rm, n_k : array_like
         Cycles at R_m and at sigma_D at a failure probability of 50 %, 0 < N_Rm < N_k [1].
     rule : str
-        Below sigma_D "elementary" runs the curve on, "haibach" takes the slope 2k - 1, "unlimited" gives no failure.
-        A second exponent takes the place of k and of 2k - 1.
+        Below sigma_D "elementary" runs the curve on, "haibach" takes the slope 2k - 1, "unlimited"
+        gives no failure. A second exponent takes the place of k and of 2k - 1.
     scatter_cycles, scatter_stress : array_like, optional
-        T_N = N_90/N_10 and T_S = S_90/S_10, both >= 1 [1]; the index is the failure probability in percent. A missing
-        one (None or NaN) follows from T_N = T_S^k. Without both there is no scatter.
+        T_N = N_90/N_10 and T_S = S_90/S_10, both >= 1 [1]; the index is the failure probability in
+        percent. A missing one (None or NaN) follows from T_N = T_S^k. Without both there is no
+        scatter.
     failure_probability : array_like
         Failure probability of the lives, between 0 and 1 [1]. Without scatter it has no effect.
     segments : numpy.ndarray, optional
-        Lines by points above sigma_D, see `segments`, (..., m, 2). They take the place of the line to R_m; NaN where a
-        material gives no points. The exponent k is that of the segment that ends at the knee.
+        Lines by points above sigma_D, see `segments`, (..., m, 2). They take the place of the line
+        to R_m; NaN where a material gives no points. The exponent k is that of the segment that
+        ends at the knee.
     second_exponent : array_like, optional
         Exponent below sigma_D [1]; None or NaN where a material gives none.
 
     Raises
     ------
     InputError
-        For a curve that does not fall, an unknown rule, a scatter below 1, or a probability outside (0, 1).
+        For a curve that does not fall, an unknown rule, a scatter below 1, or a probability outside
+        (0, 1).
 
     Examples
     --------
@@ -147,14 +159,19 @@ class SNCurve:
             given = "R_m, sigma_D, N_Rm, N_k"
             allowed = "a curve that falls: R_m > sigma_D > 0 and N_k > N_Rm > 0"
             raise InputError("S-N curve", given, allowed, "Correct the material.")
-        for name, value in (("scatter_in_cycles", self.scatter_cycles), ("scatter_in_stress", self.scatter_stress)):
+        for name, value in (
+            ("scatter_in_cycles", self.scatter_cycles),
+            ("scatter_in_stress", self.scatter_stress),
+        ):
             if np.any(_known(value) < 1):
                 allowed = "the larger over the smaller value, >= 1"
                 raise InputError(name, value, allowed, "Give its inverse.")
         p = np.asarray(self.failure_probability, dtype=float)
         if not np.all((p > 0) & (p < 1)):
             value = np.ravel(p)[0] if p.size == 1 else p.tolist()
-            raise InputError("failure_probability", value, "a number between 0 and 1", "Give 0.1 for 10 %.")
+            raise InputError(
+                "failure_probability", value, "a number between 0 and 1", "Give 0.1 for 10 %."
+            )
 
     @classmethod
     def of(cls, material: Any, rule: str = "elementary") -> SNCurve:
@@ -183,7 +200,10 @@ class SNCurve:
             limit = known["fatigue_strength_ratio"] * strength
         knees = known["cycles_at_tensile_strength"], known["cycles_at_fatigue_limit"]
         scatter = known.get("scatter_in_cycles"), known.get("scatter_in_stress")
-        line = {"segments": segments(known.get("sn_points")), "second_exponent": known.get("second_exponent")}
+        line = {
+            "segments": segments(known.get("sn_points")),
+            "second_exponent": known.get("second_exponent"),
+        }
         return cls(strength, limit, *knees, rule, *scatter, **line)
 
     def changed(self, **values: Any) -> SNCurve:
@@ -197,15 +217,19 @@ class SNCurve:
 
     @property
     def exponent(self) -> np.ndarray:
-        """Return the exponent k = ln(N_k/N_Rm) / ln(R_m/sigma_D) > 0 [1], or that of the segment above the knee."""
+        """Return the exponent k = ln(N_k/N_Rm) / ln(R_m/sigma_D) > 0 [1], or that of the segment
+        above the knee.
+        """
         strength, limit, first, knee = self._points
         by_points = self._of_points(0)[1]
-        with np.errstate(divide="ignore", invalid="ignore"):  # R_m plays no part in a line by points
+        # R_m plays no part in a line by points
+        with np.errstate(divide="ignore", invalid="ignore"):
             to_strength = curve_exponent(knee / first, strength / limit)
         return np.asarray(np.where(np.isfinite(by_points), by_points, to_strength))
 
     def _of_points(self, i: int) -> tuple[np.ndarray, np.ndarray]:
-        """Return the stress over sigma_D at which segment i of each line begins, and its exponent [1].
+        """Return the stress over sigma_D at which segment i of each line begins, and its exponent
+        [1].
 
         NaN for a line without this segment.
         """
@@ -214,7 +238,8 @@ class SNCurve:
         return self.segments[..., i, 0], self.segments[..., i, 1]
 
     def _pieces(self) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray]]:
-        """Yield stress over sigma_D and cycles over N_k where a piece of the curve starts, and its exponent, upwards.
+        """Yield stress over sigma_D and cycles over N_k where a piece of the curve starts, and its
+        exponent, upwards.
 
         NaN where the curve of a material has no further piece.
         """
@@ -234,7 +259,9 @@ class SNCurve:
     @property
     def scatters(self) -> np.ndarray:
         """Return whether the scatter of life or of strength is known, a bool array."""
-        return np.asarray(~(np.isnan(_known(self.scatter_cycles)) & np.isnan(_known(self.scatter_stress))))
+        return np.asarray(
+            ~(np.isnan(_known(self.scatter_cycles)) & np.isnan(_known(self.scatter_stress)))
+        )
 
     @property
     def scatter_ranges(self) -> tuple[np.ndarray, np.ndarray]:
@@ -254,24 +281,28 @@ class SNCurve:
     def knee(self) -> tuple[np.ndarray, np.ndarray]:
         """Return sigma_D [MPa] and N_k [1] at the failure probability; the exponent stays the same.
 
-        The scatter is log-normal (DIN 50100:2016). With the standard normal deviate u of the probability, lg N shifts
-        by u lg(T_N)/2.563 and lg sigma_D by u lg(T_S)/2.563.
+        The scatter is log-normal (DIN 50100:2016). With the standard normal deviate u of the
+        probability, lg N shifts by u lg(T_N)/2.563 and lg sigma_D by u lg(T_S)/2.563.
         """
         _, limit, _, knee = self._points
         if not np.any(np.asarray(self.failure_probability) != 0.5):
             return limit, knee
-        from scipy.special import ndtri  # heavy, and most curves hold for a failure probability of 50 %
+        # heavy, and most curves hold for a failure probability of 50 %
+        from scipy.special import ndtri
 
         t_n, t_s = self.scatter_ranges
         deviate = ndtri(np.asarray(self.failure_probability, dtype=float)) / DEVIATES_10_TO_90
         fall = t_s**deviate
-        # The curve moves along with the strength. If T_N is larger than this move gives, it also moves in cycles.
+        # The curve moves along with the strength. If T_N is larger than this move gives, it also
+        # moves in cycles.
         beyond = t_n**deviate * fall**-self.exponent
         return limit * fall, knee * beyond
 
     @property
     def _below(self) -> np.ndarray:
-        """Return the exponent below sigma_D: the one that the material gives, otherwise 2k - 1 by Haibach, or k."""
+        """Return the exponent below sigma_D: the one that the material gives, otherwise 2k - 1 by
+        Haibach, or k.
+        """
         given = _known(self.second_exponent)
         by_rule = self.exponent
         if self.rule == "haibach":
@@ -279,7 +310,8 @@ class SNCurve:
         return np.where(np.isnan(given), by_rule, given)
 
     def slope(self, stress: ArrayLike) -> np.ndarray:
-        """Return the exponent of the life at a stress [1]: k, and below sigma_D that of the rule or the second one.
+        """Return the exponent of the life at a stress [1]: k, and below sigma_D that of the rule or
+        the second one.
 
         A relative error of the stress changes the life by this exponent times the error.
         """
@@ -300,8 +332,9 @@ class SNCurve:
         Returns
         -------
         numpy.ndarray
-            Cycles [1] of the broadcast shape; inf for zero stress, NaN for NaN or a negative stress. Above R_m, or
-            above its first point, the curve is run on to fewer cycles; above R_m `fatigue` gives no life.
+            Cycles [1] of the broadcast shape; inf for zero stress, NaN for NaN or a negative
+            stress. Above R_m, or above its first point, the curve is run on to fewer cycles; above
+            R_m `fatigue` gives no life.
         """
         limit, knee = self.knee
         sigma = np.asarray(stress, dtype=float)
@@ -325,7 +358,8 @@ class SNCurve:
         Returns
         -------
         numpy.ndarray
-            Amplitude [MPa], NaN for cycles <= 0. With the rule "unlimited" it stays at sigma_D beyond the knee.
+            Amplitude [MPa], NaN for cycles <= 0. With the rule "unlimited" it stays at sigma_D
+            beyond the knee.
         """
         limit, knee = self.knee
         n = np.asarray(cycles, dtype=float)

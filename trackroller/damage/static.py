@@ -6,7 +6,9 @@ from trackroller.damage.limit import Limit, SolvedRollers, Values, Verdict, wors
 
 
 def verdict(solved: SolvedRollers, results: Values) -> Verdict:
-    """Return the peak von Mises stress over R_m, (n, body) [1]; the limit has no time, and a body above it breaks."""
+    """Return the peak von Mises stress over R_m, (n, body) [1]; the limit has no time, and a body
+    above it breaks.
+    """
     used = worst(solved.values["peak_stress"]) / solved.materials["tensile_strength"]
     return Verdict(used, None, used > 1.0)
 

@@ -14,13 +14,17 @@ from trackroller.numerics.parameter import Parameter
 from trackroller.numerics.variable import BODIES, LIFE
 
 GROUP = "limits"
-MEANING = "how far each limit is used whose inputs are given, hours to each with their range, and the first one"
+MEANING = (
+    "how far each limit is used whose inputs are given, hours to each with their range, and "
+    "the first one"
+)
 POSITION = Parameter(
     "placeholder_position",
     "f_P",
     "-",
     math.nan,
-    "place of all placeholders of materials in their ranges: -1 the worse end, 0 the value, 1 the better end; if it is "
+    "place of all placeholders of materials in their ranges: -1 the worse end, 0 the value, "
+    "1 the better end; if it is "
     "not given, lives have the range between the ends",
     -1.0,
     1.0,
@@ -38,28 +42,52 @@ def _life(
     name: str, dims: tuple[str, ...], meaning: str, label: str, of: str = ""
 ) -> tuple[tuple[str, Any, str, str, str, Any], ...]:
     """Return the rows of a life and of the ends of its range."""
-    ends = (("", "", ""), ("_low", "low end of the ", ", low end"), ("_high", "high end of the ", ", high end"))
+    ends = (
+        ("", "", ""),
+        ("_low", "low end of the ", ", low end"),
+        ("_high", "high end of the ", ", high end"),
+    )
     fields = LIFE | {"of": of}
     return tuple(
-        (name + end, dims, "h", "", head + meaning, fields | {"end": end[1:], "label": label + tail})
+        (
+            name + end,
+            dims,
+            "h",
+            "",
+            head + meaning,
+            fields | {"end": end[1:], "label": label + tail},
+        )
         for end, head, tail in ends
     )
 
 
 RESULTS = variables(
     GROUP,
-    ("utilisation", _LB, "1", "", "load over the load at which the limit is reached", {"label": "utilisation"}),
+    (
+        "utilisation",
+        _LB,
+        "1",
+        "",
+        "load over the load at which the limit is reached",
+        {"label": "utilisation"},
+    ),
     *_life("life_hours_by_limit", _LB, "hours to the limit at the failure probability", "life"),
     *_life("life_to_first_limit_hours", ("body",), _FIRST, "life to the first limit"),
-    *_life("pair_life_to_first_limit_hours", (), f"{_FIRST}, of roller or guide", "life to the first limit", "pair"),
+    *_life(
+        "pair_life_to_first_limit_hours",
+        (),
+        f"{_FIRST}, of roller or guide",
+        "life to the first limit",
+        "pair",
+    ),
 )
 
 
 def breaking(breaks: np.ndarray, limits: Sequence[Limit]) -> np.ndarray:
     """Return the limits that a body reaches at once because it breaks, (..., limit, body) bool.
 
-    It is the static limit; without it fatigue counts, because a body above its tensile strength has no life by the S-N
-    curve.
+    It is the static limit; without it fatigue counts, because a body above its tensile strength has
+    no life by the S-N curve.
 
     Parameters
     ----------
@@ -90,7 +118,8 @@ def first_of(
     used : numpy.ndarray
         Utilisation, (n, limit, body) [1], which ranks limits that are reached together.
     ends : numpy.ndarray of bool
-        Whether a limit has a life, (limit,). Limits that have none, and limits beside others, end nothing.
+        Whether a limit has a life, (limit,). Limits that have none, and limits beside others, end
+        nothing.
     limits : sequence of Limit
         The limits; a body that a limit does not concern does not lack it.
     broken : numpy.ndarray of bool
@@ -101,8 +130,9 @@ def first_of(
     Returns
     -------
     tuple of numpy.ndarray
-        The first one, (n, body), NaN where no limit is known, or where no known limit is ever reached and another one
-        that is checked is not known; and the place of its limit, (n, body), -1 where no limit is known.
+        The first one, (n, body), NaN where no limit is known, or where no known limit is ever
+        reached and another one that is checked is not known; and the place of its limit, (n, body),
+        -1 where no limit is known.
     """
     counted = (ends & ~np.array([limit.beside for limit in limits], dtype=bool))[:, None]
     concerned = counted & [[body in limit.bodies for body in BODIES] for limit in limits]
@@ -118,13 +148,16 @@ def first_of(
     return np.where(never | ~some, np.nan, first), np.where(some, np.argmax(rank, axis=1), -1)
 
 
-def states(used: np.ndarray, life: np.ndarray, broken: np.ndarray, limits: Sequence[Limit]) -> np.ndarray:
+def states(
+    used: np.ndarray, life: np.ndarray, broken: np.ndarray, limits: Sequence[Limit]
+) -> np.ndarray:
     """Return the state of each limit as its place in `STATES`, (n, limit, body).
 
     Parameters
     ----------
     used : numpy.ndarray
-        Utilisation at the values of materials and at both ends of their placeholders, (place, n, limit, body) [1].
+        Utilisation at the values of materials and at both ends of their placeholders, (place, n,
+        limit, body) [1].
     life, broken : numpy.ndarray
         Life [h], and whether the body breaks at once, (n, limit, body).
     limits : sequence of Limit
@@ -132,18 +165,22 @@ def states(used: np.ndarray, life: np.ndarray, broken: np.ndarray, limits: Seque
 
     Notes
     -----
-    A limit is exceeded if its utilisation is above 1 wherever the placeholders lie in their ranges, and open if it is
-    above 1 at one end only.
+    A limit is exceeded if its utilisation is above 1 wherever the placeholders lie in their ranges,
+    and open if it is above 1 at one end only.
     """
     bounded = np.array([limit.bounded for limit in limits], dtype=bool)[:, None]
     least, most = used.min(axis=0), used.max(axis=0)
-    state = np.where(np.isnan(used[0]) & np.isnan(life), STATES.index("unknown"), STATES.index("kept"))
+    state = np.where(
+        np.isnan(used[0]) & np.isnan(life), STATES.index("unknown"), STATES.index("kept")
+    )
     state = np.where(bounded & (most > 1.0), STATES.index("open"), state)
     return np.where((bounded & (least > 1.0)) | broken, STATES.index("exceeded"), state)
 
 
 def _ends(hours: np.ndarray, low: np.ndarray | None, high: np.ndarray | None) -> list[np.ndarray]:
-    """Return the life of a limit and the ends of its range, which is the life itself where the limit gives none."""
+    """Return the life of a limit and the ends of its range, which is the life itself where the
+    limit gives none.
+    """
     if low is None:
         low = hours
     if high is None:
@@ -151,14 +188,17 @@ def _ends(hours: np.ndarray, low: np.ndarray | None, high: np.ndarray | None) ->
     return [hours, low, high]
 
 
-def verdict(places: Sequence[SolvedRollers], limits: Sequence[Limit], numbers: Sequence[int], unknown: int) -> Values:
-    """Return how far each limit is used, hours to each and to the first, their ranges, and which one is first.
+def verdict(
+    places: Sequence[SolvedRollers], limits: Sequence[Limit], numbers: Sequence[int], unknown: int
+) -> Values:
+    """Return how far each limit is used, hours to each and to the first, their ranges, and which
+    one is first.
 
     Parameters
     ----------
     places : sequence of SolvedRollers
-        Cases with the results of the solver and of the limits: at the values of the materials, and if some of these are
-        placeholders with a range, at their worse and at their better ends.
+        Cases with the results of the solver and of the limits: at the values of the materials, and
+        if some of these are placeholders with a range, at their worse and at their better ends.
     limits : sequence of Limit
         The limits that count.
     numbers : sequence of int
@@ -169,14 +209,15 @@ def verdict(places: Sequence[SolvedRollers], limits: Sequence[Limit], numbers: S
     Returns
     -------
     dict of str to numpy.ndarray
-        `utilisation` [1], `life_hours_by_limit` [h] and `limit_state`, (n, limit, body); `life_to_first_limit_hours`
-        [h] and `limiting_mechanism`, (n, body); `pair_life_to_first_limit_hours` [h], (n,). Each life also has the ends
-        of its range, with `_low` and `_high` in its name.
+        `utilisation` [1], `life_hours_by_limit` [h] and `limit_state`, (n, limit, body);
+        `life_to_first_limit_hours` [h] and `limiting_mechanism`, (n, body);
+        `pair_life_to_first_limit_hours` [h], (n,). Each life also has the ends of its range, with
+        `_low` and `_high` in its name.
 
     Notes
     -----
-    A limit without hours ends no life; `limit_state` says whether it is exceeded. A body that is loaded above its
-    tensile strength breaks at once.
+    A limit without hours ends no life; `limit_state` says whether it is exceeded. A body that is
+    loaded above its tensile strength breaks at once.
     """
     shape = len(places), len(places[0].rolling_radius), len(limits), len(BODIES)
     used = np.full(shape, np.nan)
@@ -195,18 +236,25 @@ def verdict(places: Sequence[SolvedRollers], limits: Sequence[Limit], numbers: S
                 used[place, :, i] = np.where(concerned, own.utilisation, np.nan)
             if own.life_hours is not None:
                 timed[i] = True
-                for end, hours in zip(ENDS, _ends(own.life_hours, own.life_low, own.life_high), strict=True):
+                for end, hours in zip(
+                    ENDS, _ends(own.life_hours, own.life_low, own.life_high), strict=True
+                ):
                     lives[end][place, :, i] = np.where(concerned, hours, np.nan)
             if own.at_once is not None:
                 broken[:, i] = own.at_once
     at_once = breaking(np.asarray(broken.any(axis=1)), limits)
-    out: Values = {"utilisation": used[0], "limit_state": states(used, lives[""][0], at_once, limits)}
-    # the worse and the better place are the last but one and the last one; without placeholders there is one place
+    out: Values = {
+        "utilisation": used[0],
+        "limit_state": states(used, lives[""][0], at_once, limits),
+    }
+    # the worse and the better place are the last but one and the last one; without placeholders
+    # there is one place
     for end, place in zip(ENDS, (0, min(1, len(places) - 1), len(places) - 1), strict=True):
         life = lives[end][place]
         first, which = first_of(life, used[0], timed, limits, at_once, lacking)
         out |= {f"life_hours_by_limit{end}": life, f"life_to_first_limit_hours{end}": first}
         out[f"pair_life_to_first_limit_hours{end}"] = first_failure(*first.T)[0]
         if not end:
-            out["limiting_mechanism"] = np.array([*numbers, unknown])[which]  # the place -1 is that of the last one
+            # the place -1 is that of the last one
+            out["limiting_mechanism"] = np.array([*numbers, unknown])[which]
     return out

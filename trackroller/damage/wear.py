@@ -1,20 +1,21 @@
 """Wear of roller and guide from their new profiles: depth, volume, run-in distance and life.
 
-The depth of an overrolling is the integral of a local rate along the rolling direction: k p |s| by Archard's law, or a
-loss of mass by a table over the frictional work |tau| |s| of the place. The integral of all depths is the volume. It is
-tied to the friction energy of the contact model, which is more exact than the sum over the elements.
+The depth of an overrolling is the integral of a local rate along the rolling direction: k p |s| by
+Archard's law, or a loss of mass by a table over the frictional work |tau| |s| of the place. The
+integral of all depths is the volume. It is tied to the friction energy of the contact model, which
+is more exact than the sum over the elements.
 
-The life to a permissible depth lies between two closed forms. At the rate of the new profiles it is too short, because
-the patch grows. The other form divides the area that must go, that between the profiles with one of them sunk by the
-depth, by the area that an overrolling wears off; it assumes that this area stays as it is and that no material goes
-elsewhere. The mean of both is stated as the value. On six rollers that were followed to 0.05 mm (594, 165, 274, 82,
-163 km, and one that ended before), the first form gives 122, 60, 110, 35 and 69 km, the second 569, 243, 528, 120 and
-287 km.
+The life to a permissible depth lies between two closed forms. At the rate of the new profiles it is
+too short, because the patch grows. The other form divides the area that must go, that between the
+profiles with one of them sunk by the depth, by the area that an overrolling wears off; it assumes
+that this area stays as it is and that no material goes elsewhere. The mean of both is stated as the
+value. On six rollers that were followed to 0.05 mm (594, 165, 274, 82, 163 km, and one that ended
+before), the first form gives 122, 60, 110, 35 and 69 km, the second 569, 243, 528, 120 and 287 km.
 
-ASSUME: wear coefficients do not depend on pressure, speed or temperature; the debris leaves the contact.
-ASSUME: a braked roller in full slip stands still, so that the guide slides below it over the whole distance.
-ASSUME: beyond its last work rate, a table of the energy law continues with its last slope, and below its first one with
-its first loss. The flag `wear_extrapolated` says where.
+ASSUME: wear coefficients do not depend on pressure, speed or temperature; the debris leaves the
+contact. ASSUME: a braked roller in full slip stands still, so that the guide slides below it over
+the whole distance. ASSUME: beyond its last work rate, a table of the energy law continues with its
+last slope, and below its first one with its first loss. The flag `wear_extrapolated` says where.
 """
 
 from __future__ import annotations
@@ -26,22 +27,34 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from trackroller.damage.histories import RollerTractions
-from trackroller.damage.limit import TRACTIONS, Limit, SolvedRollers, Values, Verdict, optional, variables, worst
+from trackroller.damage.limit import (
+    TRACTIONS,
+    Limit,
+    SolvedRollers,
+    Values,
+    Verdict,
+    optional,
+    variables,
+    worst,
+)
 from trackroller.damage.mapping import MappingField
 from trackroller.errors import InputError
 from trackroller.numerics.parameter import Parameter
 from trackroller.numerics.variable import ESTIMATE, LARGEST, LIFE, SMALLEST, SUM
 
 KM_PER_HOUR = 0.06  # for 1 m/min
-# Relative error of the depth times the elements across a patch that 95 % of the patches of random rollers keep, against
-# finer elements. Measures of single patches, such as the roughness of the depth, did not tell the error any better.
+# Relative error of the depth times the elements across a patch that 95 % of the patches of random
+# rollers keep, against finer elements. Measures of single patches, such as the roughness of the
+# depth, did not tell the error any better.
 ERROR = {"kalker": 0.5, "kalker_table": 0.5, "sliding": 0.8}
 PLACES = 801  # across drawn profiles
 WIDEST = 20.0  # half their width over the root of the depth [mm^0.5]
 TIE = 1e-9  # relative difference below which the outer one of two depths counts as the deeper one
 
 
-def wear_depth(pressure: np.ndarray, slip_speed: np.ndarray, spacing: np.ndarray, coefficient: ArrayLike) -> np.ndarray:
+def wear_depth(
+    pressure: np.ndarray, slip_speed: np.ndarray, spacing: np.ndarray, coefficient: ArrayLike
+) -> np.ndarray:
     """Return the depth that one overrolling wears off at each lateral place, by Archard's law.
 
     Parameters
@@ -66,8 +79,8 @@ def wear_depth(pressure: np.ndarray, slip_speed: np.ndarray, spacing: np.ndarray
 
     References
     ----------
-    Archard, J. F. (1953). Contact and rubbing of flat surfaces. Journal of Applied Physics 24, 981-988,
-    doi:10.1063/1.1721448.
+    Archard, J. F. (1953). Contact and rubbing of flat surfaces. Journal of Applied Physics 24,
+    981-988, doi:10.1063/1.1721448.
 
     Examples
     --------
@@ -93,7 +106,8 @@ def mass_loss(work: np.ndarray, rates: ArrayLike, losses: ArrayLike) -> np.ndarr
     Returns
     -------
     numpy.ndarray
-        Loss per area and distance, of the shape of `work` [ug/(m mm2)]; beyond the table with its last slope.
+        Loss per area and distance, of the shape of `work` [ug/(m mm2)]; beyond the table with its
+        last slope.
     """
     x, y = np.asarray(rates, float), np.asarray(losses, float)
     slope = (y[-1] - y[-2]) / (x[-1] - x[-2])
@@ -101,14 +115,16 @@ def mass_loss(work: np.ndarray, rates: ArrayLike, losses: ArrayLike) -> np.ndarr
 
 
 def deepest(x: np.ndarray, depth: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the largest depth over x and its place, by a parabola through the three highest neighbours.
+    """Return the largest depth over x and its place, by a parabola through the three highest
+    neighbours.
 
     Parameters
     ----------
     x : numpy.ndarray
         Equidistant places, (n, contact, x) [mm].
     depth : numpy.ndarray
-        Depths, (n, contact, body, x) [mm]. Of two equal depths the outer one counts, in mirrored contacts too.
+        Depths, (n, contact, body, x) [mm]. Of two equal depths the outer one counts, in mirrored
+        contacts too.
 
     Returns
     -------
@@ -122,14 +138,23 @@ def deepest(x: np.ndarray, depth: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     curved = (at == inner)[..., 0] & (2.0 * top > before + after)
     with np.errstate(divide="ignore", invalid="ignore"):
         shift = np.where(curved, 0.5 * (after - before) / (2.0 * top - before - after), 0.0)
-    largest = np.where(curved, top + 0.25 * shift * (after - before), np.take_along_axis(depth, at, axis=-1)[..., 0])
+    largest = np.where(
+        curved,
+        top + 0.25 * shift * (after - before),
+        np.take_along_axis(depth, at, axis=-1)[..., 0],
+    )
     step = (x[..., 1] - x[..., 0])[..., None]
-    place = np.take_along_axis(np.broadcast_to(x[:, :, None, :], depth.shape), at, axis=-1)[..., 0] + shift * step
+    place = (
+        np.take_along_axis(np.broadcast_to(x[:, :, None, :], depth.shape), at, axis=-1)[..., 0]
+        + shift * step
+    )
     return largest, np.where(largest > 0.0, place, np.nan)
 
 
 def _gaps_at_edges(solved: SolvedRollers, t: RollerTractions) -> np.ndarray:
-    """Return the smaller gap of the unworn profiles at the two lateral edges of each patch, (n, contact) [mm]."""
+    """Return the smaller gap of the unworn profiles at the two lateral edges of each patch, (n,
+    contact) [mm].
+    """
     c = solved.cases
     if solved.options["normal"] == "hertz":
         curvature = 1.0 / c["roller_profile_radius"] + 1.0 / c["guide_profile_radius"]
@@ -141,17 +166,22 @@ def _gaps_at_edges(solved: SolvedRollers, t: RollerTractions) -> np.ndarray:
         loaded = (t.pressure[case, contact] > 0.0).any(axis=0)
         half = 0.5 * abs(x[1] - x[0])
         own = x[loaded]
-        height = solved.unworn_gap(case, contact, np.array([own.min() - half, *own, own.max() + half]))
+        height = solved.unworn_gap(
+            case, contact, np.array([own.min() - half, *own, own.max() + half])
+        )
         return float(max(min(height[0], height[-1]) - height.min(), 0.0))
 
     return t.by_patch(of_patch)
 
 
-def local_rates(pressure: np.ndarray, shear: np.ndarray, sliding: np.ndarray, table: str) -> list[np.ndarray]:
-    """Return p |s| [MPa], or by the `table` of the energy law the loss of mass [ug/(m mm2)], of roller and guide.
+def local_rates(
+    pressure: np.ndarray, shear: np.ndarray, sliding: np.ndarray, table: str
+) -> list[np.ndarray]:
+    """Return p |s| [MPa], or by the `table` of the energy law the loss of mass [ug/(m mm2)], of
+    roller and guide.
 
-    Elements have the pressure p and the shear |tau| [MPa], and slide by |s| per distance travelled [1]; `table` is the
-    canonical JSON of the case, "" for Archard's law.
+    Elements have the pressure p and the shear |tau| [MPa], and slide by |s| per distance travelled
+    [1]; `table` is the canonical JSON of the case, "" for Archard's law.
     """
     if not table:
         rate = pressure * sliding
@@ -161,9 +191,11 @@ def local_rates(pressure: np.ndarray, shear: np.ndarray, sliding: np.ndarray, ta
 
 
 def energy_ratio(energy: np.ndarray, elements: np.ndarray) -> np.ndarray:
-    """Return the friction energy of the contact model over the sum of its elements; 1 where one of them is not known.
+    """Return the friction energy of the contact model over the sum of its elements; 1 where one of
+    them is not known.
 
-    The friction energy of a patch that hardly slips can round to a negative number, which does not count.
+    The friction energy of a patch that hardly slips can round to a negative number, which does not
+    count.
     """
     with np.errstate(divide="ignore", invalid="ignore"):
         ratio = energy / elements
@@ -174,13 +206,16 @@ BEYOND_TABLE = "_beyond_wear_table"  # for the flag `wear_extrapolated`; no resu
 
 
 def leaves_table(work: np.ndarray, table: str) -> np.ndarray:
-    """Return whether an element does more frictional work than the last entry of a table, or less than the first.
+    """Return whether an element does more frictional work than the last entry of a table, or less
+    than the first.
 
-    Elements that do no work have no wear to extrapolate. `work` is |tau| |s| [N/mm2] with the shape (..., y, x), the
-    result has the shape (...). `table` is the canonical JSON of the case.
+    Elements that do no work have no wear to extrapolate. `work` is |tau| |s| [N/mm2] with the shape
+    (..., y, x), the result has the shape (...). `table` is the canonical JSON of the case.
     """
     rates = TABLE.parsed(table)["work_rate"]
-    return np.asarray(np.any((work > rates[-1]) | ((work > 0.0) & (work < rates[0])), axis=(-2, -1)))
+    return np.asarray(
+        np.any((work > rates[-1]) | ((work > 0.0) & (work < rates[0])), axis=(-2, -1))
+    )
 
 
 def _beyond_table(solved: SolvedRollers, work: np.ndarray) -> np.ndarray:
@@ -196,7 +231,9 @@ def _beyond_table(solved: SolvedRollers, work: np.ndarray) -> np.ndarray:
 
 
 def _rates(solved: SolvedRollers, t: RollerTractions, sliding: np.ndarray) -> list[np.ndarray]:
-    """Return `local_rates` of each case, (n, contact, y, x) of roller and guide; NaN without a table."""
+    """Return `local_rates` of each case, (n, contact, y, x) of roller and guide; NaN without a
+    table.
+    """
     shear = np.hypot(t.shear_lateral, t.shear_rolling)
     if solved.options["wear_law"] == "archard":
         return local_rates(t.pressure, shear, sliding, "")
@@ -204,20 +241,28 @@ def _rates(solved: SolvedRollers, t: RollerTractions, sliding: np.ndarray) -> li
     out = [np.full_like(shear, np.nan) for _ in BODIES]
     for text in set(texts.tolist()) - {""}:
         rows = texts == text
-        for rate, own in zip(out, local_rates(t.pressure[rows], shear[rows], sliding[rows], text), strict=True):
+        for rate, own in zip(
+            out, local_rates(t.pressure[rows], shear[rows], sliding[rows], text), strict=True
+        ):
             rate[rows] = own
     return out
 
 
 def of_mechanics(solved: SolvedRollers) -> Values:
-    """Return what does not depend on coefficients and speed: depths and volumes for a coefficient of 1.
+    """Return what does not depend on coefficients and speed: depths and volumes for a coefficient
+    of 1.
 
-    The coefficient is k by Archard's law, and 1/density by the energy law. Results are `_worn_depth` [mm], `wear_place`
-    [mm] and `_worn_volume` [mm3/km], (n, contact, body), `_gap_at_edge` [mm] and `wear_error_estimate` [1], (n,
-    contact), and whether the table of the energy law is left, (n,).
+    The coefficient is k by Archard's law, and 1/density by the energy law. Results are
+    `_worn_depth` [mm], `wear_place` [mm] and `_worn_volume` [mm3/km], (n, contact, body),
+    `_gap_at_edge` [mm] and `wear_error_estimate` [1], (n, contact), and whether the table of the
+    energy law is left, (n,).
     """
     t = solved.tractions()
-    locked = (solved.cases["motor_force"] > 0.0)[:, None, None, None] & np.isnan(t.slip_rolling) & (t.pressure >= 0.0)
+    locked = (
+        (solved.cases["motor_force"] > 0.0)[:, None, None, None]
+        & np.isnan(t.slip_rolling)
+        & (t.pressure >= 0.0)
+    )
     sliding = np.where(locked, 1.0, np.hypot(t.slip_lateral, t.slip_rolling))
     wide, long = (axis[..., 1] - axis[..., 0] for axis in (t.x, t.y))
     cell = wide * long
@@ -226,27 +271,35 @@ def of_mechanics(solved: SolvedRollers) -> Values:
     constant = solved.cases["friction_law"] == ""
     mu = solved.cases["friction_coefficient"][:, None]
     shear = np.sum(np.hypot(t.shear_lateral, t.shear_rolling) * sliding, axis=(2, 3))
-    rubbed = np.where(constant[:, None], mu * np.sum(t.pressure * sliding, axis=(2, 3)), shear) * cell
+    rubbed = (
+        np.where(constant[:, None], mu * np.sum(t.pressure * sliding, axis=(2, 3)), shear) * cell
+    )
     pressed = np.sum(t.pressure, axis=(2, 3)) * cell
     v = solved.values
     known = np.where(braked, v["normal_force"], v["friction_energy_per_distance"])
     long = long * energy_ratio(known, np.where(braked, pressed, rubbed))
-    lines = [wear_depth(rate, 0.0 * rate + 1.0, long, np.ones(len(rate))) for rate in _rates(solved, t, sliding)]
+    lines = [
+        wear_depth(rate, 0.0 * rate + 1.0, long, np.ones(len(rate)))
+        for rate in _rates(solved, t, sliding)
+    ]
     depth = np.stack(lines, axis=2)
     largest, place = deepest(t.x, depth)
-    largest[:, :, 0] = np.where(braked, np.nan, largest[:, :, 0])  # a roller that stands still is not overrolled
+    # a roller that stands still is not overrolled
+    largest[:, :, 0] = np.where(braked, np.nan, largest[:, :, 0])
     return {
         "_worn_depth": largest,
         "wear_place": place,
         "_worn_volume": 1e6 * depth.sum(axis=-1) * wide[..., None],
         "_gap_at_edge": _gaps_at_edges(solved, t),
         BEYOND_TABLE: _beyond_table(solved, np.hypot(t.shear_lateral, t.shear_rolling) * sliding),
-        "wear_error_estimate": ERROR.get(solved.options["contact_model"], np.nan) / t.x.shape[-1] + 0.0 * wide,
+        "wear_error_estimate": ERROR.get(solved.options["contact_model"], np.nan) / t.x.shape[-1]
+        + 0.0 * wide,
     }
 
 
 def sunk_area(depth: ArrayLike, guide_radius: ArrayLike, roller_radius: ArrayLike) -> np.ndarray:
-    """Return the area that lies between two profiles of circles when one is sunk into the other by a depth.
+    """Return the area that lies between two profiles of circles when one is sunk into the other by
+    a depth.
 
     Parameters
     ----------
@@ -255,16 +308,19 @@ def sunk_area(depth: ArrayLike, guide_radius: ArrayLike, roller_radius: ArrayLik
     guide_radius : array_like
         Radius of the convex guide, > 0 [mm].
     roller_radius : array_like
-        Radius of the roller [mm]: < 0 for a groove that is wider than the guide, > 0 convex, inf straight.
+        Radius of the roller [mm]: < 0 for a groove that is wider than the guide, > 0 convex, inf
+        straight.
 
     Returns
     -------
     numpy.ndarray
-        Segment of the guide's circle, with that of the roller's circle added (convex) or taken away (groove) [mm2].
+        Segment of the guide's circle, with that of the roller's circle added (convex) or taken away
+        (groove) [mm2].
 
     Examples
     --------
-    >>> float(sunk_area(1.0, 1.0, np.inf).round(6)) == round(np.pi / 2, 6)  # half of a circle in a straight roller
+    >>> # half of a circle in a straight roller
+    >>> float(sunk_area(1.0, 1.0, np.inf).round(6)) == round(np.pi / 2, 6)
     True
     """
     h, r, given = (np.asarray(value, dtype=float) for value in (depth, guide_radius, roller_radius))
@@ -273,7 +329,8 @@ def sunk_area(depth: ArrayLike, guide_radius: ArrayLike, roller_radius: ArrayLik
     other = np.where(straight, 1.0, np.abs(given))
     apart = np.where(groove, other - r + h, other + r - h)  # distance of the centres
     with np.errstate(divide="ignore", invalid="ignore"):
-        # distance of the common chord from the centre of the roller's profile, and from that of the guide's
+        # distance of the common chord from the centre of the roller's profile, and from that of the
+        # guide's
         far = 0.5 * (apart + (other - r) * ((other + r) / apart))
         near = np.where(straight, r - h, np.where(groove, far - apart, apart - far))
     own = _segment(r, near)
@@ -282,28 +339,38 @@ def sunk_area(depth: ArrayLike, guide_radius: ArrayLike, roller_radius: ArrayLik
 
 
 def _segment(radius: np.ndarray, distance: np.ndarray) -> np.ndarray:
-    """Return the area of a circle beyond a chord at a distance from its centre; none or all of it without a chord."""
+    """Return the area of a circle beyond a chord at a distance from its centre; none or all of it
+    without a chord.
+    """
     q = np.clip(distance / radius, -1.0, 1.0)
     return np.asarray(radius**2 * (np.arccos(q) - q * np.sqrt(1.0 - q**2)))
 
 
 def _worn_areas(solved: SolvedRollers) -> np.ndarray:
-    """Return the area that goes until the permissible depth is reached, (n, contact) [mm2]; of drawn profiles too."""
+    """Return the area that goes until the permissible depth is reached, (n, contact) [mm2]; of
+    drawn profiles too.
+    """
     c = solved.cases
     depth = c["permissible_wear_depth"]
     radii = (c["guide_profile_radius"], c["roller_profile_radius"])
     out = np.repeat(sunk_area(depth, *radii)[:, None], 2, axis=1)
     has_profile = (c["guide_profile"] != "") | (c["roller_profile"] != "")
     for case in np.flatnonzero(has_profile & ~np.isnan(depth)):
-        x = np.linspace(-1.0, 1.0, PLACES) * min(c["guide_profile_radius"][case], WIDEST * np.sqrt(depth[case]))
+        x = np.linspace(-1.0, 1.0, PLACES) * min(
+            c["guide_profile_radius"][case], WIDEST * np.sqrt(depth[case])
+        )
         for contact in range(2):
             gap = solved.unworn_gap(int(case), contact, x)
-            out[case, contact] = np.trapezoid(np.nan_to_num(np.maximum(depth[case] - (gap - np.nanmin(gap)), 0.0)), x)
+            out[case, contact] = np.trapezoid(
+                np.nan_to_num(np.maximum(depth[case] - (gap - np.nanmin(gap)), 0.0)), x
+            )
     return out
 
 
 def evaluate(solved: SolvedRollers) -> Values:
-    """Return depths, volume and life with its range, (n, contact, body), and the run-in distance [km], (n,)."""
+    """Return depths, volume and life with its range, (n, contact, body), and the run-in distance
+    [km], (n,).
+    """
     c = solved.cases
     v = solved.values
     hourly = solved.overrollings_per_hour
@@ -317,7 +384,8 @@ def evaluate(solved: SolvedRollers) -> Values:
     volume = k * v["_worn_volume"]
     travel = c["velocity"] * KM_PER_HOUR
     per_km = depth * (hourly / travel[:, None])[:, None, :]
-    counted = np.where(np.isnan(hourly)[:, None, :], 0.0, per_km)  # a guide without overrollings does not count
+    # a guide without overrollings does not count
+    counted = np.where(np.isnan(hourly)[:, None, :], 0.0, per_km)
     with np.errstate(divide="ignore", invalid="ignore"):
         run_in = np.min(v["_gap_at_edge"] / np.max(counted, axis=2), axis=1)
         by_depth = c["permissible_wear_depth"][:, None, None] / (depth * hourly[:, None, :])
@@ -337,10 +405,14 @@ def evaluate(solved: SolvedRollers) -> Values:
 
 
 def verdict(solved: SolvedRollers, results: Values) -> Verdict:
-    """Return the required travel over the travel to the permissible depth, and the hours, (n, body)."""
+    """Return the required travel over the travel to the permissible depth, and the hours, (n,
+    body).
+    """
     hours, low, high = (-worst(-results[f"wear_life_hours{end}"]) for end in ("", "_low", "_high"))
     with np.errstate(divide="ignore"):
-        used = solved.cases["required_travel"][:, None] / (hours * (solved.cases["velocity"] * KM_PER_HOUR)[:, None])
+        used = solved.cases["required_travel"][:, None] / (
+            hours * (solved.cases["velocity"] * KM_PER_HOUR)[:, None]
+        )
     return Verdict(used, hours, life_low=low, life_high=high)
 
 
@@ -349,7 +421,9 @@ def check(given: dict[str, Any]) -> None:
     lengths = {key: len(values) for key, values in given.items()}
     if len(set(lengths.values())) > 1 or min(lengths.values()) < 2:
         listed = ", ".join(f"{key} {length}" for key, length in lengths.items())
-        raise InputError("wear_table", f"numbers of entries: {listed}", "lists of equal length, at least 2")
+        raise InputError(
+            "wear_table", f"numbers of entries: {listed}", "lists of equal length, at least 2"
+        )
     if np.any(np.diff(given["work_rate"]) <= 0.0):
         raise InputError("wear_table.work_rate", given["work_rate"], "work rates that rise")
 
@@ -358,11 +432,20 @@ BODIES = ("roller", "guide")
 _CB = ("contact", "body")
 TABLE = MappingField(
     "wear_table",
-    "for wear_law: energy, loss of mass of each body [ug/(m mm2)] over the frictional work [N/mm2], such as the "
-    "railway values for wheel R8T on rail 900A, to be checked before use: {work_rate: [0, 10.4, 77.2, 100], roller: "
+    "for wear_law: energy, loss of mass of each body [ug/(m mm2)] over the frictional work "
+    "[N/mm2], such as the "
+    "railway values for wheel R8T on rail 900A, to be checked before use: {work_rate: [0, "
+    "10.4, 77.2, 100], roller: "
     "[0, 55, 55, 1466], guide: [0, 55, 55, 1466]}",
     lists=(
-        optional("work_rate", "T gamma/A", "N/mm2", "frictional work per area and distance", 0.0, closed=True),
+        optional(
+            "work_rate",
+            "T gamma/A",
+            "N/mm2",
+            "frictional work per area and distance",
+            0.0,
+            closed=True,
+        ),
         optional("roller", "", "ug/(m mm2)", "loss of mass of the roller", 0.0, closed=True),
         optional("guide", "", "ug/(m mm2)", "loss of mass of the guide", 0.0, closed=True),
     ),
@@ -374,18 +457,47 @@ LIMIT = Limit(
     title="wear (permissible depth)",
     short="wear",
     group="wear",
-    meaning="depth and volume of wear, travel until the groove has changed, life to the permissible depth",
+    meaning="depth and volume of wear, travel until the groove has changed, life to the "
+    "permissible depth",
     shared=of_mechanics,
     evaluate=evaluate,
     verdict=verdict,
     needs=("friction_work", TRACTIONS),
     results=variables(
         "wear",
-        ("wear_depth_per_overrolling", _CB, "mm", "delta", "largest depth that an overrolling wears off", LARGEST),
-        ("wear_depth_per_km", _CB, "mm km-1", "", "largest depth that is worn off per km of travel", LARGEST),
+        (
+            "wear_depth_per_overrolling",
+            _CB,
+            "mm",
+            "delta",
+            "largest depth that an overrolling wears off",
+            LARGEST,
+        ),
+        (
+            "wear_depth_per_km",
+            _CB,
+            "mm km-1",
+            "",
+            "largest depth that is worn off per km of travel",
+            LARGEST,
+        ),
         ("wear_place", _CB, "mm", "x_C", "lateral place of the largest wear depth", {"odd": True}),
-        ("wear_volume_per_km", _CB, "mm3 km-1", "V", "volume that is worn off per km of travel", SUM),
-        ("wear_error_estimate", ("contact",), "1", "", "estimated relative error of the wear depth", ESTIMATE),
+        (
+            "wear_volume_per_km",
+            _CB,
+            "mm3 km-1",
+            "V",
+            "volume that is worn off per km of travel",
+            SUM,
+        ),
+        (
+            "wear_error_estimate",
+            ("contact",),
+            "1",
+            "",
+            "estimated relative error of the wear depth",
+            ESTIMATE,
+        ),
         (
             "run_in_distance",
             (),
@@ -407,7 +519,8 @@ LIMIT = Limit(
             _CB,
             "h",
             "",
-            "low end of the hours to the permissible wear depth, over closed forms and placeholders",
+            "low end of the hours to the permissible wear depth, over closed forms and "
+            "placeholders",
             SMALLEST | LIFE | {"end": "low", "label": "wear life, low end"},
         ),
         (
@@ -415,18 +528,27 @@ LIMIT = Limit(
             _CB,
             "h",
             "",
-            "high end of the hours to the permissible wear depth, over closed forms and placeholders",
+            "high end of the hours to the permissible wear depth, over closed forms and "
+            "placeholders",
             SMALLEST | LIFE | {"end": "high", "label": "wear life, high end"},
         ),
     ),
     parameters=(
-        optional("permissible_wear_depth", "h_zul", "mm", "permissible wear depth of roller and guide", 0.0, 1e3),
+        optional(
+            "permissible_wear_depth",
+            "h_zul",
+            "mm",
+            "permissible wear depth of roller and guide",
+            0.0,
+            1e3,
+        ),
         Parameter(
             "travel",
             "s",
             "km",
             0.0,
-            "travel after which the worn profiles are solved, with normal: halfspace; 0 for new ones",
+            "travel after which the worn profiles are solved, with normal: halfspace; 0 for new "
+            "ones",
             0.0,
             1e9,
             role="condition",
@@ -437,20 +559,26 @@ LIMIT = Limit(
             "f_k",
             "-",
             math.nan,
-            "factor on the wear coefficients of both bodies, which replaces the ranges of their placeholders",
+            "factor on the wear coefficients of both bodies, which replaces the ranges of their "
+            "placeholders",
             0.0,
             1e6,
             allow_missing=True,
             role="condition",
         ),
     ),
-    materials=(optional("wear_coefficient", "k_W", "mm3/(N m)", "wear coefficient", 0.0, 1.0, closed=True),),
+    materials=(
+        optional("wear_coefficient", "k_W", "mm3/(N m)", "wear coefficient", 0.0, 1.0, closed=True),
+    ),
     mappings=(TABLE,),
     requires=("permissible_wear_depth", "guide_overrollings_per_hour"),
-    requires_by={"wear_law": {"archard": ("wear_coefficient",), "energy": ("wear_table", "density")}},
+    requires_by={
+        "wear_law": {"archard": ("wear_coefficient",), "energy": ("wear_table", "density")}
+    },
     compares=("wear_depth_per_km", "wear that allows the required travel"),
     assumes=(
-        "Wear: the life lies between the rate of the new profiles and the worn area over the worn volume; no wear "
+        "Wear: the life lies between the rate of the new profiles and the worn area over the "
+        "worn volume; no wear "
         "coefficient depends on pressure, speed or temperature.",
     ),
 )

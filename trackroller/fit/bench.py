@@ -1,13 +1,15 @@
 """Fit values of a material to rollers on a bench: travel, and what ended each test.
 
-Each row is solved once. Its stresses do not depend on the values that are fitted, so a life follows from the S-N line
-for any of them, and a travel to a wear depth is inversely proportional to the wear coefficient.
+Each row is solved once. Its stresses do not depend on the values that are fitted, so a life follows
+from the S-N line for any of them, and a travel to a wear depth is inversely proportional to the
+wear coefficient.
 
 An end by another mode, or by the other body, is a suspension: the roller had lived that long.
 
-ASSUME: the scatter belongs to the body. Where the table does not say in which contact it failed, the contact with the
-shorter life counts, as everywhere in the program; where it says so, the other contact is a suspension.
-ASSUME: stresses are those of new profiles; friction, wear and fatigue are independent of each other.
+ASSUME: the scatter belongs to the body. Where the table does not say in which contact it failed,
+the contact with the shorter life counts, as everywhere in the program; where it says so, the other
+contact is a suspension. ASSUME: stresses are those of new profiles; friction, wear and fatigue are
+independent of each other.
 """
 
 from __future__ import annotations
@@ -47,7 +49,8 @@ FITTED = ("fatigue_strength", "slope", "scatter", "wear_coefficient", "friction_
 OWN = ("test", "base", "travel_from", "travel_to", "end", "contact", "drive_force", "note")
 COLUMNS = (*OWN, *PARAMETERS, *MATERIAL_FIELDS, *ALIASES)
 MODES = ("fatigue", *(name for name in LIMITS if name != "fatigue"), "other")
-FRICTIONS = (0.01, 0.03, 0.06, 0.1, 0.15, 0.2, 0.3, 0.4, 0.55, 0.7, 0.9)  # at which a drive force is solved
+# at which a drive force is solved
+FRICTIONS = (0.01, 0.03, 0.06, 0.1, 0.15, 0.2, 0.3, 0.4, 0.55, 0.7, 0.9)
 UNIT_WEAR = 1e-6  # wear coefficient with which travels to a depth are computed [mm3/(N m)]
 LONGEST = 50_000.0  # h: nearly six years without a stop
 FLAG = {name: 1 << place for place, name in enumerate(VALIDITY)}
@@ -80,13 +83,14 @@ def fit_bench(  # noqa: PLR0913 - one argument for each choice of a fit
     Parameters
     ----------
     table : path, data frame, list of mappings or mapping of columns
-        One roller a row. `travel_from` and `travel_to` [km] hold the travel between which it ended, `end` says how:
-        "fatigue roller", "wear roller 0.05 mm", another limit such as "bearing", or "none" for a roller that was
-        stopped whole at `travel_from`. `base` names a case file; parameters of a case are further columns. `contact`
-        (1 or 2) says which contact failed, and `drive_force` [N] the force that moved a roller without motor.
+        One roller a row. `travel_from` and `travel_to` [km] hold the travel between which it ended,
+        `end` says how: "fatigue roller", "wear roller 0.05 mm", another limit such as "bearing", or
+        "none" for a roller that was stopped whole at `travel_from`. `base` names a case file;
+        parameters of a case are further columns. `contact` (1 or 2) says which contact failed, and
+        `drive_force` [N] the force that moved a roller without motor.
     fit : sequence of str or str
-        What is fitted: "fatigue_strength", "slope", "scatter", "wear_coefficient", "friction_coefficient". Slope and
-        scatter that are not named are those of the material.
+        What is fitted: "fatigue_strength", "slope", "scatter", "wear_coefficient",
+        "friction_coefficient". Slope and scatter that are not named are those of the material.
     name : str
         Name of the material that is made; by default that of the tested body with "fitted".
     body : str, optional
@@ -103,8 +107,8 @@ def fit_bench(  # noqa: PLR0913 - one argument for each choice of a fit
     Returns
     -------
     Fit
-        `.material`, `.data`, `.interval(...)` and `.report(path)`. The values hold for the contact model, the life
-        criterion and the accuracy of the fit.
+        `.material`, `.data`, `.interval(...)` and `.report(path)`. The values hold for the contact
+        model, the life criterion and the accuracy of the fit.
 
     Raises
     ------
@@ -115,7 +119,8 @@ def fit_bench(  # noqa: PLR0913 - one argument for each choice of a fit
     --------
     >>> import trackroller as tr
     >>> ends = ["fatigue roller"] * 4 + ["none"]
-    >>> bench = {"radial_force": [-200, -200, -160, -160, -130], "travel_from": [15, 22, 40, 60, 150], "end": ends}
+    >>> bench = {"radial_force": [-200, -200, -160, -160, -130], "end": ends}
+    >>> bench["travel_from"] = [15, 22, 40, 60, 150]
     >>> bench["travel_to"] = [15, 22, 40, 60, None]
     >>> rig = {"motor_force": 0, "friction_coefficient": 0.1, "contact_model": "sliding"}
     >>> fit = tr.fit_bench(bench, "fatigue_strength, scatter", base=rig)
@@ -130,10 +135,17 @@ def fit_bench(  # noqa: PLR0913 - one argument for each choice of a fit
     constants: dict[str, float | None] = {"slope": slope, "scatter": scatter_in_cycles}
     values = [name for name in values if constants.get(name) is None]
     if not values:
-        raise InputError("fit", fit, "at least one value that is not held", "Name fatigue_strength as well.")
+        raise InputError(
+            "fit", fit, "at least one value that is not held", "Name fatigue_strength as well."
+        )
     if body is not None:
         check_names("body", [body], BODIES)
-    rows = read_tests(table, ("travel_from", "end"), COLUMNS, [n for n in COLUMNS if n not in ("travel_from", "end")])
+    rows = read_tests(
+        table,
+        ("travel_from", "end"),
+        COLUMNS,
+        [n for n in COLUMNS if n not in ("travel_from", "end")],
+    )
     _check_names_once(rows)
     ends = [_end(rows, row) for row in rows]
     travels = [_travel(rows, row, ends[row]) for row in rows]
@@ -154,24 +166,45 @@ def fit_bench(  # noqa: PLR0913 - one argument for each choice of a fit
         groups.append(_wear(rows, ends, travels, cases, options, tested))
     if "friction_coefficient" in values:
         groups.append(_friction(rows, cases, options))
-    given = {key: str(options.get(key, default)) for key, default in DEFAULTS.items()} | {"body": tested}
-    notes = ["The values hold for the contact model, the life criterion and the accuracy of the fit."]
+    given = {key: str(options.get(key, default)) for key, default in DEFAULTS.items()} | {
+        "body": tested
+    }
+    notes = [
+        "The values hold for the contact model, the life criterion and the accuracy of the fit."
+    ]
     if "wear_coefficient" in values:
         notes.append(
-            "Travels to a depth are the mean of the two closed forms of the limit wear; `trackroller fit wear` follows "
+            "Travels to a depth are the mean of the two closed forms of the limit wear; "
+            "`trackroller fit wear` follows "
             "the profile of one groove instead."
         )
     if "friction_coefficient" in values and len(groups) > 1:
-        notes.append("The rows were solved with the friction that they state, not with the fitted one.")
+        notes.append(
+            "The rows were solved with the friction that they state, not with the fitted one."
+        )
     notes += _outside(rows, solved, tested)
     name = name or f"{material.name} fitted"
-    return Fit("bench", name, tuple(groups), rows, like or material.name, given, notes, not_given_notes(cases))
+    return Fit(
+        "bench",
+        name,
+        tuple(groups),
+        rows,
+        like or material.name,
+        given,
+        notes,
+        not_given_notes(cases),
+    )
 
 
 def check_base(base: Any) -> None:
     """Refuse a base that is no mapping; None stands for the paper's example."""
     if base is not None and not isinstance(base, Mapping):
-        raise InputError("base", base, "a mapping with fields of a case and options", "Give the values themselves.")
+        raise InputError(
+            "base",
+            base,
+            "a mapping with fields of a case and options",
+            "Give the values themselves.",
+        )
 
 
 def _values_to_fit(fit: Sequence[str] | str) -> list[str]:
@@ -208,7 +241,9 @@ def _end(rows: TestTable, row: int) -> End:
     words = rows.text(row, "end").lower().split()
     if words in (["none"], ["run-out"], ["runout"], ["run", "out"], ["suspended"]):
         return End("none")
-    allowed = f"none, or how it ended: {', '.join(MODES)}; then roller or guide, such as 'fatigue roller'"
+    allowed = (
+        f"none, or how it ended: {', '.join(MODES)}; then roller or guide, such as 'fatigue roller'"
+    )
     if not words or words[0] not in MODES:
         raise rows.error(row, "end", allowed, "Correct the cell.")
     mode = words[0]
@@ -231,14 +266,19 @@ def _end(rows: TestTable, row: int) -> End:
     except InputError:
         raise rows.error(row, "end", "a depth as a length", remedy) from None
     if not 0 < depth <= DEEPEST:
-        raise rows.error(row, "end", f"a finite depth above 0 and of at most {DEEPEST:g} mm", remedy)
+        raise rows.error(
+            row, "end", f"a finite depth above 0 and of at most {DEEPEST:g} mm", remedy
+        )
     return End(mode, body, depth)
 
 
 def _travel(rows: TestTable, row: int, end: End) -> tuple[float, float]:
     """Return the travels between which a test ended [km]; the second is inf for a suspension."""
     low = rows.number(row, "travel_from", 0.0)
-    whole = "Write the travel of the end, or end = none and an empty travel_to for a roller that was stopped whole."
+    whole = (
+        "Write the travel of the end, or end = none and an empty travel_to for a roller that "
+        "was stopped whole."
+    )
     high = rows.number(row, "travel_to", LEAST, remedy=whole)
     if math.isnan(low):
         raise rows.error(row, "travel_from", "a travel [km]; the cell is empty", "Fill the cell.")
@@ -247,13 +287,19 @@ def _travel(rows: TestTable, row: int, end: End) -> tuple[float, float]:
             remedy = "Leave travel_to empty, or say how the roller ended."
             raise rows.error(row, "travel_to", "no travel, because the roller did not end", remedy)
         if low == 0:
-            raise rows.error(row, "travel_from", "the travel at which the test was stopped, above 0")
+            raise rows.error(
+                row, "travel_from", "the travel at which the test was stopped, above 0"
+            )
         return low, math.inf
     if math.isnan(high):
         remedy = "Write the travel of the end; it equals travel_from if the end was observed."
-        raise rows.error(row, "travel_to", "a travel [km], because the roller ended; the cell is empty", remedy)
+        raise rows.error(
+            row, "travel_to", "a travel [km], because the roller ended; the cell is empty", remedy
+        )
     if high < low:
-        raise rows.error(row, "travel_to", f"a travel of at least travel_from = {low:g} km", "Swap the two.")
+        raise rows.error(
+            row, "travel_to", f"a travel of at least travel_from = {low:g} km", "Swap the two."
+        )
     return low, high
 
 
@@ -266,22 +312,28 @@ def _cases(rows: TestTable, base: Mapping[str, Any] | None) -> tuple[list[Case],
     folder = rows.path or Path("tests.csv")
     for row in rows:
         file = rows.text(row, "base")
-        own = {name: cell for name, cell in rows.rows[row].items() if name not in OWN and rows.text(row, name) != ""}
+        own = {
+            name: cell
+            for name, cell in rows.rows[row].items()
+            if name not in OWN and rows.text(row, name) != ""
+        }
         with wrong.part():
             try:
                 with files_beside(folder):
                     if file and file not in read:
                         read[file] = dict(read_mapping(find_beside(file, "base"), "case file"))
                     values = overridden(read.get(file, {}) | dict(base or {}), own)
-                    case, one, _ = checked_case({k: v for k, v in values.items() if k not in BESIDE})
+                    case, one, _ = checked_case(
+                        {k: v for k, v in values.items() if k not in BESIDE}
+                    )
                     _check_empty(rows, row, case)
             except InputError as error:
                 if error.field in rows.rows[row]:
-                    place = error.field
+                    field = error.field
                 else:
-                    place = "base" if file else "case"
+                    field = "base" if file else "case"
                 raise (
-                    error.named(f"row {rows.lines[row]}, {place}") if rows.path is None else
+                    error.named(f"row {rows.lines[row]}, {field}") if rows.path is None else
                     error.at(rows.path, rows.lines[row])
                 ) from None  # fmt: skip
             cases.append(case)
@@ -295,12 +347,16 @@ def _cases(rows: TestTable, base: Mapping[str, Any] | None) -> tuple[list[Case],
     rule = options[0].get("life_rule", "elementary")
     if rule != "elementary":
         remedy = "Fit the line with life_rule elementary; a case may take another rule afterwards."
-        raise InputError("life_rule", rule, "elementary, because the fitted line is straight", remedy)
+        raise InputError(
+            "life_rule", rule, "elementary, because the fitted line is straight", remedy
+        )
     return cases, options[0]
 
 
 def _check_empty(rows: TestTable, row: int, case: Case) -> None:
-    """Refuse empty cells of parameters that nothing else gives: they would be those of the paper's example."""
+    """Refuse empty cells of parameters that nothing else gives: they would be those of the paper's
+    example.
+    """
     for name in rows.rows[row]:
         if name in case.not_given:
             remedy = "Fill the cell, or give the value in the file of the column base."
@@ -324,7 +380,9 @@ def _body_of(rows: TestTable, ends: Sequence[End], values: Collection[str]) -> s
     failed = {end.body for end in ends if end.mode in modes and end.body}
     if len(failed) > 1:
         row = next(row for row, end in enumerate(ends) if end.mode in modes and end.body == "guide")
-        remedy = "Choose one with --body roller or --body guide; ends of the other one are suspensions."
+        remedy = (
+            "Choose one with --body roller or --body guide; ends of the other one are suspensions."
+        )
         raise rows.error(row, "end", "ends of one body; rollers and guides failed", remedy)
     if not failed:
         return "roller"
@@ -338,7 +396,9 @@ def _material_of(rows: TestTable, cases: Sequence[Case], body: str) -> Material:
     for row, material in enumerate(used):
         if material != used[0]:
             remedy = "Fit each material from a table of its own."
-            allowed = f"one material of the {body}; the table mixes it with that of row {rows.lines[0]}"
+            allowed = (
+                f"one material of the {body}; the table mixes it with that of row {rows.lines[0]}"
+            )
             column = "base"
             if field in rows.rows[row]:
                 column = field
@@ -346,25 +406,36 @@ def _material_of(rows: TestTable, cases: Sequence[Case], body: str) -> Material:
     return load_database().material(used[0], field)
 
 
-def _check_hours(rows: TestTable, travels: Sequence[tuple[float, float]], cases: Sequence[Case]) -> None:
-    """Refuse a travel that would take years without a stop, which is rather a number of overrollings."""
+def _check_hours(
+    rows: TestTable, travels: Sequence[tuple[float, float]], cases: Sequence[Case]
+) -> None:
+    """Refuse a travel that would take years without a stop, which is rather a number of
+    overrollings.
+    """
     remedy = "Write km, not a number of overrollings, or correct the speed."
     for row, (ends, case) in enumerate(zip(travels, cases, strict=True)):
         for column, travel in zip(("travel_from", "travel_to"), ends, strict=True):
             hours = travel / (KM_PER_HOUR * case.velocity)
             if LONGEST < hours < math.inf:  # an infinite travel_to is that of a suspension
                 speed = f"{case.velocity:g} m/min"
-                allowed = f"a travel of at most {LONGEST:g} h without a stop; this one takes {hours:.3g} h at {speed}"
+                allowed = (
+                    f"a travel of at most {LONGEST:g} h without a stop; this one takes "
+                    f"{hours:.3g} h at {speed}"
+                )
                 raise rows.error(row, column, allowed, remedy)
 
 
-def _solved(rows: TestTable, cases: Sequence[Case], options: Mapping[str, Any], body: str) -> Solved:
+def _solved(
+    rows: TestTable, cases: Sequence[Case], options: Mapping[str, Any], body: str
+) -> Solved:
     """Solve the rows, and refuse one that does not roll, or whose body breaks at once."""
     solved = solved_rollers(cases, options)
     words = {"lift_off": "lifts off", "full_slip": "slips fully", "failed": "has no solution"}
     for row, regime in enumerate(solved.regime):
         if regime != "rolling":
-            loads = [n for n in ("radial_force", "axial_force", "motor_force") if n in rows.rows[row]]
+            loads = [
+                n for n in ("radial_force", "axial_force", "motor_force") if n in rows.rows[row]
+            ]
             allowed = "loads under which both contacts roll"
             remedy = "Correct the loads, or remove the row."
             column = loads[0] if loads else "base"
@@ -376,7 +447,13 @@ def _solved(rows: TestTable, cases: Sequence[Case], options: Mapping[str, Any], 
             if "radial_force" in rows.rows[row]:
                 column = "radial_force"
             wrong = f"gives the {body} a stress of {stress:.4g} MPa, above its tensile strength"
-            raise rows.error(row, column, "loads under which the body does not break", "Correct the loads.", wrong)
+            raise rows.error(
+                row,
+                column,
+                "loads under which the body does not break",
+                "Correct the loads.",
+                wrong,
+            )
     return solved
 
 
@@ -384,9 +461,15 @@ def _outside(rows: TestTable, solved: Solved, body: str) -> list[str]:
     """Return notes on rows whose stresses lie outside the model."""
     notes = []
     for name in ("half_space", "conformal"):
-        lines = [str(rows.lines[row]) for row in rows if solved.flags[row, BODIES.index(body)] & FLAG[name]]
+        lines = [
+            str(rows.lines[row])
+            for row in rows
+            if solved.flags[row, BODIES.index(body)] & FLAG[name]
+        ]
         if lines:
-            notes.append(f"In row {listing(lines)} {VALIDITY[name].words}: the stress is an estimate.")
+            notes.append(
+                f"In row {listing(lines)} {VALIDITY[name].words}: the stress is an estimate."
+            )
     return notes
 
 
@@ -435,7 +518,9 @@ def _fatigue(
             origin.append(row)
     known = np.isfinite(np.array(low)) | np.isfinite(np.array(high))
     tests = Tests(np.array(stress)[known], np.array(low)[known], np.array(high)[known])
-    return _fatigue_group(rows, tests, tuple(np.array(origin)[known].tolist()), material, constants, prior)
+    return _fatigue_group(
+        rows, tests, tuple(np.array(origin)[known].tolist()), material, constants, prior
+    )
 
 
 def _fatigue_group(
@@ -450,14 +535,25 @@ def _fatigue_group(
     scatter = constants["scatter"]
     last = len(rows) - 1
     if not tests.failed.any() and (slope is None or scatter is None):
-        remedy = "Hold slope and scatter (--slope 8 --scatter 4) for a one-sided bound, or test until a roller fails."
-        raise rows.error(last, "end", "at least one end by fatigue of the body", remedy, "ends no test by fatigue")
+        remedy = (
+            "Hold slope and scatter (--slope 8 --scatter 4) for a one-sided bound, or test "
+            "until a roller fails."
+        )
+        raise rows.error(
+            last,
+            "end",
+            "at least one end by fatigue of the body",
+            remedy,
+            "ends no test by fatigue",
+        )
     if slope is None and np.ptp(tests.stress[tests.failed]) < 1e-3:
         remedy = "Hold it (--slope 8), leave slope out of the fit, or test another load to failure."
         column = "base"
         if "radial_force" in rows.rows[last]:
             column = "radial_force"
-        raise rows.error(last, column, "failures at two loads or more, from which the slope follows", remedy)
+        raise rows.error(
+            last, column, "failures at two loads or more, from which the slope follows", remedy
+        )
     if slope is None:
         check_falls(rows, tests, "travel_from", origin)
     line = Line(tests, slope=slope, scatter=scatter, specimens=len(set(origin)))
@@ -465,7 +561,9 @@ def _fatigue_group(
         remedy = "Test more rollers, or fit fewer values."
         allowed = f"more rows than the {len(line.free)} fitted values"
         raise rows.placed(InputError("tests", len(rows), allowed, remedy))
-    return Group("fatigue", line, priors_of(prior), at=material.cycles_at_fatigue_limit, rows=origin)
+    return Group(
+        "fatigue", line, priors_of(prior), at=material.cycles_at_fatigue_limit, rows=origin
+    )
 
 
 def _scatter_of(material: Material, constant: float | None) -> float:
@@ -477,7 +575,10 @@ def _scatter_of(material: Material, constant: float | None) -> float:
     if t_n is None and t_s is None:
         remedy = "Hold it with --scatter 4 (scatter_in_cycles=4), or fit it as well."
         raise InputError(
-            f"material '{material.name}'.scatter_in_cycles", None, "the scatter T_N, which is held", remedy
+            f"material '{material.name}'.scatter_in_cycles",
+            None,
+            "the scatter T_N, which is held",
+            remedy,
         )
     if t_n is not None:
         cycles = t_n
@@ -494,16 +595,22 @@ def _wear(
     options: Mapping[str, Any],
     body: str,
 ) -> Group:
-    """Return the line of wear of a body: ln of the travel over that of the unit wear coefficient."""
+    """Return the line of wear of a body: ln of the travel over that of the unit wear
+    coefficient.
+    """
     depths = [float(case.permissible_wear_depth or math.nan) for case in cases]
     for row, end in enumerate(ends):
         if end.mode == "wear" and end.body == body:
             depths[row] = end.depth
     used = [row for row in rows if not math.isnan(depths[row]) and depths[row] > 0]
     if not any(ends[row].mode == "wear" and ends[row].body == body for row in used):
-        remedy = f"Leave wear_coefficient out of the fit, or write ends such as wear {body} 0.05 mm."
+        remedy = (
+            f"Leave wear_coefficient out of the fit, or write ends such as wear {body} 0.05 mm."
+        )
         raise rows.error(len(rows) - 1, "end", f"at least one end by wear of the {body}", remedy)
-    unit = travels_to_depths([cases[row] for row in used], options, body, [depths[row] for row in used])
+    unit = travels_to_depths(
+        [cases[row] for row in used], options, body, [depths[row] for row in used]
+    )
     low = []
     high = []
     for row, km in zip(used, unit, strict=True):
@@ -516,7 +623,9 @@ def _wear(
 
 
 def wear_group(low: np.ndarray, high: np.ndarray, rows: tuple[int, ...]) -> Group:
-    """Return the line of wear from ln of travels over those of the unit coefficient, each of shape (n,)."""
+    """Return the line of wear from ln of travels over those of the unit coefficient, each of shape
+    (n,).
+    """
     known = np.isfinite(low) | np.isfinite(high)
     tests = Tests(np.zeros(int(known.sum())), low[known], high[known])
     scatter = None
@@ -532,7 +641,8 @@ HELD_SCATTER = 0.4  # of ln travel to a depth, where one depth alone was measure
 def travels_to_depths(
     cases: Sequence[Case], options: Mapping[str, Any], body: str, depths: Sequence[float]
 ) -> np.ndarray:
-    """Return the travels at which new grooves reach depths with the unit wear coefficient [km], (n,).
+    """Return the travels at which new grooves reach depths with the unit wear coefficient [km],
+    (n,).
 
     Parameters
     ----------
@@ -547,11 +657,12 @@ def travels_to_depths(
 
     Notes
     -----
-    The value of the limit `wear`, the mean of its two closed forms. The travel to a depth is inversely proportional to
-    the wear coefficient, because forces and profiles do not depend on it.
+    The value of the limit `wear`, the mean of its two closed forms. The travel to a depth is
+    inversely proportional to the wear coefficient, because forces and profiles do not depend on it.
     """
     rollers = [
-        worn_alone(case, body) | {"permissible_wear_depth": depth} for case, depth in zip(cases, depths, strict=True)
+        worn_alone(case, body) | {"permissible_wear_depth": depth}
+        for case, depth in zip(cases, depths, strict=True)
     ]
     ds = solve(rollers, **{**options, "outputs": ("forces", "wear")})
     hours = ds["wear_life_hours"].sel(body=body).min("contact").values
@@ -559,7 +670,9 @@ def travels_to_depths(
 
 
 def worn_alone(case: Case, body: str) -> dict[str, Any]:
-    """Return the fields of a case whose body wears with the unit coefficient, and whose other body hardly wears."""
+    """Return the fields of a case whose body wears with the unit coefficient, and whose other body
+    hardly wears.
+    """
     values = {name: getattr(case, name) for name in FIELDS}
     database = load_database()
     for own in BODIES:
@@ -570,7 +683,9 @@ def worn_alone(case: Case, body: str) -> dict[str, Any]:
 
 
 def _friction(rows: TestTable, cases: Sequence[Case], options: Mapping[str, Any]) -> Group:
-    """Return the line of friction: ln of the coefficient by which each roller needs its measured drive force."""
+    """Return the line of friction: ln of the coefficient by which each roller needs its measured
+    drive force.
+    """
     coefficients = []
     used = []
     for row in rows:
@@ -579,7 +694,9 @@ def _friction(rows: TestTable, cases: Sequence[Case], options: Mapping[str, Any]
             continue
         if cases[row].motor_force != 0:
             remedy = "Set motor_force to 0 in this row, or leave drive_force empty."
-            raise rows.error(row, "drive_force", "a force that moves a roller without motor", remedy)
+            raise rows.error(
+                row, "drive_force", "a force that moves a roller without motor", remedy
+            )
         coefficients.append(_friction_of(rows, row, cases[row], options, force))
         used.append(row)
     if len(coefficients) < 2:
@@ -590,10 +707,15 @@ def _friction(rows: TestTable, cases: Sequence[Case], options: Mapping[str, Any]
     return Group("friction", line, rows=tuple(used))
 
 
-def _friction_of(rows: TestTable, row: int, case: Case, options: Mapping[str, Any], force: float) -> float:
+def _friction_of(
+    rows: TestTable, row: int, case: Case, options: Mapping[str, Any], force: float
+) -> float:
     """Return ln of the friction coefficient at which a roller needs a drive force."""
     values = {name: getattr(case, name) for name in FIELDS}
-    ds = solve([values | {"friction_coefficient": mu} for mu in FRICTIONS], **{**options, "outputs": ("forces",)})
+    ds = solve(
+        [values | {"friction_coefficient": mu} for mu in FRICTIONS],
+        **{**options, "outputs": ("forces",)},
+    )
     needed = np.abs(ds["transmitted_force"].values)
     rolls = np.isfinite(needed) & (ds["regime"].values == REGIMES.index("rolling"))
     needed = needed[rolls]
@@ -605,6 +727,9 @@ def _friction_of(rows: TestTable, row: int, case: Case, options: Mapping[str, An
         allowed = "a roller that rolls"
         if needed.size:
             allowed = f"a force from {needed.min():.3g} to {needed.max():.3g} N"
-        remedy = f"The model needs it for frictions from {FRICTIONS[0]} to {FRICTIONS[-1]}; check force and loads."
+        remedy = (
+            f"The model needs it for frictions from {FRICTIONS[0]} to {FRICTIONS[-1]}; check "
+            "force and loads."
+        )
         raise rows.error(row, "drive_force", allowed, remedy)
     return float(np.interp(math.log(force), np.log(needed), np.log(coefficient)))

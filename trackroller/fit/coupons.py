@@ -1,11 +1,12 @@
 """Fit the S-N line of a material to coupons: amplitude, cycles, failed or run-out.
 
-How the line enters a life of a roller: the program takes the peak von Mises stress of an overrolling as a fully
-reversed amplitude. The amplitude of a coupon under bending or axial load equals its von Mises amplitude, and that of a
-coupon under torsion is multiplied by sqrt(3). A mean stress of the coupons is not corrected, and neither is their size.
+How the line enters a life of a roller: the program takes the peak von Mises stress of an
+overrolling as a fully reversed amplitude. The amplitude of a coupon under bending or axial load
+equals its von Mises amplitude, and that of a coupon under torsion is multiplied by sqrt(3). A mean
+stress of the coupons is not corrected, and neither is their size.
 
-The fitted line is free of the tensile strength: sigma_D, N_k and k define it, and the cycles N_Rm, at which it reaches
-R_m, follow from them.
+The fitted line is free of the tensile strength: sigma_D, N_k and k define it, and the cycles N_Rm,
+at which it reaches R_m, follow from them.
 """
 
 from __future__ import annotations
@@ -23,7 +24,14 @@ from trackroller.fit.fitted import Fit, Group, check_texts
 from trackroller.fit.heads import OF_COUPONS, has_failed, only_marks, says_how, told_heads
 from trackroller.fit.line import BOUNDS, Line, Tests
 from trackroller.fit.posterior import Normal, ln_range
-from trackroller.fit.table import LEAST, LEAST_STRESS, MOST_CYCLES, MOST_STRESS, TestTable, read_tests
+from trackroller.fit.table import (
+    LEAST,
+    LEAST_STRESS,
+    MOST_CYCLES,
+    MOST_STRESS,
+    TestTable,
+    read_tests,
+)
 from trackroller.numerics.numbers import finite_number, number_or_nan
 from trackroller.numerics.plain import plain
 
@@ -33,14 +41,18 @@ LOAD_TYPES = {
     "rotating bending": (1.0, "the bending amplitude is taken as von Mises amplitude"),
     "bending": (1.0, "the bending amplitude is taken as von Mises amplitude"),
     "axial": (1.0, "the axial amplitude is the von Mises amplitude"),
-    "torsion": (math.sqrt(3.0), "sqrt(3) times the amplitude of the shear stress is the von Mises amplitude"),
+    "torsion": (
+        math.sqrt(3.0),
+        "sqrt(3) times the amplitude of the shear stress is the von Mises amplitude",
+    ),
     "rolling contact": (1.0, "the amplitude is the peak von Mises stress of an overrolling"),
 }
 FEWEST_CYCLES = 1_000.0  # below it, a number of cycles that is not whole may be a travel
 STOPPED = "Correct the cell; of a run-out, write the cycles at which the specimen was stopped."
 TRAVEL = "If it is a travel in km, fit rollers with `trackroller fit bench`."
 NO_LIMIT = (
-    "No fatigue limit makes the tests likelier than the line alone, on which run-outs are long lives: the line was "
+    "No fatigue limit makes the tests likelier than the line alone, on which run-outs are "
+    "long lives: the line was "
     "fitted without a limit."
 )
 DEFAULT_KNEE = 2e6  # cycles at which a line without run-outs states its strength
@@ -59,18 +71,21 @@ def fit_sn(  # noqa: PLR0913 - one argument for each choice of a fit
     like: str | None = None,
     prior: Mapping[str, Sequence[float]] | None = None,
 ) -> Fit:
-    """Fit an S-N line with its scatter, and with its fatigue limit if specimens ran out, to a table of coupons.
+    """Fit an S-N line with its scatter, and with its fatigue limit if specimens ran out, to a table
+    of coupons.
 
     Parameters
     ----------
     table : path, data frame, list of mappings or mapping of columns
-        Columns `amplitude [MPa]`, `cycles` and `failed` (yes or no), and if wanted `group`, `test` and `note`. A column
-        `censored` or `runout` is the opposite of `failed`; other usual names, such as `stress_amplitude_MPa`, `load`,
-        `N`, `specimen` and `fracture`, are taken, and the notes of the fit say so.
+        Columns `amplitude [MPa]`, `cycles` and `failed` (yes or no), and if wanted `group`, `test`
+        and `note`. A column `censored` or `runout` is the opposite of `failed`; other usual names,
+        such as `stress_amplitude_MPa`, `load`, `N`, `specimen` and `fracture`, are taken, and the
+        notes of the fit say so.
     name : str
         Name of the material that is made.
     load_type : str, optional
-        How the coupons were loaded: "rotating bending", "bending", "axial", "torsion" or "rolling contact".
+        How the coupons were loaded: "rotating bending", "bending", "axial", "torsion" or "rolling
+        contact".
     stress_ratio : float, optional
         Smallest over largest stress of a cycle, -1 for full reversal [1].
     group : str, optional
@@ -78,13 +93,14 @@ def fit_sn(  # noqa: PLR0913 - one argument for each choice of a fit
     slope, scatter_in_cycles : float, optional
         Slope k and scatter T_N that are held [1]; by default both are fitted.
     knee : bool, optional
-        Whether a fatigue limit with its own scatter is fitted; by default if failures and run-outs meet, and a limit
-        makes the tests likelier than the line alone.
+        Whether a fatigue limit with its own scatter is fitted; by default if failures and run-outs
+        meet, and a limit makes the tests likelier than the line alone.
     like : str, optional
         A material whose other values, such as E and R_m, the fitted one takes.
     prior : mapping, optional
-        Priors of the posterior: {"slope": [mean, sd], "scatter_in_cycles": [median, sd of ln], "fatigue_strength":
-        [median in MPa, sd of ln]}. Others are flat. The intervals take no prior.
+        Priors of the posterior: {"slope": [mean, sd], "scatter_in_cycles": [median, sd of ln],
+        "fatigue_strength": [median in MPa, sd of ln]}. Others are flat. The intervals take no
+        prior.
 
     Returns
     -------
@@ -98,8 +114,8 @@ def fit_sn(  # noqa: PLR0913 - one argument for each choice of a fit
 
     Examples
     --------
-    >>> rows = {"amplitude": [900, 900, 800, 800, 700, 700], "cycles": [9e4, 1.3e5, 2e5, 3.5e5, 8e5, 1e6],
-    ...         "failed": [True] * 6}
+    >>> rows = {"amplitude": [900, 900, 800, 800, 700, 700], "failed": [True] * 6}
+    >>> rows["cycles"] = [9e4, 1.3e5, 2e5, 3.5e5, 8e5, 1e6]
     >>> fit = fit_sn(rows, load_type="axial", stress_ratio=-1)
     >>> round(fit.material["woehler_exponent"], 2)
     8.42
@@ -116,7 +132,9 @@ def fit_sn(  # noqa: PLR0913 - one argument for each choice of a fit
     else:
         ratio = finite_number(stress_ratio)
     if stress_ratio is not None and not ratio < 1.0:
-        raise InputError("stress ratio", stress_ratio, "a finite number below 1", "Give -1 for full reversal.")
+        raise InputError(
+            "stress ratio", stress_ratio, "a finite number below 1", "Give -1 for full reversal."
+        )
     tests = _of_group(tests, group)
     factor = 1.0
     if load_type:
@@ -177,11 +195,15 @@ def _too_flat(field: str, slope: Any) -> InputError:
 
 
 def priors_of(given: Mapping[str, Sequence[float]] | None) -> dict[str, Normal]:
-    """Return the priors of a line by the names of its values, from those of a user; see `fit_sn`."""
+    """Return the priors of a line by the names of its values, from those of a user; see
+    `fit_sn`.
+    """
     given = {} if given is None else plain(given, "prior")
     if not isinstance(given, Mapping):
         remedy = "Name the value, such as {'slope': [8, 2]}."
-        raise InputError("prior", given, f"a mapping from {listing([*PRIORS], 'or')} to two numbers", remedy)
+        raise InputError(
+            "prior", given, f"a mapping from {listing([*PRIORS], 'or')} to two numbers", remedy
+        )
     check_names("prior", given, PRIORS)
     priors = {}
     for name, pair in given.items():
@@ -191,9 +213,13 @@ def priors_of(given: Mapping[str, Sequence[float]] | None) -> dict[str, Normal]:
         if name == "slope":
             first = "mean"
             second = "standard deviation"
-        allowed = f"[{first} from {low:.4g} to {high:.4g}, {second} from {LEAST_SPREAD:g} to {MOST_SPREAD:g}]"
+        allowed = (
+            f"[{first} from {low:.4g} to {high:.4g}, {second} from {LEAST_SPREAD:g} to "
+            f"{MOST_SPREAD:g}]"
+        )
         remedy = (
-            f"For example [{EXAMPLES[name]}], on the command line --prior {name}={EXAMPLES[name].replace(' ', '')}."
+            f"For example [{EXAMPLES[name]}], on the command line --prior "
+            f"{name}={EXAMPLES[name].replace(' ', '')}."
         )
         if not isinstance(pair, list) or len(pair) != 2:
             raise InputError(f"prior.{name}", pair, allowed, remedy)
@@ -213,7 +239,10 @@ def priors_of(given: Mapping[str, Sequence[float]] | None) -> dict[str, Normal]:
 
 
 # how a value of a line is held, by its name: on the command line, in Python
-HELD = {"slope": "the slope (--slope 8)", "log_scatter": "the scatter (--scatter 4, in Python scatter_in_cycles=4)"}
+HELD = {
+    "slope": "the slope (--slope 8)",
+    "log_scatter": "the scatter (--scatter 4, in Python scatter_in_cycles=4)",
+}
 
 
 def _range_of_scatter() -> tuple[float, float]:
@@ -223,14 +252,20 @@ def _range_of_scatter() -> tuple[float, float]:
 
 
 # bounds of the middle of a prior
-PRIORS = {"slope": BOUNDS["slope"], "scatter_in_cycles": _range_of_scatter(), "fatigue_strength": (1.0, MOST_STRESS)}
+PRIORS = {
+    "slope": BOUNDS["slope"],
+    "scatter_in_cycles": _range_of_scatter(),
+    "fatigue_strength": (1.0, MOST_STRESS),
+}
 EXAMPLES = {"slope": "8, 2", "scatter_in_cycles": "4, 0.5", "fatigue_strength": "500, 0.2"}
 LEAST_SPREAD = 1e-4  # of a prior
 MOST_SPREAD = 1e4
 
 
 def _of_group(tests: TestTable, group: str | None) -> TestTable:
-    """Return the rows of one group; refuse a table with several groups of which none is asked for."""
+    """Return the rows of one group; refuse a table with several groups of which none is asked
+    for.
+    """
     counts = Counter(tests.text(row, "group") for row in tests)
     if group is not None:
         group = str(group)
@@ -238,25 +273,34 @@ def _of_group(tests: TestTable, group: str | None) -> TestTable:
         if not rows:
             names = sorted(filter(None, counts))
             if not names:
-                raise InputError("group", group, "a group of the table, which has none", "Leave the group out.")
+                raise InputError(
+                    "group", group, "a group of the table, which has none", "Leave the group out."
+                )
             raise InputError("group", group, f"a group of the table: {listing(names, 'or')}")
         return tests.keep(rows)
     if len(counts) > 1:
         first = tests.text(0, "group")
         row = next(row for row in tests if tests.text(row, "group") != first)
         allowed = f"one group; the table mixes {listing(sorted(map(repr, counts)))}"
-        raise tests.error(row, "group", allowed, "Choose one with --group NAME (group=), and fit each alone.")
+        raise tests.error(
+            row, "group", allowed, "Choose one with --group NAME (group=), and fit each alone."
+        )
     return tests
 
 
 def _column_of_ends(tests: TestTable) -> str:
-    """Return the column that says which specimens failed; refuse a table with none or two of them."""
+    """Return the column that says which specimens failed; refuse a table with none or two of
+    them.
+    """
     names = tests.rows[0]
     given = [column for column in ("failed", "censored") if column in names]
     if len(given) == 2:
         heads = [tests.heads.get(column, column) for column in given]
         raise tests.error(
-            0, "censored", "one column that says which specimens failed", f"Remove {listing(heads, 'or')}."
+            0,
+            "censored",
+            "one column that says which specimens failed",
+            f"Remove {listing(heads, 'or')}.",
         )
     in_words = [
         column
@@ -264,7 +308,10 @@ def _column_of_ends(tests: TestTable) -> str:
         if column in names and all(says_how(tests.text(r, column)) for r in tests)
     ]
     if not given and not in_words:
-        allowed = "a column failed, with yes for a failure and no for a run-out; or a column runout, with the opposite"
+        allowed = (
+            "a column failed, with yes for a failure and no for a run-out; or a column "
+            "runout, with the opposite"
+        )
         remedy = f"The table has {', '.join(tests.heads.get(name, name) for name in names)}."
         raise tests.placed(InputError("column failed", None, allowed, remedy))
     return [*given, *in_words][0]
@@ -294,7 +341,11 @@ def _read_ends(tests: TestTable) -> list[bool]:
 def _read_as(tests: TestTable, failed: Sequence[bool]) -> list[str]:
     """Return sentences on how heads and codes were read that are not those of the documentation."""
     column = _column_of_ends(tests)
-    heads = {name: head for name, head in tests.heads.items() if name in (*NEEDED, "failed", "censored", "group")}
+    heads = {
+        name: head
+        for name, head in tests.heads.items()
+        if name in (*NEEDED, "failed", "censored", "group")
+    }
     if column in ("censored", "status", "note"):
         heads[column] = tests.heads.get(column, column)
     sentences = []
@@ -303,7 +354,8 @@ def _read_as(tests: TestTable, failed: Sequence[bool]) -> list[str]:
     if column != "failed" or only_marks(tests.text(row, column) for row in tests):
         number = len(failed) - sum(failed)
         sentences.append(
-            f"By the column '{tests.heads.get(column, column)}' {number} of {len(failed)} specimens ran out."
+            f"By the column '{tests.heads.get(column, column)}' {number} of {len(failed)} "
+            "specimens ran out."
         )
     return sentences
 
@@ -318,7 +370,9 @@ def _observed(tests: TestTable, factor: float, failed: Sequence[bool]) -> Tests:
         cycles = tests.number(row, "cycles", LEAST, MOST_CYCLES, STOPPED)
         for column, value in (("amplitude", amplitude), ("cycles", cycles)):
             if math.isnan(value):
-                raise tests.error(row, column, "a number; the cell is empty", "Fill the cell, or remove the row.")
+                raise tests.error(
+                    row, column, "a number; the cell is empty", "Fill the cell, or remove the row."
+                )
         if cycles < FEWEST_CYCLES and not cycles.is_integer():
             raise tests.error(row, "cycles", "a whole number of load cycles", TRAVEL)
         stress.append(math.log(factor * amplitude))
@@ -335,7 +389,9 @@ def _observed(tests: TestTable, factor: float, failed: Sequence[bool]) -> Tests:
 
 
 def _check_duplicates(tests: TestTable, failed: Sequence[bool]) -> None:
-    """Refuse a name that stands twice, and two failures without names that are equal to the last digit."""
+    """Refuse a name that stands twice, and two failures without names that are equal to the last
+    digit.
+    """
     first_rows: dict[tuple, int] = {}
     for row in tests:
         name = tests.text(row, "test")
@@ -361,26 +417,37 @@ def deviation_of(scatter_in_cycles: float) -> float:
 
 
 def check_held(slope: Any, scatter_in_cycles: Any) -> tuple[float | None, float | None]:
-    """Return slope and scatter that are held as numbers; refuse those outside the bounds of a line."""
+    """Return slope and scatter that are held as numbers; refuse those outside the bounds of a
+    line.
+    """
     low, high = BOUNDS["slope"]
     if slope is not None:
         number = finite_number(slope)
         if 0 < abs(number) < low:
             raise _too_flat("slope", slope)
         if not low <= number <= high:
-            raise InputError("slope", slope, f"a number from {low:g} to {high:g}", "Give k of N = c S^-k, such as 8.")
+            raise InputError(
+                "slope",
+                slope,
+                f"a number from {low:g} to {high:g}",
+                "Give k of N = c S^-k, such as 8.",
+            )
         slope = number
     low, high = _range_of_scatter()
     if scatter_in_cycles is not None:
         number = finite_number(scatter_in_cycles)
         if not low <= number <= high:
             allowed = f"a number from {low:.3g} to {high:.3g}"
-            raise InputError("scatter", scatter_in_cycles, allowed, "Give T_N = N_90/N_10, such as 4.")
+            raise InputError(
+                "scatter", scatter_in_cycles, allowed, "Give T_N = N_90/N_10, such as 4."
+            )
         scatter_in_cycles = number
     return slope, scatter_in_cycles
 
 
-def check_falls(tests: TestTable, observed: Tests, column: str, rows: Sequence[int] | None = None) -> None:
+def check_falls(
+    tests: TestTable, observed: Tests, column: str, rows: Sequence[int] | None = None
+) -> None:
     """Refuse lives that grow with the stress beyond chance.
 
     Parameters
@@ -409,25 +476,41 @@ def check_falls(tests: TestTable, observed: Tests, column: str, rows: Sequence[i
         raise tests.error(place, column, allowed, remedy)
 
 
-def _check_identified(tests: TestTable, observed: Tests, slope: float | None, scatter: float | None) -> None:
+def _check_identified(
+    tests: TestTable, observed: Tests, slope: float | None, scatter: float | None
+) -> None:
     """Refuse one level with a free slope, and run-outs alone with free values."""
     last = len(tests) - 1
-    free = [HELD[name] for name, value in (("slope", slope), ("log_scatter", scatter)) if value is None]
+    free = [
+        HELD[name] for name, value in (("slope", slope), ("log_scatter", scatter)) if value is None
+    ]
     if free and not observed.failed.any():
         allowed = "at least one failure; all specimens ran out"
         remedy = f"Hold {listing(free)} for a one-sided bound, or test at a higher amplitude."
         raise tests.error(last, _column_of_ends(tests), allowed, remedy)
     if slope is None and np.ptp(observed.stress) < 1e-9:
         remedy = "Hold the slope (--slope 8), or test a second amplitude."
-        raise tests.error(last, "amplitude", "a second level beside this one, from which the slope follows", remedy)
+        raise tests.error(
+            last,
+            "amplitude",
+            "a second level beside this one, from which the slope follows",
+            remedy,
+        )
     own = observed.stress[observed.failed]
     if slope is None and own.size and np.ptp(own) < 1e-9:
         remedy = "Hold the slope (--slope 8), or test another amplitude to failure."
-        raise tests.error(last, "amplitude", "failures at two levels or more, from which the slope follows", remedy)
+        raise tests.error(
+            last,
+            "amplitude",
+            "failures at two levels or more, from which the slope follows",
+            remedy,
+        )
 
 
 def _limit_shows(observed: Tests) -> bool:
-    """Return whether run-outs are as long as the longest failures, so that a fatigue limit shows."""
+    """Return whether run-outs are as long as the longest failures, so that a fatigue limit
+    shows.
+    """
     failed = observed.failed
     if (~failed).sum() < 2 or failed.sum() < 2:
         return False
@@ -435,7 +518,9 @@ def _limit_shows(observed: Tests) -> bool:
 
 
 def _stated_at(line: Line) -> float:
-    """Return the cycles at which a line without fatigue limit states its strength: the longest test, rounded up."""
+    """Return the cycles at which a line without fatigue limit states its strength: the longest
+    test, rounded up.
+    """
     longest = float(np.exp(line.tests.low[np.isfinite(line.tests.low)].max()))
     return max(DEFAULT_KNEE, 10.0 ** math.ceil(math.log10(longest)))
 
@@ -444,22 +529,32 @@ def _notes(load_type: str | None, ratio: float, knee: bool, observed: Tests) -> 
     """Return sentences on how the line enters a life."""
     sentences = []
     if load_type is None:
-        sentences.append("The load type was not given: the amplitudes are taken as von Mises amplitudes.")
+        sentences.append(
+            "The load type was not given: the amplitudes are taken as von Mises amplitudes."
+        )
     else:
         sentences.append(
-            f"Load type {load_type}: {LOAD_TYPES[load_type][1]}. A roller is rated by its peak von Mises stress."
+            f"Load type {load_type}: {LOAD_TYPES[load_type][1]}. A roller is rated by its peak "
+            "von Mises stress."
         )
     if math.isnan(ratio):
-        sentences.append("The stress ratio was not given: the amplitudes are taken as fully reversed.")
+        sentences.append(
+            "The stress ratio was not given: the amplitudes are taken as fully reversed."
+        )
     elif ratio != -1.0:
-        sentences.append(f"Stress ratio {ratio:g}: the amplitudes enter without a correction for the mean stress.")
+        sentences.append(
+            f"Stress ratio {ratio:g}: the amplitudes enter without a correction for the mean "
+            "stress."
+        )
     levels = Counter(np.round(observed.stress, 9).tolist())
     failing = Counter(np.round(observed.stress[observed.failed], 9).tolist())
     mixed = [level for level in levels if 0 < failing.get(level, 0) < levels[level]]
     if knee and mixed:
         sentences.append(
-            f"{len(mixed)} levels hold failures and run-outs. Their failures count for the slope with the chance to "
-            "fail at the level; a fit of the failures alone, or of levels above the limit alone, finds another slope."
+            f"{len(mixed)} levels hold failures and run-outs. Their failures count for the slope "
+            "with the chance to "
+            "fail at the level; a fit of the failures alone, or of levels above the limit alone, "
+            "finds another slope."
         )
     return sentences
 
@@ -477,9 +572,17 @@ def of_words(words: Collection[str], field: str) -> dict[str, list[float]]:
         name, sign, pair = word.partition("=")
         numbers = [finite_number(part) for part in pair.split(",")]
         if not sign or len(numbers) != 2 or any(map(math.isnan, numbers)):
-            raise InputError(field, word, "NAME=MIDDLE,DEVIATION, two finite numbers", "For example slope=8,2")
+            raise InputError(
+                field, word, "NAME=MIDDLE,DEVIATION, two finite numbers", "For example slope=8,2"
+            )
         if name.strip() in priors:
             remedy = f"Give {name.strip()} once."
-            raise InputError(field, word, "one prior for each value", remedy, f"stands beside another {name.strip()}")
+            raise InputError(
+                field,
+                word,
+                "one prior for each value",
+                remedy,
+                f"stands beside another {name.strip()}",
+            )
         priors[name.strip()] = numbers
     return priors

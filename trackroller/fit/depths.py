@@ -1,4 +1,6 @@
-"""Fit a wear coefficient to repeated depths of one groove over the travel, by the followed profile."""
+"""Fit a wear coefficient to repeated depths of one groove over the travel, by the followed
+profile.
+"""
 
 from __future__ import annotations
 
@@ -24,9 +26,15 @@ FARTHEST = 1e9  # km, how far a groove is followed until its depth is reached
 
 
 def fit_wear(
-    table: Any, base: Mapping[str, Any] | None = None, *, body: str = "roller", name: str = "", like: str | None = None
+    table: Any,
+    base: Mapping[str, Any] | None = None,
+    *,
+    body: str = "roller",
+    name: str = "",
+    like: str | None = None,
 ) -> Fit:
-    """Fit the wear coefficient of a body to depths of one groove that were measured over its travel.
+    """Fit the wear coefficient of a body to depths of one groove that were measured over its
+    travel.
 
     Parameters
     ----------
@@ -53,10 +61,11 @@ def fit_wear(
 
     Notes
     -----
-    The profile is followed once with a unit coefficient, which takes minutes. The travel to a depth is inversely
-    proportional to the coefficient.
+    The profile is followed once with a unit coefficient, which takes minutes. The travel to a depth
+    is inversely proportional to the coefficient.
 
-    ASSUME: the other body keeps its profile, and errors of the depths are independent of each other.
+    ASSUME: the other body keeps its profile, and errors of the depths are independent of each
+    other.
     """
     check_names("body", [body], BODIES)
     check_texts(name=name, like=like)
@@ -67,25 +76,37 @@ def fit_wear(
     for row, (km, mm) in enumerate(zip(travel, depth, strict=True)):
         for column, value in zip(NEEDED, (km, mm), strict=True):
             if math.isnan(value):
-                raise rows.error(row, column, "a number; the cell is empty", "Fill the cell, or remove the row.")
+                raise rows.error(
+                    row, column, "a number; the cell is empty", "Fill the cell, or remove the row."
+                )
         deeper = [other for other in range(row) if travel[other] < km and depth[other] > mm]
         if deeper:
             allowed = f"a depth of at least that after less travel, {depth[deeper[0]]:g} mm"
-            raise rows.error(row, "wear_depth", allowed, "Measure one groove only, and correct the row.")
+            raise rows.error(
+                row, "wear_depth", allowed, "Measure one groove only, and correct the row."
+            )
         if any(travel[other] == km for other in range(row)):
             remedy = "Write the mean of the two depths once."
-            raise rows.error(row, "travel", "each travel once", remedy, "stands in another row as well")
+            raise rows.error(
+                row, "travel", "each travel once", remedy, "stands in another row as well"
+            )
     if len(rows) < 2:
         allowed = "two depths or more, for a coefficient with its scatter"
         raise rows.placed(InputError("tests", len(rows), allowed, "Measure the groove once more."))
     case, options, _ = checked_case(dict(base or {}))
     unit = followed(worn_alone(case, body), options, body, depth)
     for row in np.flatnonzero(np.isnan(unit)).tolist():
-        allowed = "a depth that the followed profile reaches before it has worn through or lifted off"
+        allowed = (
+            "a depth that the followed profile reaches before it has worn through or lifted off"
+        )
         raise rows.error(row, "wear_depth", allowed, "Check the unit: it is mm.")
     observed = np.log(travel / unit)
     group = wear_group(observed, observed, tuple(rows))
-    given = {key: str(options.get(key, default)) for key, default in DEFAULTS.items() if key != "life_criterion"}
+    given = {
+        key: str(options.get(key, default))
+        for key, default in DEFAULTS.items()
+        if key != "life_criterion"
+    }
     notes = [f"The profile of the {body} was followed; the other body kept its profile."]
     material: Any = case.guide_material
     if body == "roller":
@@ -95,11 +116,23 @@ def fit_wear(
         base_name = material
     given |= {"body": body}
     not_given = not_given_notes([case])
-    return Fit("wear", name or f"{base_name} worn", (group,), rows, like or base_name, given, notes, not_given)
+    return Fit(
+        "wear",
+        name or f"{base_name} worn",
+        (group,),
+        rows,
+        like or base_name,
+        given,
+        notes,
+        not_given,
+    )
 
 
-def followed(values: Mapping[str, Any], options: Mapping[str, Any], body: str, depths: np.ndarray) -> np.ndarray:
-    """Return the travels at which a groove that is followed reaches depths [mm], of the same shape [km].
+def followed(
+    values: Mapping[str, Any], options: Mapping[str, Any], body: str, depths: np.ndarray
+) -> np.ndarray:
+    """Return the travels at which a groove that is followed reaches depths [mm], of the same shape
+    [km].
 
     Parameters
     ----------
@@ -117,13 +150,18 @@ def followed(values: Mapping[str, Any], options: Mapping[str, Any], body: str, d
     numpy.ndarray
         NaN for a depth that the profile does not reach.
     """
-    settings = {name: value for name, value in options.items() if name not in ("normal", "outputs", "life_criterion")}
+    settings = {
+        name: value
+        for name, value in options.items()
+        if name not in ("normal", "outputs", "life_criterion")
+    }
     case = {**values, "permissible_wear_depth": 1.001 * float(depths.max())}
     ds = wear(case, f"{FARTHEST:g}km", outputs=("forces",), **settings)
     deep = ds["groove_depth"].sel(body=body).max("contact").values
     travel = ds["travel"].values
     grown = deep > 0
-    # the depth grows as a power of the travel, so that logarithms are interpolated; the first part is a straight line
+    # the depth grows as a power of the travel, so that logarithms are interpolated; the first part
+    # is a straight line
     known_depth = np.log(deep[grown])
     known_travel = np.log(travel[grown])
     before = np.minimum(np.log(depths) - known_depth[0], 0.0)

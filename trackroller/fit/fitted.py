@@ -1,4 +1,6 @@
-"""The result of a fit: values of a material, their intervals and posterior, and what the tests cannot tell."""
+"""The result of a fit: values of a material, their intervals and posterior, and what the tests
+cannot tell.
+"""
 
 from __future__ import annotations
 
@@ -36,13 +38,21 @@ WORDS = {
     "friction_coefficient": ("1", "friction coefficient"),
     "friction_scatter": ("1", "scatter of the friction coefficient, 90 over 10 %"),
 }
-SPOKEN = {"slope": "woehler_exponent", "scatter": "scatter_in_cycles", "fatigue_strength": "fatigue_limit"}
+SPOKEN = {
+    "slope": "woehler_exponent",
+    "scatter": "scatter_in_cycles",
+    "fatigue_strength": "fatigue_limit",
+}
 OF_GROUP = {
-    "fatigue": {"slope": "woehler_exponent", "log_scatter": "scatter_in_cycles", "log_limit": "fatigue_limit",
-                "log_limit_scatter": "scatter_in_stress"},
+    "fatigue": {
+        "slope": "woehler_exponent",
+        "log_scatter": "scatter_in_cycles",
+        "log_limit": "fatigue_limit",
+        "log_limit_scatter": "scatter_in_stress",
+    },
     "wear": {"level": "wear_coefficient", "log_scatter": "wear_scatter"},
     "friction": {"level": "friction_coefficient", "log_scatter": "friction_scatter"},
-}  # fmt: skip
+}
 
 
 @dataclass(frozen=True)
@@ -54,8 +64,8 @@ class Group:
     kind : str
         "fatigue", "wear" or "friction".
     line : Line
-        The line. That of wear is ln of the travel over the travel that the unit coefficient `scale` gives, and that of
-        friction ln of the coefficient.
+        The line. That of wear is ln of the travel over the travel that the unit coefficient `scale`
+        gives, and that of friction ln of the coefficient.
     priors : mapping of str to Normal
         Priors of its values.
     at : float
@@ -125,23 +135,33 @@ class Group:
         return np.exp(math.log(ln_range(1.0)) * np.exp(deviation))
 
     def interval(self, name: str, confidence: float = CONFIDENCE) -> Interval:
-        """Return the profile interval of a value by its name, in its unit; an open end is inf or 0."""
+        """Return the profile interval of a value by its name, in its unit; an open end is inf
+        or 0.
+        """
         if name == "fatigue_limit" and not self.line.knee:
-            return Interval(*np.exp(self.line.interval_of_strength(math.log(self.at), 0.5, confidence)).tolist())
-        place = next(key for key, output in OF_GROUP[self.kind].items() if output == name)
-        ends = self.line.interval(place, confidence)
-        if self.kind == "wear" and place == "level":  # a longer travel is a smaller coefficient
+            return Interval(
+                *np.exp(self.line.interval_of_strength(math.log(self.at), 0.5, confidence)).tolist()
+            )
+        key_of_line = next(key for key, output in OF_GROUP[self.kind].items() if output == name)
+        ends = self.line.interval(key_of_line, confidence)
+        if (
+            self.kind == "wear" and key_of_line == "level"
+        ):  # a longer travel is a smaller coefficient
             return Interval(self.scale * math.exp(-ends.high), self.scale * math.exp(-ends.low))
-        return Interval(self._end(name, place, ends.low), self._end(name, place, ends.high))
+        return Interval(
+            self._end(name, key_of_line, ends.low), self._end(name, key_of_line, ends.high)
+        )
 
-    def _end(self, name: str, place: str, end: float) -> float:
-        """Return an end of the interval of a value in its unit; inf or 0 at a bound of the line's value `place`."""
-        lower, upper = self.line.bounds[place]
+    def _end(self, name: str, key: str, end: float) -> float:
+        """Return an end of the interval of a value in its unit; inf or 0 at a bound of the line's
+        value `key`.
+        """
+        lower, upper = self.line.bounds[key]
         if end >= upper:
             return math.inf
         if end <= lower:
             return 0.0
-        return float(self._of(name, self.line.best._replace(**{place: end})))
+        return float(self._of(name, self.line.best._replace(**{key: end})))
 
     def band(self, name: str, confidence: float = CONFIDENCE) -> tuple[float, float, float]:
         """Return low end, median and high end of a value by the posterior."""
@@ -151,7 +171,9 @@ class Group:
 
     @property
     def tested(self) -> tuple[float, float, float]:
-        """Return the least and the largest stress tested [MPa], and the cycles of the longest test [1]."""
+        """Return the least and the largest stress tested [MPa], and the cycles of the longest test
+        [1].
+        """
         tests = self.line.tests
         low = float(np.exp(tests.stress.min())), float(np.exp(tests.stress.max()))
         return (*low, float(np.exp(np.max(tests.middle))))
@@ -203,7 +225,12 @@ class Fit:
         for own in self.groups:
             if own.kind == kind:
                 return own
-        raise InputError("fit", kind, f"one of {listing([own.kind for own in self.groups], 'or')}", "Fit it as well.")
+        raise InputError(
+            "fit",
+            kind,
+            f"one of {listing([own.kind for own in self.groups], 'or')}",
+            "Fit it as well.",
+        )
 
     @property
     def unidentified(self) -> tuple[str, ...]:
@@ -212,7 +239,8 @@ class Fit:
 
     @cached_property
     def material(self) -> dict[str, Any]:
-        """Return the values as an entry of a material, without those that the tests do not identify.
+        """Return the values as an entry of a material, without those that the tests do not
+        identify.
 
         With `like`, a case takes the entry as a material: `Case(roller_material=fit.material)`.
         """
@@ -220,7 +248,9 @@ class Fit:
         if self.like:
             entry["like"] = self.like
         for group in self.groups:
-            known = [name for name in group.names if name in ENTRY and name not in group.unidentified]
+            known = [
+                name for name in group.names if name in ENTRY and name not in group.unidentified
+            ]
             entry |= {name: group.estimate(name) for name in known}
             if group.kind == "fatigue" and "fatigue_limit" in entry:
                 entry["cycles_at_fatigue_limit"] = self.knee
@@ -233,7 +263,9 @@ class Fit:
 
     @property
     def knee(self) -> float:
-        """Return N_k: where the line meets the fatigue limit, or the cycles at which its strength is stated [1]."""
+        """Return N_k: where the line meets the fatigue limit, or the cycles at which its strength
+        is stated [1].
+        """
         own = self.group("fatigue")
         best = own.line.best
         if not own.line.knee:
@@ -244,15 +276,19 @@ class Fit:
     def data(self) -> xr.Dataset:
         """Return estimates, intervals and posterior as a labelled data set.
 
-        `estimate`, `low` and `high` (of 90 %) stand along `value`, `posterior_low` and so on beside them; the points of
-        each posterior stand along `fatigue_point`, `wear_point` or `friction_point`.
+        `estimate`, `low` and `high` (of 90 %) stand along `value`, `posterior_low` and so on beside
+        them; the points of each posterior stand along `fatigue_point`, `wear_point` or
+        `friction_point`.
         """
         rows = [(own, name) for own in self.groups for name in own.names]
         columns: dict[str, list[float]] = {"estimate": [own.estimate(name) for own, name in rows]}
         ends = [own.interval(name) for own, name in rows]
         columns |= {"low": [end.low for end in ends], "high": [end.high for end in ends]}
         failed = {own.kind: bool(own.line.tests.failed.any()) for own in self.groups}
-        columns |= {name: [math.nan] * len(rows) for name in ("posterior_low", "posterior_median", "posterior_high")}
+        columns |= {
+            name: [math.nan] * len(rows)
+            for name in ("posterior_low", "posterior_median", "posterior_high")
+        }
         for row, (own, name) in enumerate(rows):
             if failed[own.kind]:
                 low, median, high = own.band(name)
@@ -260,20 +296,31 @@ class Fit:
                 columns["posterior_median"][row] = median
                 columns["posterior_high"][row] = high
         words = {
-            "estimate": "value of the largest likelihood, missing where the tests do not identify it",
+            "estimate": "value of the largest likelihood, missing where the tests do not identify "
+            "it",
             "low": "low end of the 90 % profile interval",
             "high": "high end of the 90 % profile interval",
             "posterior_low": "5 % quantile of the posterior",
             "posterior_median": "median of the posterior",
             "posterior_high": "95 % quantile of the posterior",
         }
-        ds = xr.Dataset({n: ("value", np.array(v, float), {"long_name": words[n]}) for n, v in columns.items()})
-        ds = ds.assign_coords(value=[name for _, name in rows], unit=("value", [WORDS[name][0] for _, name in rows]))
+        ds = xr.Dataset(
+            {n: ("value", np.array(v, float), {"long_name": words[n]}) for n, v in columns.items()}
+        )
+        ds = ds.assign_coords(
+            value=[name for _, name in rows], unit=("value", [WORDS[name][0] for _, name in rows])
+        )
         for own in (own for own in self.groups if failed[own.kind]):
             points = own.posterior.to_dataset().rename(point=f"{own.kind}_point")
             ds = ds.merge(points.rename({n: f"{own.kind}_{n}" for n in points}))
-            tests = {"stress": own.line.tests.stress, "low": own.line.tests.low, "high": own.line.tests.high}
-            ds = ds.assign({f"{own.kind}_test_{n}": (f"{own.kind}_test", value) for n, value in tests.items()})
+            tests = {
+                "stress": own.line.tests.stress,
+                "low": own.line.tests.low,
+                "high": own.line.tests.high,
+            }
+            ds = ds.assign(
+                {f"{own.kind}_test_{n}": (f"{own.kind}_test", value) for n, value in tests.items()}
+            )
         ds.attrs = self._attributes()
         return ds
 
@@ -286,7 +333,9 @@ class Fit:
             "rows": len(self.tests),
             "confidence": CONFIDENCE,
         }
-        attributes |= {f"holds_for_{key.replace(' ', '_')}": value for key, value in self.given.items()}
+        attributes |= {
+            f"holds_for_{key.replace(' ', '_')}": value for key, value in self.given.items()
+        }
         for own in self.groups:
             attributes |= {
                 f"{own.kind}_tests": own.line.size,
@@ -295,7 +344,11 @@ class Fit:
                 f"{own.kind}_knee": int(own.line.knee),
             }
             constants = {"slope": own.line.slope, "scatter": own.line.scatter}
-            attributes |= {f"{own.kind}_held_{key}": value for key, value in constants.items() if value is not None}
+            attributes |= {
+                f"{own.kind}_held_{key}": value
+                for key, value in constants.items()
+                if value is not None
+            }
             if own.kind == "fatigue":
                 low, high, cycles = own.tested
                 attributes |= {"tested_stress": [low, high], "tested_cycles": cycles}
@@ -321,8 +374,8 @@ class Fit:
         Parameters
         ----------
         quantity : str
-            "cycles" to failure under an `amplitude`, "amplitude" at so many `cycles`, or a fitted value: "slope",
-            "scatter", "fatigue_strength" or a name of `.data`.
+            "cycles" to failure under an `amplitude`, "amplitude" at so many `cycles`, or a fitted
+            value: "slope", "scatter", "fatigue_strength" or a name of `.data`.
         amplitude : float or str, optional
             Stress amplitude [MPa], as the material takes it.
         cycles : float, optional
@@ -335,7 +388,8 @@ class Fit:
         Returns
         -------
         Interval
-            `low` and `high` in the unit of the quantity; an end that the tests do not bound is 0 or inf.
+            `low` and `high` in the unit of the quantity; an end that the tests do not bound is 0 or
+            inf.
 
         Raises
         ------
@@ -359,7 +413,9 @@ class Fit:
         check_names("quantity", [name], (*known, "cycles", "amplitude"))
         return known[name].interval(name, confidence)
 
-    def life_hours(self, design: Any, *, failure_probability: float = 0.5, confidence: float = CONFIDENCE) -> Interval:
+    def life_hours(
+        self, design: Any, *, failure_probability: float = 0.5, confidence: float = CONFIDENCE
+    ) -> Interval:
         """Return the interval of the life by fatigue of a design [h], for the body that was tested.
 
         Parameters
@@ -379,17 +435,22 @@ class Fit:
         Raises
         ------
         InputError
-            If the design does not roll, or has another contact model, life criterion or accuracy than the fit.
+            If the design does not roll, or has another contact model, life criterion or accuracy
+            than the fit.
         """
         failure_probability = share("failure_probability", failure_probability)
         confidence = share("confidence", confidence)
         stress, per_hour = worst_stress(design, self.given, self.name)
         cycles = _unlogged(
-            self.group("fatigue").line.interval_of_life(math.log(stress), failure_probability, confidence)
+            self.group("fatigue").line.interval_of_life(
+                math.log(stress), failure_probability, confidence
+            )
         )
         return Interval(cycles.low / per_hour, cycles.high / per_hour)
 
-    def estimate(self, quantity: str, *, amplitude: float = math.nan, failure_probability: float = 0.5) -> float:
+    def estimate(
+        self, quantity: str, *, amplitude: float = math.nan, failure_probability: float = 0.5
+    ) -> float:
         """Return the most likely value of a quantity, as `interval` names them."""
         quantity = str(quantity)
         if quantity == "cycles":
@@ -402,8 +463,11 @@ class Fit:
         check_names("quantity", [name], known)
         return known[name].estimate(name)
 
-    def write(self, file: Path | str = Path("config/materials.yaml"), *, replace: bool = False) -> Material:
-        """Write the material into the user's file, and its posterior into the folder `fits` beside it.
+    def write(
+        self, file: Path | str = Path("config/materials.yaml"), *, replace: bool = False
+    ) -> Material:
+        """Write the material into the user's file, and its posterior into the folder `fits` beside
+        it.
 
         Parameters
         ----------
@@ -420,37 +484,59 @@ class Fit:
         Raises
         ------
         InputError
-            If the tests do not identify a value that a material needs, or the file cannot be written.
+            If the tests do not identify a value that a material needs, or the file cannot be
+            written.
         """
         entry = {key: value for key, value in self.material.items() if key != "name"}
-        lacking = [name for name in ("fatigue_limit", "woehler_exponent") if self.has("fatigue") and name not in entry]
+        lacking = [
+            name
+            for name in ("fatigue_limit", "woehler_exponent")
+            if self.has("fatigue") and name not in entry
+        ]
         if lacking:
             remedy = "Hold the slope, or test more specimens at other stresses."
-            raise InputError(f"material '{self.name}'", None, "", remedy, f"lacks {listing(lacking)}: not identified")
+            raise InputError(
+                f"material '{self.name}'",
+                None,
+                "",
+                remedy,
+                f"lacks {listing(lacking)}: not identified",
+            )
         if self.like is None:
             remedy = "Name it with --like, in Python like=: a steel of the database for a steel."
-            raise InputError("like", None, "a material whose E, Poisson's ratio and R_m the new one takes", remedy)
-        place = posterior_path(file, self.name)
-        self._check_file(place)
+            raise InputError(
+                "like",
+                None,
+                "a material whose E, Poisson's ratio and R_m the new one takes",
+                remedy,
+            )
+        path = posterior_path(file, self.name)
+        self._check_file(path)
         digest = ""
         if self.tests.digest:
             digest = f", sha256 {self.tests.digest[:16]}"
         under = "; ".join(f"{key} {value}" for key, value in self.given.items())
         source = f"fit of {len(self.tests)} tests, {self.tests.name}{digest}"
-        with all_or_none(place, own_file(file)):
-            write_whole(place, lambda beside: self.data.to_netcdf(beside, engine="netcdf4"))
+        with all_or_none(path, own_file(file)):
+            write_whole(path, lambda beside: self.data.to_netcdf(beside, engine="netcdf4"))
             # the material comes last: a killed process leaves no material without its range
-            return add_material(file, self.name, replace=replace, source=source, note=under, **entry)
+            return add_material(
+                file, self.name, replace=replace, source=source, note=under, **entry
+            )
 
-    def _check_file(self, place: Path) -> None:
+    def _check_file(self, path: Path) -> None:
         """Refuse a name whose posterior would take the place of that of another material."""
-        if not place.is_file():
+        if not path.is_file():
             return
-        with xr.open_dataset(place) as stored:
+        with xr.open_dataset(path) as stored:
             other = str(stored.attrs.get("title", ""))
         if other != self._title:
-            wrong = f"has its posterior in {place.name}, where another material has its own ({other})"
-            raise InputError("name", self.name, "", "Choose a name that differs by a letter or digit.", wrong)
+            wrong = (
+                f"has its posterior in {path.name}, where another material has its own ({other})"
+            )
+            raise InputError(
+                "name", self.name, "", "Choose a name that differs by a letter or digit.", wrong
+            )
 
     @property
     def _title(self) -> str:
@@ -506,4 +592,10 @@ def check_texts(**texts: Any) -> None:
             raise InputError(field_name, text, allowed, "Shorten the name, such as 'rig steel'.")
 
 
-ENTRY = ("fatigue_limit", "woehler_exponent", "scatter_in_cycles", "scatter_in_stress", "wear_coefficient")
+ENTRY = (
+    "fatigue_limit",
+    "woehler_exponent",
+    "scatter_in_cycles",
+    "scatter_in_stress",
+    "wear_coefficient",
+)

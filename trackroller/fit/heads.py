@@ -1,7 +1,8 @@
 """Heads and codes of tables of tests as people write them: `stress_amplitude_MPa`, `runout`, `x`.
 
-A head that is known by another name stands for one column, and a code has one meaning under its head. Whatever could
-mean two things is refused, and a fit says in its notes how it read such a head.
+A head that is known by another name stands for one column, and a code has one meaning under its
+head. Whatever could mean two things is refused, and a fit says in its notes how it read such a
+head.
 """
 
 from __future__ import annotations
@@ -15,37 +16,62 @@ from trackroller.errors import InputError, listing
 from trackroller.numerics.table_cells import split_head
 
 NAMES_OF_TESTS = {
-    "test": "specimen specimen_id specimen_no specimen_number specimen_name test_id test_no sample sample_id coupon id "
+    "test": "specimen specimen_id specimen_no specimen_number specimen_name test_id test_no "
+    "sample sample_id coupon id "
     "no nr number probe proben_nr",
     "note": "notes comment comments remark remarks bemerkung kommentar",
 }
 OF_COUPONS = NAMES_OF_TESTS | {
-    "amplitude": "amp load load_amplitude stress stress_amplitude stress_amp stress_s s sa s_a s_amp sigma sigma_a "
+    "amplitude": "amp load load_amplitude stress stress_amplitude stress_amp stress_s s sa s_a "
+    "s_amp sigma sigma_a "
     "nominal_stress nominal_stress_amplitude spannung spannungsamplitude lastamplitude last",
-    "cycles": "cycle n nf n_f cycles_n cycles_to_failure cycles_to_fracture number_of_cycles load_cycles life_cycles "
+    "cycles": "cycle n nf n_f cycles_n cycles_to_failure cycles_to_fracture number_of_cycles "
+    "load_cycles life_cycles "
     "cycle_count fatigue_life lastspiele lastspielzahl schwingspiele schwingspielzahl",
     "failed": "failure fail fracture fractured broken broke is_failure is_failed bruch gebrochen",
-    "censored": "censor is_censored right_censored runout run_out runouts run_outs is_runout is_run_out suspended "
+    "censored": "censor is_censored right_censored runout run_out runouts run_outs is_runout "
+    "is_run_out suspended "
     "suspension survived survivor unbroken durchläufer durchlaeufer",
     "status": "result outcome end ending state ergebnis",
     "group": "series batch lot serie charge",
 }
 # words of a head behind the name that are a unit
-UNITS_OF_HEADS = {"mpa": "MPa", "gpa": "GPa", "kpa": "kPa", "n_mm2": "N/mm2", "ksi": "ksi", "psi": "psi", "msi": "Msi"}
+UNITS_OF_HEADS = {
+    "mpa": "MPa",
+    "gpa": "GPa",
+    "kpa": "kPa",
+    "n_mm2": "N/mm2",
+    "ksi": "ksi",
+    "psi": "psi",
+    "msi": "Msi",
+}
 
 YES = ("1", "1.0", "true", "yes", "y", "ja", "j", "x", "wahr")
 NO = ("0", "0.0", "false", "no", "n", "nein", "none", "falsch")
-FAILED = ("failed", "failure", "fail", "fracture", "fractured", "broken", "break", "bruch", "gebrochen", "crack")
+FAILED = (
+    "failed",
+    "failure",
+    "fail",
+    "fracture",
+    "fractured",
+    "broken",
+    "break",
+    "bruch",
+    "gebrochen",
+    "crack",
+)
 WHOLE = (
-    "runout", "survived", "survivor", "suspended", "suspension", "censored", "unbroken", "unfailed", "notfailed",
-    "nofailure", "durchläufer", "durchlaeufer", "intact",
-)  # fmt: skip
+    *("runout", "survived", "survivor", "suspended", "suspension", "censored", "unbroken"),
+    *("unfailed", "notfailed", "nofailure", "durchläufer", "durchlaeufer", "intact"),
+)
 MARK = "x"  # the one code beside which an empty cell says the opposite
 
 
 @dataclass(frozen=True)
 class Head:
-    """What the head of a column stands for: name of the column, and the unit that the head states, '' for none."""
+    """What the head of a column stands for: name of the column, and the unit that the head states,
+    '' for none.
+    """
 
     column: str
     unit: str = ""
@@ -56,8 +82,11 @@ def normal(text: str) -> str:
     return re.sub(r"[\W_]+", "_", unicodedata.normalize("NFC", text).lower()).strip("_")
 
 
-def read_heads(heads: Iterable[str], known: Collection[str], names: Mapping[str, str]) -> dict[str, Head]:
-    """Return what heads stand for that are another name of a column; heads of columns themselves are left out.
+def read_heads(
+    heads: Iterable[str], known: Collection[str], names: Mapping[str, str]
+) -> dict[str, Head]:
+    """Return what heads stand for that are another name of a column; heads of columns themselves
+    are left out.
 
     Parameters
     ----------
@@ -73,7 +102,9 @@ def read_heads(heads: Iterable[str], known: Collection[str], names: Mapping[str,
     InputError
         If two heads stand for one column.
     """
-    columns = {other: column for column, others in names.items() for other in (column, *others.split())}
+    columns = {
+        other: column for column, others in names.items() for other in (column, *others.split())
+    }
     renamed: dict[str, Head] = {}
     heads_of_columns: dict[str, str] = {}
     for head in map(str, heads):
@@ -118,8 +149,8 @@ def has_failed(text: str, column: str, marks: bool) -> bool | None:
     text : str
         The cell.
     column : str
-        `failed`, or `censored`, whose yes and no have the opposite meaning. Words such as run-out mean the same under
-        both.
+        `failed`, or `censored`, whose yes and no have the opposite meaning. Words such as run-out
+        mean the same under both.
     marks : bool
         Whether the column only marks cells, so that an empty one says no.
     """
@@ -138,14 +169,21 @@ def only_marks(cells: Iterable[str]) -> bool:
 
 
 def _joined(text: str) -> str:
-    """Return a cell in small letters without blanks, hyphens and underscores: 'runout' of 'Run-out'."""
+    """Return a cell in small letters without blanks, hyphens and underscores: 'runout' of
+    'Run-out'.
+    """
     return re.sub(r"[\s_-]+", "", text.lower())
 
 
 def told_heads(heads: Mapping[str, str], units: Mapping[str, str]) -> str:
-    """Return a sentence on heads, by column, that were read as another name of it; '' without such a head."""
+    """Return a sentence on heads, by column, that were read as another name of it; '' without such
+    a head.
+    """
     meaning = {"censored": "the opposite of failed"}
-    parts = [f"'{head}' as {meaning.get(column, column)}{units.get(column, '')}" for column, head in heads.items()]
+    parts = [
+        f"'{head}' as {meaning.get(column, column)}{units.get(column, '')}"
+        for column, head in heads.items()
+    ]
     if parts:
         return f"Columns were read by other names: {listing(parts)}."
     return ""

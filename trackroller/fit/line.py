@@ -4,21 +4,24 @@ A specimen under the stress S lives N cycles, with a standard normal number z::
 
     ln N = level - slope (ln S - ln S_0) + scatter z
 
-S_0 is the geometric mean of the tested stresses. With a knee, a specimen fails only if S exceeds its own fatigue limit,
-whose logarithm is normal, too: the limit scatters from specimen to specimen (a random knee). A test that ended without
-a failure is a suspension; a failure that was found at an inspection lies in an interval.
+S_0 is the geometric mean of the tested stresses. With a knee, a specimen fails only if S exceeds
+its own fatigue limit, whose logarithm is normal, too: the limit scatters from specimen to specimen
+(a random knee). A test that ended without a failure is a suspension; a failure that was found at an
+inspection lies in an interval.
 
-The interval of a value holds each number whose profile likelihood lies within t^2(n - p)/2 of the maximum: n counts
-the specimens, p the fitted values, and t is Student's quantile. On small samples this cut-off covers what it states,
-and that of chi^2 does not. Where n - p is 1 or 2, the smaller n/2 ln(1 + t^2/(n - p)) is taken, which is exact for the
-mean of complete data.
+The interval of a value holds each number whose profile likelihood lies within t^2(n - p)/2 of the
+maximum: n counts the specimens, p the fitted values, and t is Student's quantile. On small samples
+this cut-off covers what it states, and that of chi^2 does not. Where n - p is 1 or 2, the smaller
+n/2 ln(1 + t^2/(n - p)) is taken, which is exact for the mean of complete data.
 
-ASSUME: specimens are independent of each other, and the scatter of ln N is the same at all stresses.
+ASSUME: specimens are independent of each other, and the scatter of ln N is the same at all
+stresses.
 
 References
 ----------
-Meeker, W. Q., Escobar, L. A. (1998). Statistical Methods for Reliability Data. Wiley.
-Pascual, F. G., Meeker, W. Q. (1999). Estimating fatigue curves with the random fatigue-limit model. Technometrics 41.
+Meeker, W. Q., Escobar, L. A. (1998). Statistical Methods for Reliability Data. Wiley. Pascual, F.
+G., Meeker, W. Q. (1999). Estimating fatigue curves with the random fatigue-limit model.
+Technometrics 41.
 """
 
 from __future__ import annotations
@@ -59,11 +62,14 @@ MOST_LIMITS = 40
 LIMIT_SCATTERS = (0.01, 0.04, 0.15, 0.5)
 MOST_STARTS = 6  # limits from which Newton's method starts
 MOST_FURTHER = 2  # starts for a value of a profile that is less likely than an interval allows
-STEPS = np.arange(-2.0, 6.1, 0.5).tolist()  # of ln N, at which finite lives are tried below a fatigue limit
+# of ln N, at which finite lives are tried below a fatigue limit
+STEPS = np.arange(-2.0, 6.1, 0.5).tolist()
 
 
 class Values(NamedTuple):
-    """Values of a line: ln N at S_0, slope, ln of the scatter of ln N, and median and ln scatter of the ln limit."""
+    """Values of a line: ln N at S_0, slope, ln of the scatter of ln N, and median and ln scatter of
+    the ln limit.
+    """
 
     level: np.ndarray | float
     slope: np.ndarray | float
@@ -73,7 +79,9 @@ class Values(NamedTuple):
 
 
 class Interval(NamedTuple):
-    """Ends of an interval; an end that the tests do not bound is infinite, or a bound of the value."""
+    """Ends of an interval; an end that the tests do not bound is infinite, or a bound of the
+    value.
+    """
 
     low: float
     high: float
@@ -88,8 +96,8 @@ class Tests:
     stress : numpy.ndarray
         ln S [ln MPa].
     low, high : numpy.ndarray
-        ln N between which the specimen failed: equal for a life that was observed, `high` inf for a suspension, and
-        `low` -inf for a failure before the first inspection.
+        ln N between which the specimen failed: equal for a life that was observed, `high` inf for a
+        suspension, and `low` -inf for a failure before the first inspection.
     """
 
     stress: np.ndarray
@@ -105,7 +113,9 @@ class Tests:
 
     @property
     def middle(self) -> np.ndarray:
-        """Return ln N of each test: the life, the middle of its interval, or the end of a suspension, (n,)."""
+        """Return ln N of each test: the life, the middle of its interval, or the end of a
+        suspension, (n,).
+        """
         low = np.where(np.isfinite(self.low), self.low, self.high - math.log(2.0))
         return np.where(self.failed, 0.5 * (low + np.where(self.failed, self.high, 0.0)), low)
 
@@ -123,9 +133,11 @@ class Line:
     knee : bool
         Whether a fatigue limit with its own scatter is fitted as well.
     sloped : bool
-        False for lives that do not depend on a stress, such as a travel over the travel that a model gives.
+        False for lives that do not depend on a stress, such as a travel over the travel that a
+        model gives.
     specimens : int, optional
-        Number of specimens, if some of them have several tests: a roller with two contacts is one specimen.
+        Number of specimens, if some of them have several tests: a roller with two contacts is one
+        specimen.
     """
 
     tests: Tests
@@ -149,9 +161,13 @@ class Line:
 
     @cached_property
     def bounds(self) -> dict[str, tuple[float, float]]:
-        """Return the bounds of each value; a fatigue limit lies within a factor of two of the tested stresses."""
+        """Return the bounds of each value; a fatigue limit lies within a factor of two of the
+        tested stresses.
+        """
         own = self.tests.stress
-        return BOUNDS | {"log_limit": (float(own.min()) - math.log(2.0), float(own.max()) + math.log(2.0))}
+        return BOUNDS | {
+            "log_limit": (float(own.min()) - math.log(2.0), float(own.max()) + math.log(2.0))
+        }
 
     @property
     def size(self) -> int:
@@ -250,7 +266,11 @@ class Line:
             "inspected": (low < high) & np.isfinite(high),
             "suspended": np.isposinf(high),
         }
-        return {kind: (*different[of_kind].T, times[of_kind]) for kind, of_kind in kinds.items() if of_kind.any()}
+        return {
+            kind: (*different[of_kind].T, times[of_kind])
+            for kind, of_kind in kinds.items()
+            if of_kind.any()
+        }
 
     @cached_property
     def estimate(self) -> np.ndarray:
@@ -259,10 +279,12 @@ class Line:
 
     @cached_property
     def maxima(self) -> list[np.ndarray]:
-        """Return the places (p,) of the maxima of the likelihood that were found, the highest first.
+        """Return the places (p,) of the maxima of the likelihood that were found, the highest
+        first.
 
-        With a fatigue limit the likelihood may have several: one with the limit between two stresses and one without a
-        limit, on which run-outs are long lives. Newton's method starts from limits on both sides of each stress.
+        With a fatigue limit the likelihood may have several: one with the limit between two
+        stresses and one without a limit, on which run-outs are long lives. Newton's method starts
+        from limits on both sides of each stress.
         """
 
         def loss(points: np.ndarray) -> np.ndarray:
@@ -272,7 +294,8 @@ class Line:
         if self.knee and self.tests.failed.any():
             minima += [least(loss, start, self.limits) for start in self._starts_by_limit()]
         lowest = min(map(_value, minima))
-        # of places that are equally likely the first one stays, so that further starts change no last digit
+        # of places that are equally likely the first one stays, so that further starts change no
+        # last digit
         minima.sort(key=lambda one: max(_value(one) - lowest, SAME_MAXIMUM))
         different = minima[:1]
         for one in minima[1:]:
@@ -293,7 +316,9 @@ class Line:
 
     @property
     def at_bound(self) -> tuple[str, ...]:
-        """Return the names of values whose estimate lies at a bound, so that the tests do not identify them."""
+        """Return the names of values whose estimate lies at a bound, so that the tests do not
+        identify them.
+        """
         reach = AT_BOUND * np.ptp(self.limits, axis=1)
         ends = np.abs(self.estimate[:, None] - self.limits).min(axis=1) < reach
         return tuple(name for name, end in zip(self.free, ends, strict=True) if end)
@@ -304,17 +329,24 @@ class Line:
         return Values(*map(float, self.values(self.estimate)))
 
     def _starts(self) -> list[np.ndarray]:
-        """Return places to start from: the regression of the failures, with steeper slopes beside it."""
+        """Return places to start from: the regression of the failures, with steeper slopes beside
+        it.
+        """
         lowest = self.tests.stress.min()
         failed = self.tests.failed
         if failed.all():
             limit = lowest - 0.05
         else:
             limit = float(np.median(self.tests.stress[~failed]))
-        return [self._point(own._replace(log_limit=limit)) for own in self._lines_of_failures((5.0, 12.0))]
+        return [
+            self._point(own._replace(log_limit=limit))
+            for own in self._lines_of_failures((5.0, 12.0))
+        ]
 
     def _lines_of_failures(self, slopes: Sequence[float]) -> list[Values]:
-        """Return lines through the middle of the failures: that of the regression, and those of given slopes."""
+        """Return lines through the middle of the failures: that of the regression, and those of
+        given slopes.
+        """
         x = self.tests.stress - self.reference
         y = self.tests.middle
         failed = self.tests.failed
@@ -348,11 +380,17 @@ class Line:
 
     @cached_property
     def _points_by_limit(self) -> np.ndarray:
-        """Return values (limits, lines, p) with fatigue limits below all tests, at their stresses and between them."""
+        """Return values (limits, lines, p) with fatigue limits below all tests, at their stresses
+        and between them.
+        """
         levels = np.unique(self.tests.stress)
-        limits = np.concatenate([[self.bounds["log_limit"][0]], levels, 0.5 * (levels[1:] + levels[:-1])])
+        limits = np.concatenate(
+            [[self.bounds["log_limit"][0]], levels, 0.5 * (levels[1:] + levels[:-1])]
+        )
         if len(limits) > MOST_LIMITS:  # stresses that scatter have no levels
-            limits = np.append(limits[0], np.quantile(self.tests.stress, np.linspace(0.0, 1.0, MOST_LIMITS - 1)))
+            limits = np.append(
+                limits[0], np.quantile(self.tests.stress, np.linspace(0.0, 1.0, MOST_LIMITS - 1))
+            )
         lines = self._lines_of_failures((5.0, 12.0, 25.0))
         lines.append(replace(self, knee=False).best)  # on it a run-out is a long life
         points = [
@@ -379,11 +417,13 @@ class Line:
         """
         freedom = max(self.size - len(self.free), 1)
         square = float(stdtrit(freedom, 0.5 + 0.5 * confidence)) ** 2
-        # with one or two tests more than values, t^2/2 would be far too wide: the mean of complete data has this form
+        # with one or two tests more than values, t^2/2 would be far too wide: the mean of complete
+        # data has this form
         return min(0.5 * square, 0.5 * self.size * math.log1p(square / freedom))
 
     def log_life(self, values: Values, log_stress: float, probability: float) -> np.ndarray:
-        """Return ln N at which a share of specimens has failed; inf below a fatigue limit that more survive.
+        """Return ln N at which a share of specimens has failed; inf below a fatigue limit that more
+        survive.
 
         Parameters
         ----------
@@ -403,14 +443,24 @@ class Line:
             return float(ndtri(probability))
         fails = ndtr((log_stress - values.log_limit) / np.exp(values.log_limit_scatter))
         with np.errstate(divide="ignore"):
-            return np.where(fails > probability, ndtri(np.minimum(probability / np.maximum(fails, LEAST), 1.0)), np.inf)
+            return np.where(
+                fails > probability,
+                ndtri(np.minimum(probability / np.maximum(fails, LEAST), 1.0)),
+                np.inf,
+            )
 
-    def _life_at_level_0(self, others: np.ndarray, log_stress: float, probability: float) -> np.ndarray:
-        """Return ln N as `log_life` does for a line whose level is 0; `others` are its further fitted values."""
+    def _life_at_level_0(
+        self, others: np.ndarray, log_stress: float, probability: float
+    ) -> np.ndarray:
+        """Return ln N as `log_life` does for a line whose level is 0; `others` are its further
+        fitted values.
+        """
         own = self.values(np.concatenate([np.zeros((*others.shape[:-1], 1)), others], axis=-1))
         return self.log_life(own, log_stress, probability)
 
-    def interval_of_life(self, log_stress: float, probability: float, confidence: float = 0.9) -> Interval:
+    def interval_of_life(
+        self, log_stress: float, probability: float, confidence: float = 0.9
+    ) -> Interval:
         """Return the interval of ln N at which a share of specimens has failed under a stress.
 
         Parameters
@@ -449,10 +499,14 @@ class Line:
     def _finite_lives(
         self, log_stress: float, probability: float, confidence: float, level: Solved
     ) -> list[tuple[float, np.ndarray]]:
-        """Return a finite life that is likely enough, with its place, where the likeliest life is endless."""
+        """Return a finite life that is likely enough, with its place, where the likeliest life is
+        endless.
+        """
         straight = float(self.best.level - self.best.slope * (log_stress - self.reference))
         start = self.estimate.copy()
-        start[self.free.index("log_limit")] = log_stress - math.exp(start[-1]) * float(ndtri(probability)) - NEAR
+        start[self.free.index("log_limit")] = (
+            log_stress - math.exp(start[-1]) * float(ndtri(probability)) - NEAR
+        )
         goal = self._goal(confidence)
         profile = self._profile(0, level, goal)
         likely, step = max((profile(straight + step, start[1:])[0], step) for step in STEPS)
@@ -461,16 +515,20 @@ class Line:
         return []
 
     def _endless(self, log_stress: float, probability: float) -> float:
-        """Return the largest ln L of lines whose fatigue limit at a failure probability is a stress."""
-        place = self.free.index("log_limit")
+        """Return the largest ln L of lines whose fatigue limit at a failure probability is a
+        stress.
+        """
+        index = self.free.index("log_limit")
 
         def loss(others: np.ndarray) -> np.ndarray:
             limit = log_stress - np.exp(others[..., -1]) * float(ndtri(probability))
-            inside = (limit >= self.limits[place, 0]) & (limit <= self.limits[place, 1])
-            return np.where(inside, -self.log_likelihood(np.insert(others, place, limit, axis=-1)), LARGE)
+            inside = (limit >= self.limits[index, 0]) & (limit <= self.limits[index, 1])
+            return np.where(
+                inside, -self.log_likelihood(np.insert(others, index, limit, axis=-1)), LARGE
+            )
 
-        limits = np.delete(self.limits, place, axis=0)
-        return max(-least(loss, np.delete(start, place), limits)[1] for start in self.maxima)
+        limits = np.delete(self.limits, index, axis=0)
+        return max(-least(loss, np.delete(start, index), limits)[1] for start in self.maxima)
 
     def _goal(self, confidence: float) -> float:
         """Return the least ln L within an interval."""
@@ -481,8 +539,11 @@ class Line:
         goal = self._goal(confidence)
         return [point for point in self.maxima if float(self.log_likelihood(point)) >= goal]
 
-    def interval_of_strength(self, log_cycles: float, probability: float, confidence: float = 0.9) -> Interval:
-        """Return the interval of ln S at which a share of specimens has failed after so many cycles.
+    def interval_of_strength(
+        self, log_cycles: float, probability: float, confidence: float = 0.9
+    ) -> Interval:
+        """Return the interval of ln S at which a share of specimens has failed after so many
+        cycles.
 
         Parameters
         ----------
@@ -495,7 +556,9 @@ class Line:
         """
 
         def level(value: float, others: np.ndarray) -> np.ndarray:
-            """Return the levels that give `log_cycles` under the stress `value`, with the other values as they are."""
+            """Return the levels that give `log_cycles` under the stress `value`, with the other
+            values as they are.
+            """
             return log_cycles - self._life_at_level_0(others, value, probability)
 
         def strength(point: np.ndarray) -> float:
@@ -504,56 +567,65 @@ class Line:
             deviate = math.exp(float(own.log_scatter)) * float(ndtri(probability))
             return self.reference + (float(own.level) + deviate - log_cycles) / float(own.slope)
 
-        return self._ends([(strength(point), point) for point in self._likely(confidence)], 0, level, confidence)
+        return self._ends(
+            [(strength(point), point) for point in self._likely(confidence)], 0, level, confidence
+        )
 
     def interval(self, name: str, confidence: float = 0.9) -> Interval:
         """Return the profile interval of one of the free values, by its name."""
-        place = self.free.index(name)
+        index = self.free.index(name)
         low, high = self.bounds[name]
-        begins = [(float(point[place]), point) for point in self._likely(confidence)]
-        ends = self._ends(begins, place, _itself, confidence)
+        begins = [(float(point[index]), point) for point in self._likely(confidence)]
+        ends = self._ends(begins, index, _itself, confidence)
         return Interval(max(ends.low, low), min(ends.high, high))
 
     def _ends(
-        self, begins: Sequence[tuple[float, np.ndarray]], place: int, solved: Solved, confidence: float
+        self,
+        begins: Sequence[tuple[float, np.ndarray]],
+        index: int,
+        solved: Solved,
+        confidence: float,
     ) -> Interval:
-        """Return where the profile of a value falls to the cut-off on both sides of its likely values.
+        """Return where the profile of a value falls to the cut-off on both sides of its likely
+        values.
 
-        `begins` holds likely values with the points (p,) that have them, that of the estimate first: between two maxima
-        of the likelihood the profile may lie below the cut-off, and the interval holds both. `solved` returns the free
-        value at `place` from the value in question and the other free values.
+        `begins` holds likely values with the points (p,) that have them, that of the estimate
+        first: between two maxima of the likelihood the profile may lie below the cut-off, and the
+        interval holds both. `solved` returns the free value at `index` from the value in question
+        and the other free values.
         """
         if not self.tests.failed.any():
-            return self._without_failures(place, solved, confidence)
+            return self._without_failures(index, solved, confidence)
         goal = self._goal(confidence)
         bounds = -math.inf, math.inf
-        if place:
-            bounds = self.limits[place]
-        profile = self._profile(place, solved, goal)
+        if index:
+            bounds = self.limits[index]
+        profile = self._profile(index, solved, goal)
         low, high = math.inf, -math.inf
         for value, point in begins:
-            others = np.delete(point, place)
+            others = np.delete(point, index)
             if value < low:
                 low = _end(profile, value, others, goal, -1.0, bounds)
             if value > high:
                 high = _end(profile, value, others, goal, 1.0, bounds)
         return Interval(low, high)
 
-    def _profile(self, place: int, solved: Solved, goal: float) -> Profile:
-        """Return the function of a value and a start that gives the largest ln L with that value, and its place.
+    def _profile(self, index: int, solved: Solved, goal: float) -> Profile:
+        """Return the function of a value and a start that gives the largest ln L with that value,
+        and its place.
 
         Where ln L stays below `goal`, Newton's method starts from other likely values as well.
         """
-        limits = np.delete(self.limits, place, axis=0)
+        limits = np.delete(self.limits, index, axis=0)
         points = [np.array(self.maxima)]
         if self.knee:
             points.append(self._points_by_limit.reshape(-1, len(self.free)))
-        further = np.clip(np.delete(np.concatenate(points), place, axis=1), *limits.T)
+        further = np.clip(np.delete(np.concatenate(points), index, axis=1), *limits.T)
 
         def profile(value: float, start: np.ndarray) -> tuple[float, np.ndarray]:
             def loss(others: np.ndarray) -> np.ndarray:
                 own = solved(value, others)
-                points = np.insert(others, place, np.where(np.isfinite(own), own, 0.0), axis=-1)
+                points = np.insert(others, index, np.where(np.isfinite(own), own, 0.0), axis=-1)
                 return np.where(np.isfinite(own), -self.log_likelihood(points), LARGE)
 
             if not len(start):
@@ -566,9 +638,9 @@ class Line:
 
         return profile
 
-    def _without_failures(self, place: int, solved: Solved, confidence: float) -> Interval:
+    def _without_failures(self, index: int, solved: Solved, confidence: float) -> Interval:
         """Return the one-sided bound of a level that no failure has bounded from above."""
-        if len(self.free) > 1 or place:
+        if len(self.free) > 1 or index:
             return Interval(-math.inf, math.inf)
         goal = math.log(0.5 - 0.5 * confidence)
         none = np.empty(0)
@@ -579,8 +651,11 @@ class Line:
         return Interval(float(optimize.brentq(excess, -FARTHEST, 2.0 * FARTHEST)), math.inf)
 
 
-def least(loss: Callable[[np.ndarray], np.ndarray], start: np.ndarray, limits: np.ndarray) -> tuple[np.ndarray, float]:
-    """Return where a function of points (..., p) is least within limits (p, 2), and its value there.
+def least(
+    loss: Callable[[np.ndarray], np.ndarray], start: np.ndarray, limits: np.ndarray
+) -> tuple[np.ndarray, float]:
+    """Return where a function of points (..., p) is least within limits (p, 2), and its value
+    there.
 
     Newton's method from a start (p,), damped where a step does not lower the value.
     """
@@ -590,7 +665,9 @@ def least(loss: Callable[[np.ndarray], np.ndarray], start: np.ndarray, limits: n
     damping = 0.0
     for _ in range(MOST_STEPS):
         # values at a bound that the loss pushes outward stay there
-        stuck = ((point <= limits[:, 0]) & (gradient > 0)) | ((point >= limits[:, 1]) & (gradient < 0))
+        stuck = ((point <= limits[:, 0]) & (gradient > 0)) | (
+            (point >= limits[:, 1]) & (gradient < 0)
+        )
         step = np.zeros(len(point))
         if not stuck.all():
             own = np.ix_(~stuck, ~stuck)
@@ -610,8 +687,12 @@ def least(loss: Callable[[np.ndarray], np.ndarray], start: np.ndarray, limits: n
     return point, value
 
 
-def expanded(loss: Callable[[np.ndarray], np.ndarray], point: np.ndarray) -> tuple[float, np.ndarray, np.ndarray]:
-    """Return value, gradient and second derivatives of a function at a point, by central differences."""
+def expanded(
+    loss: Callable[[np.ndarray], np.ndarray], point: np.ndarray
+) -> tuple[float, np.ndarray, np.ndarray]:
+    """Return value, gradient and second derivatives of a function at a point, by central
+    differences.
+    """
     n = len(point)
     unit = STEP * np.eye(len(point))
     first, second = np.triu_indices(n, 1)
@@ -624,7 +705,9 @@ def expanded(loss: Callable[[np.ndarray], np.ndarray], point: np.ndarray) -> tup
     down = values[n + 1 : 2 * n + 1]
     crossed = values[2 * n + 1 :]
     curvature = np.diag((up + down - 2.0 * values[0]) / STEP**2)
-    mixed = (crossed[:m] + crossed[m : 2 * m] - crossed[2 * m : 3 * m] - crossed[3 * m :]) / (4.0 * STEP**2)
+    mixed = (crossed[:m] + crossed[m : 2 * m] - crossed[2 * m : 3 * m] - crossed[3 * m :]) / (
+        4.0 * STEP**2
+    )
     curvature[first, second] = curvature[second, first] = mixed
     return float(values[0]), (up - down) / (2.0 * STEP), curvature
 
@@ -663,7 +746,9 @@ def _end(
     side: float,
     bounds: tuple[float, float] | np.ndarray,
 ) -> float:
-    """Return one end of an interval: step outward until the profile lies below its goal, then close in."""
+    """Return one end of an interval: step outward until the profile lies below its goal, then close
+    in.
+    """
     step = 0.1
     inner = best
     start = others

@@ -1,9 +1,10 @@
 """Posterior of a fitted line on fixed points of its values: deterministic, without a sampler.
 
-The prior is flat in ln strength, in the slope and in ln scatter, unless a prior is given. The points are a Sobol
-sequence under a multivariate t distribution, and each carries a weight: its posterior density over that of the
-distribution. The distribution takes mean and covariance of the posterior of a first, coarse set of points. A regular
-grid of five values has too few points along each of them to tell a quantile.
+The prior is flat in ln strength, in the slope and in ln scatter, unless a prior is given. The
+points are a Sobol sequence under a multivariate t distribution, and each carries a weight: its
+posterior density over that of the distribution. The distribution takes mean and covariance of the
+posterior of a first, coarse set of points. A regular grid of five values has too few points along
+each of them to tell a quantile.
 """
 
 from __future__ import annotations
@@ -95,12 +96,15 @@ class Normal:
         return np.asarray(-0.5 * ((value - self.mean) / self.deviation) ** 2)
 
 
-def log_prior(line: Line, points: np.ndarray, priors: Mapping[str, Normal], at: float = math.nan) -> np.ndarray:
+def log_prior(
+    line: Line, points: np.ndarray, priors: Mapping[str, Normal], at: float = math.nan
+) -> np.ndarray:
     """Return the logarithm of the prior density at points of the free values of a line, (...).
 
-    Flat in ln strength means a density of the level in proportion to 1/slope, because the level moves by the slope
-    times ln strength. `priors` are those of `slope`, `log_scatter` and `log_strength`: the ln of the median fatigue
-    limit, or of the strength at the cycles `at` of a line without one.
+    Flat in ln strength means a density of the level in proportion to 1/slope, because the level
+    moves by the slope times ln strength. `priors` are those of `slope`, `log_scatter` and
+    `log_strength`: the ln of the median fatigue limit, or of the strength at the cycles `at` of a
+    line without one.
     """
     values = line.values(points)
     if line.sloped and "slope" in line.free:
@@ -123,7 +127,9 @@ def log_strength(line: Line, values: Values, at: float) -> np.ndarray:
     return np.asarray(line.reference + (values.level - math.log(at)) / values.slope)
 
 
-def posterior(line: Line, priors: Mapping[str, Normal] | None = None, at: float = math.nan) -> Posterior:
+def posterior(
+    line: Line, priors: Mapping[str, Normal] | None = None, at: float = math.nan
+) -> Posterior:
     """Return the posterior of a line.
 
     Parameters
@@ -150,7 +156,9 @@ def posterior(line: Line, priors: Mapping[str, Normal] | None = None, at: float 
     def density(points: np.ndarray) -> np.ndarray:
         inside = ((points >= line.limits[:, 0]) & (points <= line.limits[:, 1])).all(axis=-1)
         clipped = np.clip(points, *line.limits.T)
-        return np.where(inside, line.log_likelihood(clipped) + log_prior(line, clipped, priors, at), -np.inf)
+        return np.where(
+            inside, line.log_likelihood(clipped) + log_prior(line, clipped, priors, at), -np.inf
+        )
 
     middle = line.estimate
     factor = _factor(line)
@@ -169,7 +177,9 @@ def posterior(line: Line, priors: Mapping[str, Normal] | None = None, at: float 
 
 @functools.cache
 def _standard_points(p: int, count: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return Sobol points under the standard t distribution (count, p), and ln of its density (count,)."""
+    """Return Sobol points under the standard t distribution (count, p), and ln of its density
+    (count,).
+    """
     from scipy.stats import qmc  # heavy, and a stored posterior is not drawn again
 
     uniform = qmc.Sobol(p + 1, rng=1).random(count)
@@ -180,15 +190,20 @@ def _standard_points(p: int, count: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _factor(line: Line) -> np.ndarray:
-    """Return the factor of the covariance by the curvature of the likelihood at its maximum, (p, p)."""
+    """Return the factor of the covariance by the curvature of the likelihood at its maximum, (p,
+    p).
+    """
     spans = 0.1 * np.ptp(line.limits, axis=1)
     _, _, curvature = expanded(lambda points: -line.log_likelihood(points), line.estimate)
     roots, axes = np.linalg.eigh(curvature)
     length = 1.0 / np.sqrt(np.maximum(roots, 1e-12))
-    longest = np.min(spans[:, None] / np.maximum(np.abs(axes), 1e-12), axis=0)  # a flat likelihood bounds no axis
+    # a flat likelihood bounds no axis
+    longest = np.min(spans[:, None] / np.maximum(np.abs(axes), 1e-12), axis=0)
     return np.asarray(axes * np.minimum(length, longest))
 
 
 def ln_range(deviation: float) -> float:
-    """Return the range from 10 to 90 % of a log-normal value, T = exp(2.563 s), from the deviation of its logarithm."""
+    """Return the range from 10 to 90 % of a log-normal value, T = exp(2.563 s), from the deviation
+    of its logarithm.
+    """
     return math.exp(2.0 * float(ndtri(0.9)) * deviation)

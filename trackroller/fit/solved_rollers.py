@@ -1,4 +1,6 @@
-"""Rollers as the model solves them for a fit, and the options under which the values of a fit hold."""
+"""Rollers as the model solves them for a fit, and the options under which the values of a fit
+hold.
+"""
 
 from __future__ import annotations
 
@@ -98,7 +100,9 @@ def solved_rollers(cases: Sequence[Case], options: Mapping[str, Any]) -> Solved:
     shape = (len(cases), 2, 2)
     stresses = stress.transpose("case", "contact", "body").values
     flags = ds["validity_body"].transpose("case", "body").values.astype(int)
-    return Solved(stresses, np.broadcast_to(per_km, shape), np.broadcast_to(per_hour, shape), regime, flags)
+    return Solved(
+        stresses, np.broadcast_to(per_km, shape), np.broadcast_to(per_hour, shape), regime, flags
+    )
 
 
 def fields_of(design: Any, field: str = "design") -> dict[str, Any]:
@@ -107,12 +111,15 @@ def fields_of(design: Any, field: str = "design") -> dict[str, Any]:
         return {name: getattr(design, name) for name in FIELDS}
     if not isinstance(design, Mapping):
         remedy = "Write tr.Case(...), or a mapping such as {'radial_force': -150}."
-        raise InputError(field, design, "a case, or a mapping with fields of a case and options", remedy)
+        raise InputError(
+            field, design, "a case, or a mapping with fields of a case and options", remedy
+        )
     return dict(design)
 
 
 def worst_stress(design: Any, given: Mapping[str, str], name: str) -> tuple[float, float]:
-    """Return the stress of a design that decides its life [MPa], and its overrollings per hour [1/h].
+    """Return the stress of a design that decides its life [MPa], and its overrollings per hour
+    [1/h].
 
     Parameters
     ----------
@@ -125,14 +132,22 @@ def worst_stress(design: Any, given: Mapping[str, str], name: str) -> tuple[floa
     """
     case, options, _ = checked_case(fields_of(design))
     check_same(given, options, name)
-    solved = solved_rollers([case], {key: value for key, value in options.items() if key != "outputs"})
+    solved = solved_rollers(
+        [case], {key: value for key, value in options.items() if key != "outputs"}
+    )
     body = BODIES.index(given.get("body", "roller"))
     if solved.regime[0] != "rolling":
         raise InputError("design", solved.regime[0], "a roller that rolls", "Change its loads.")
     if np.isnan(solved.per_hour[0, 0, body]):
-        raise InputError("guide_overrollings_per_hour", None, "a number, for the life of the guide in hours")
+        raise InputError(
+            "guide_overrollings_per_hour", None, "a number, for the life of the guide in hours"
+        )
     return float(solved.stress[0, :, body].max()), float(solved.per_hour[0, 0, body])
 
 
 def _rolling_radius(case: Case) -> float:
-    return float(rolling_radius(case.axis_distance, case.guide_profile_radius, np.radians(case.contact_angle)))
+    return float(
+        rolling_radius(
+            case.axis_distance, case.guide_profile_radius, np.radians(case.contact_angle)
+        )
+    )

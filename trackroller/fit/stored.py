@@ -72,7 +72,8 @@ def stored_fit(name: str, values: Mapping[str, Any], file: Path | None = None) -
     name : str
         Name of the material.
     values : mapping
-        Its values, of which the strength must be that of the fit: a material changed by hand has no fit any more.
+        Its values, of which the strength must be that of the fit: a material changed by hand has no
+        fit any more.
     file : Path, optional
         The materials file beside which the fit stands; by default the user's.
 
@@ -92,7 +93,9 @@ def stored_fit(name: str, values: Mapping[str, Any], file: Path | None = None) -
         stored = _read(path, name, path.stat().st_mtime_ns)
     except KeyError as missing:
         allowed = "a file that `trackroller fit` of this version wrote"
-        raise InputError("fit", str(path), allowed, "Fit the tests again.", f"lacks {missing}") from None
+        raise InputError(
+            "fit", str(path), allowed, "Fit the tests again.", f"lacks {missing}"
+        ) from None
     if stored is None:
         return None
     fit, strength = stored
@@ -108,7 +111,8 @@ def stored_fit(name: str, values: Mapping[str, Any], file: Path | None = None) -
 
 
 def fits_of_case(ds: xr.Dataset) -> tuple[dict[str, StoredFit], dict[str, str]]:
-    """Return the fits of the materials of a solved case by body, and why others do not hold for it, by material.
+    """Return the fits of the materials of a solved case by body, and why others do not hold for it,
+    by material.
 
     Parameters
     ----------
@@ -127,7 +131,11 @@ def fits_of_case(ds: xr.Dataset) -> tuple[dict[str, StoredFit], dict[str, str]]:
         fit = stored_fit(str(values.get("name", "")), values)
         if fit is None or "life_cycles" not in ds:
             continue
-        other = [f"{key} {fit.given[key]}" for key in DEFAULTS if fit.given.get(key, ds.attrs[key]) != ds.attrs[key]]
+        other = [
+            f"{key} {fit.given[key]}"
+            for key in DEFAULTS
+            if fit.given.get(key, ds.attrs[key]) != ds.attrs[key]
+        ]
         if other:
             others[fit.name] = " and ".join(other)
         else:
@@ -137,7 +145,9 @@ def fits_of_case(ds: xr.Dataset) -> tuple[dict[str, StoredFit], dict[str, str]]:
 
 @functools.lru_cache(maxsize=16)
 def _read(path: Path, name: str, changed: int) -> tuple[StoredFit, tuple[float, float]] | None:
-    """Return the fit of a file, with strength and knee of its material; None for a fit without fatigue."""
+    """Return the fit of a file, with strength and knee of its material; None for a fit without
+    fatigue.
+    """
     del changed  # a file that was written again is read again
     try:
         with xr.open_dataset(path) as opened:
@@ -154,7 +164,9 @@ def _read(path: Path, name: str, changed: int) -> tuple[StoredFit, tuple[float, 
     except KeyError as missing:
         remedy = "Fit the tests again."
         wrong = f"is that of another version: it has no {missing.args[0]}"
-        raise InputError("fit", str(path), "a file that this version wrote", remedy, wrong) from None
+        raise InputError(
+            "fit", str(path), "a file that this version wrote", remedy, wrong
+        ) from None
 
 
 def _fit_of(ds: xr.Dataset, name: str) -> tuple[StoredFit, tuple[float, float]]:
@@ -168,9 +180,15 @@ def _fit_of(ds: xr.Dataset, name: str) -> tuple[StoredFit, tuple[float, float]]:
         knee=bool(ds.attrs["fatigue_knee"]),
         specimens=int(ds.attrs["fatigue_tests"]),
     )
-    names = {n: n.removeprefix("fatigue_") for n in map(str, ds.data_vars) if n.startswith("fatigue_")}
+    names = {
+        n: n.removeprefix("fatigue_") for n in map(str, ds.data_vars) if n.startswith("fatigue_")
+    }
     posterior = Posterior.from_dataset(ds[list(names)].rename(names))
-    given = {key.removeprefix(HOLDS): str(value) for key, value in ds.attrs.items() if key.startswith(HOLDS)}
+    given = {
+        key.removeprefix(HOLDS): str(value)
+        for key, value in ds.attrs.items()
+        if key.startswith(HOLDS)
+    }
     tested = (*map(float, ds.attrs["tested_stress"]), float(ds.attrs["tested_cycles"]))
     fit = StoredFit(name, line, posterior, given, tested, int(ds.attrs["rows"]))  # type: ignore[arg-type]
     return fit, (float(ds.attrs["fatigue_limit"]), float(ds.attrs["cycles_at_fatigue_limit"]))

@@ -1,4 +1,6 @@
-"""Tables of tests: a CSV file, a workbook or a data frame, with a name, unit and place for each cell."""
+"""Tables of tests: a CSV file, a workbook or a data frame, with a name, unit and place for each
+cell.
+"""
 
 from __future__ import annotations
 
@@ -54,7 +56,9 @@ class TestTable:
             return "a data frame"
         return self.path.name
 
-    def error(self, row: int, column: str, allowed: str, remedy: str = "", wrong: str = "") -> InputError:
+    def error(
+        self, row: int, column: str, allowed: str, remedy: str = "", wrong: str = ""
+    ) -> InputError:
         """Return an error that names row and column.
 
         Parameters
@@ -75,7 +79,9 @@ class TestTable:
         return self.placed(InputError(place, value, allowed, remedy, wrong), self.lines[row])
 
     def placed(self, error: InputError, line: int = 0) -> InputError:
-        """Return an error with the file of the table and a line of it, 0 for the table as a whole."""
+        """Return an error with the file of the table and a line of it, 0 for the table as a
+        whole.
+        """
         if self.path is None:
             return error
         return error.at(self.path, line)
@@ -93,7 +99,8 @@ class TestTable:
         Raises
         ------
         InputError
-            If the cell is no finite number, or lies outside the bounds, which are allowed values themselves.
+            If the cell is no finite number, or lies outside the bounds, which are allowed values
+            themselves.
         """
         cell = self.rows[row].get(column)
         if _is_empty(cell):
@@ -129,7 +136,8 @@ class TestTable:
 
 
 LEAST = 1e-300  # smallest number above 0
-# more or less is a mistake: 30,000 years at 1 kHz, and stresses below any load cell and above any strength [MPa]
+# more or less is a mistake: 30,000 years at 1 kHz, and stresses below any load cell and above any
+# strength [MPa]
 MOST_CYCLES = 1e15
 LEAST_STRESS = 1e-3
 MOST_STRESS = 1e5
@@ -156,7 +164,11 @@ def _is_empty(cell: Any) -> bool:
     """Return whether a cell holds neither a number nor a text."""
     if isinstance(cell, str):
         return not cell.strip()
-    return cell is None or type(cell).__name__ in MISSING or (isinstance(cell, float) and math.isnan(cell))
+    return (
+        cell is None
+        or type(cell).__name__ in MISSING
+        or (isinstance(cell, float) and math.isnan(cell))
+    )
 
 
 def read_tests(
@@ -227,17 +239,26 @@ def _tests_of_file(
     except InputError as error:
         raise error.at(path, line) from None
     names = {split_head(head)[0]: meaning for head, meaning in heads.items()}
-    numbers = {name: UNITS[meaning.column] for name, meaning in names.items() if meaning.column in UNITS}
+    numbers = {
+        name: UNITS[meaning.column] for name, meaning in names.items() if meaning.column in UNITS
+    }
     empty = {head for head, meaning in heads.items() if meaning.column in optional}
     tests, place = from_file(path, {*optional, *empty}, further=numbers)
-    columns = {name: meaning for name, meaning in {**heads, **names}.items() if name in tests.rows[0]}
-    rows = [dict(_renamed(name, cell, columns.get(name)) for name, cell in row.items()) for row in tests.rows]
+    columns = {
+        name: meaning for name, meaning in {**heads, **names}.items() if name in tests.rows[0]
+    }
+    rows = [
+        dict(_renamed(name, cell, columns.get(name)) for name, cell in row.items())
+        for row in tests.rows
+    ]
     read_as = {meaning.column: name for name, meaning in columns.items()}
     return TestTable(rows, tests.lines, tests.path, tests.digest, read_as), place
 
 
 def _renamed(name: str, cell: Any, head: Head | None) -> tuple[str, Any]:
-    """Return name and value of a cell whose head is another name; a unit at the end of the head stands behind it."""
+    """Return name and value of a cell whose head is another name; a unit at the end of the head
+    stands behind it.
+    """
     if head is None:
         return name, cell
     states_unit = head.unit in UNITS_OF_HEADS.values() and split_quantity(cell) is None
@@ -251,7 +272,8 @@ def from_file(
     row: str = "test",
     further: Mapping[str, str] = MappingProxyType({}),
 ) -> tuple[TestTable, int]:
-    """Return the rows of a CSV file or a workbook, whatever its columns are, and the line of its head.
+    """Return the rows of a CSV file or a workbook, whatever its columns are, and the line of its
+    head.
 
     Parameters
     ----------
@@ -273,7 +295,10 @@ def from_file(
 
 
 def _from_rows(table: Any, known: Collection[str], others: Mapping[str, str]) -> TestTable:
-    allowed = "the path of a table, a data frame, a list of rows (each a mapping), or a mapping of columns"
+    allowed = (
+        "the path of a table, a data frame, a list of rows (each a mapping), or a mapping "
+        "of columns"
+    )
     if table is None:
         raise InputError(FIELD, None, allowed)
     if hasattr(table, "columns"):
@@ -285,18 +310,29 @@ def _from_rows(table: Any, known: Collection[str], others: Mapping[str, str]) ->
                 raise InputError(f"{FIELD}: {name}", values, "a list with one value for each test")
         if len({len(values) for values in columns.values()}) > 1:
             raise InputError(FIELD, list(columns), "columns of the same length")
-        entries = [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
+        entries = [
+            dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)
+        ]
     else:
         entries = plain(table, FIELD)
         if not isinstance(entries, list) or not all(isinstance(row, Mapping) for row in entries):
-            remedy = "Name the columns, such as {'amplitude': [...], 'cycles': [...], 'failed': [...]}."
+            remedy = (
+                "Name the columns, such as {'amplitude': [...], 'cycles': [...], 'failed': [...]}."
+            )
             raise InputError(FIELD, table, allowed, remedy)
     if not entries:
         raise InputError(FIELD, None, "a table with at least one test")
     heads = read_heads(dict.fromkeys(str(head) for row in entries for head in row), known, others)
     written = {head: meaning.column for head, meaning in heads.items()}
-    written |= {head: f"{meaning.column} [{meaning.unit}]" for head, meaning in heads.items() if meaning.unit}
-    rows = [dict(_cell(written.get(str(head), str(head)), value) for head, value in row.items()) for row in entries]
+    written |= {
+        head: f"{meaning.column} [{meaning.unit}]"
+        for head, meaning in heads.items()
+        if meaning.unit
+    }
+    rows = [
+        dict(_cell(written.get(str(head), str(head)), value) for head, value in row.items())
+        for row in entries
+    ]
     read_as = {meaning.column: head for head, meaning in heads.items()}
     return TestTable(rows, list(range(1, len(rows) + 1)), heads=read_as)
 

@@ -20,19 +20,29 @@ def grid_axis(field: str, values: ArrayLike) -> Array:
         raise InputError(field, a, allowed)
     steps = np.diff(a)
     if steps.min() <= 0 or np.ptp(steps) > 1e-6 * steps.mean():
-        raise InputError(field, a, "coordinates that increase in equal steps", "Resample the tractions.")
+        raise InputError(
+            field, a, "coordinates that increase in equal steps", "Resample the tractions."
+        )
     return a
 
 
-def grid_tractions(x: Array, y: Array, pressure: ArrayLike, lateral: ArrayLike, rolling: ArrayLike) -> Array:
+def grid_tractions(
+    x: Array, y: Array, pressure: ArrayLike, lateral: ArrayLike, rolling: ArrayLike
+) -> Array:
     """Return shear and pressure on a grid, (ny, nx, 3)."""
     fields = []
-    for name, values in (("shear_lateral", lateral), ("shear_rolling", rolling), ("pressure", pressure)):
+    for name, values in (
+        ("shear_lateral", lateral),
+        ("shear_rolling", rolling),
+        ("pressure", pressure),
+    ):
         a = read_array(values, name, "tractions are arrays of numbers [MPa]")
         if a.ndim != 0 and a.shape != (y.size, x.size):
             raise InputError(name, a.shape, f"tractions of shape (ny, nx) = {(y.size, x.size)}")
         if not np.all(np.isfinite(a)):
-            raise InputError(name, "NaN or infinite", "finite tractions everywhere", "Put 0 outside the patch.")
+            raise InputError(
+                name, "NaN or infinite", "finite tractions everywhere", "Put 0 outside the patch."
+            )
         fields.append(np.broadcast_to(a, (y.size, x.size)))
     return np.stack(fields, axis=-1)
 

@@ -9,19 +9,22 @@ from trackroller.halfspace.peak import Target, lengths, scan
 from trackroller.numerics.compiled import compiled
 from trackroller.numerics.threads import share_rows
 
-# Depths over the smaller semi-axis: the surface, and the depths of the frictionless peak for nu from 0 to 0.5, between
-# the circle (0.38 to 0.55) and the line contact (0.70 to 0.79).
+# Depths over the smaller semi-axis: the surface, and the depths of the frictionless peak for nu
+# from 0 to 0.5, between the circle (0.38 to 0.55) and the line contact (0.70 to 0.79).
 _DEPTHS = (0.0, 0.38, 0.48, 0.58, 0.68, 0.78)
 _VERTICES = ((0.9, 0.0), (-0.9, 0.0), (0.0, 0.9), (0.0, -0.9))  # points near the vertices
 _POINTS = np.array([(0.0, 0.0, z) for z in _DEPTHS] + [(x, y, 0.0) for x, y in _VERTICES])
 _ORDER = 16  # quadrature points, for ellipses that are not slender
 
 
-def lower_bounds(patches: np.ndarray, poisson_ratio: np.ndarray, fields: np.ndarray | None = None) -> np.ndarray:
+def lower_bounds(
+    patches: np.ndarray, poisson_ratio: np.ndarray, fields: np.ndarray | None = None
+) -> np.ndarray:
     """Return the largest von Mises stress over p_max at a few points, a lower bound of the peak.
 
-    The points lie along z below the centre, and on the surface in the centre and near the vertices of the ellipse. The
-    peak is the largest stress at any point, so it is not lower than the stress at these points.
+    The points lie along z below the centre, and on the surface in the centre and near the vertices
+    of the ellipse. The peak is the largest stress at any point, so it is not lower than the stress
+    at these points.
 
     Parameters
     ----------
@@ -37,7 +40,10 @@ def lower_bounds(patches: np.ndarray, poisson_ratio: np.ndarray, fields: np.ndar
     numpy.ndarray, shape (n, 2)
         Lower bounds for roller and guide [1].
     """
-    patches, ratios = np.ascontiguousarray(patches), np.ascontiguousarray(poisson_ratio, dtype=float)
+    patches, ratios = (
+        np.ascontiguousarray(patches),
+        np.ascontiguousarray(poisson_ratio, dtype=float),
+    )
     finer = refinement(patches)
     out = np.empty((len(patches), 2))
     for factor in np.unique(finer):
@@ -58,6 +64,8 @@ def _largest(first, last, patches, rule, room, out):
     """Write the largest stresses at the points of patches `first` to `last` into `out` (n, 2)."""
     rows, fields, ratios, units = patches
     for i in range(first, last):
-        values = scan(Target(rows[i], fields[i], ratios[i], units[i], False, room), _POINTS, (rule, rule))
+        values = scan(
+            Target(rows[i], fields[i], ratios[i], units[i], False, room), _POINTS, (rule, rule)
+        )
         for body in range(2):
             out[i, body] = values[body].max()

@@ -1,25 +1,28 @@
 """Stress in the half-space under a sliding Hertzian ellipse, exact up to the surface.
 
-The traction on the body is p = p_max sqrt(1 - rho^2) along z and q = mu p d(x, y) with a unit direction d. At a
-point the direction is split into its value d_0 there and the difference d - d_0:
+The traction on the body is p = p_max sqrt(1 - rho^2) along z and q = mu p d(x, y) with a unit
+direction d. At a point the direction is split into its value d_0 there and the difference d - d_0:
 
-- p and mu p d_0 are Hertzian, so that their stresses are a single integral over plane waves,
-  sigma = 1/(2 pi^2) Re int_0^pi [A G(zeta) - i lambda z B G'(zeta)] dphi, zeta = X cos(phi) + Y sin(phi) + i lambda z,
-  G = pi (2 + zeta ln((zeta - 1)/(zeta + 1))), lambda^2 = (cos(phi)/a)^2 + (sin(phi)/b)^2, where A + B k z are the
-  transforms of the Boussinesq-Cerruti potentials (eqs (1)-(5); `validation/derivations/plane_waves.py`);
-- mu p (d - d_0) vanishes at the point: its Cerruti integral in polar coordinates about the point has no
-  singularity at any depth, including z = 0 and the edge of the patch.
+- p and mu p d_0 are Hertzian, so that their stresses are a single integral over plane waves, sigma
+  = 1/(2 pi^2) Re int_0^pi [A G(zeta) - i lambda z B G'(zeta)] dphi, zeta = X cos(phi) + Y sin(phi)
+  + i lambda z, G = pi (2 + zeta ln((zeta - 1)/(zeta + 1))), lambda^2 = (cos(phi)/a)^2 +
+  (sin(phi)/b)^2, where A + B k z are the transforms of the Boussinesq-Cerruti potentials (eqs
+  (1)-(5); `validation/derivations/plane_waves.py`);
+- mu p (d - d_0) vanishes at the point: its Cerruti integral in polar coordinates about the point
+  has no singularity at any depth, including z = 0 and the edge of the patch.
 
 Far from the patch point loads are summed over the patch instead.
 
-Frame: x lateral, y in the rolling direction (Kalker and CONTACT: x), z into the body. Stresses are returned as parts
-(4, 6) for pressure and friction, without and with the factor nu, so that one evaluation serves both bodies
-(`stress.body_stress`). Components: xx, yy, zz, xy, yz, zx. x, y, z, a, b in mm; stresses per unit p_max.
+Frame: x lateral, y in the rolling direction (Kalker and CONTACT: x), z into the body. Stresses are
+returned as parts (4, 6) for pressure and friction, without and with the factor nu, so that one
+evaluation serves both bodies (`stress.body_stress`). Components: xx, yy, zz, xy, yz, zx. x, y, z,
+a, b in mm; stresses per unit p_max.
 
-The loops over waves and rays run in vector registers. Their angles and weights therefore stand in rows of a scratch
-array, and the formulas are inlined: a call for each wave or ray would cost more than its arithmetic (see
-`numerics.compiled.inner`). In full sliding the rays have double precision. Tractions on a grid are known in single
-precision only, and so are the sums over their rays; twice as many numbers then fit into a vector register.
+The loops over waves and rays run in vector registers. Their angles and weights therefore stand in
+rows of a scratch array, and the formulas are inlined: a call for each wave or ray would cost more
+than its arithmetic (see `numerics.compiled.inner`). In full sliding the rays have double precision.
+Tractions on a grid are known in single precision only, and so are the sums over their rays; twice
+as many numbers then fit into a vector register.
 """
 
 from __future__ import annotations
@@ -49,15 +52,31 @@ from trackroller.numerics.threads import share_rows
 
 XX, YY, ZZ, XY, YZ, ZX = range(6)  # components of a stress
 
-# One patch: semi-axes a, b [mm], friction coefficient, kinematics as in `contact.slip.Slip`, `fixed` direction of the
-# friction along y in full slip (0 in rolling), and where the lateral slip vanishes, which covers all three spin models:
-# at y = k0 + k1 (x + a) left of pole_x and at y = k0 + k2 (x - a) right of pole_x.
-FIELDS = ("a", "b", "friction", "sine", "cosine", "radius", "shift", "fixed", "pole_x", "k0", "k1", "k2")
+# One patch: semi-axes a, b [mm], friction coefficient, kinematics as in `contact.slip.Slip`,
+# `fixed` direction of the friction along y in full slip (0 in rolling), and where the lateral slip
+# vanishes, which covers all three spin models: at y = k0 + k1 (x + a) left of pole_x and at y = k0
+# + k2 (x - a) right of pole_x.
+FIELDS = (
+    "a",
+    "b",
+    "friction",
+    "sine",
+    "cosine",
+    "radius",
+    "shift",
+    "fixed",
+    "pole_x",
+    "k0",
+    "k1",
+    "k2",
+)
 PATCH = np.dtype([(name, np.float64) for name in FIELDS])
 
 
 class Place(NamedTuple):
-    """Point x, y, z [mm] below a patch, and the direction d_x, d_y of the friction there over its bound."""
+    """Point x, y, z [mm] below a patch, and the direction d_x, d_y of the friction there over its
+    bound.
+    """
 
     x: float
     y: float
@@ -67,8 +86,11 @@ class Place(NamedTuple):
 
 
 # Rows of the scratch array: angle and weight of waves and chords, then the numbers of each ray.
-STRIDE = 4104  # numbers in a row; rows of a power of two would compete for the same lines of the cache
-ANGLE, WEIGHT, C, S, START, SPAN, BEHIND, LENGTH, FIELD_X, FIELD_Y = (row * STRIDE for row in range(10))
+# numbers in a row; rows of a power of two would compete for the same lines of the cache
+STRIDE = 4104
+ANGLE, WEIGHT, C, S, START, SPAN, BEHIND, LENGTH, FIELD_X, FIELD_Y = (
+    row * STRIDE for row in range(10)
+)
 SCRATCH = 10 * STRIDE
 MOST_POINTS = 1024  # points of a rule; a row holds four rays for each point
 
@@ -83,13 +105,17 @@ def slip_at(patch, x, y):
 
 @inner
 def grid_place(u, count):
-    """Return where u = x/a or y/b lies on the grid, in elements from the centre of the first one on."""
+    """Return where u = x/a or y/b lies on the grid, in elements from the centre of the first one
+    on.
+    """
     return count * (0.5 * (u + 1.0)) - 0.5
 
 
 @inner
 def cell_of(place, count, real):
-    """Return the element centre before a place on the grid and the share of the way to the next one, as `real`."""
+    """Return the element centre before a place on the grid and the share of the way to the next
+    one, as `real`.
+    """
     place = min(max(real(place), real(0.0)), real(count - 1))
     before = min(real(np.int32(place)), real(count - 2))
     return before, place - before
@@ -97,7 +123,9 @@ def cell_of(place, count, real):
 
 @inner
 def interpolated(field, x, y):
-    """Return the shares (x, y) of the traction bound at a place x, y on the grid, bilinear between element centres."""
+    """Return the shares (x, y) of the traction bound at a place x, y on the grid, bilinear between
+    element centres.
+    """
     ny, nx, real = field.shape[1], field.shape[2], field.dtype.type
     (i, s), (j, t) = cell_of(x, nx, real), cell_of(y, ny, real)
     return bilinear(field.reshape(-1), int(j) * nx + int(i), nx, ny * nx, s, t)
@@ -105,11 +133,15 @@ def interpolated(field, x, y):
 
 @inner
 def direction(patch, field, x, y):
-    """Return the traction on the roller over its bound at (x, y): length 1 where it slides, (0, 0) at the pole."""
+    """Return the traction on the roller over its bound at (x, y): length 1 where it slides, (0, 0)
+    at the pole.
+    """
     if patch.fixed != 0.0:  # full slip along y_C
         return 0.0, patch.fixed
     if field.shape[1] > 1:
-        return interpolated(field, grid_place(x / patch.a, field.shape[2]), grid_place(y / patch.b, field.shape[1]))
+        return interpolated(
+            field, grid_place(x / patch.a, field.shape[2]), grid_place(y / patch.b, field.shape[1])
+        )
     v_x, v_y = slip_at(patch, x, y)
     speed = math.sqrt(v_x * v_x + v_y * v_y)
     if speed == 0.0:
@@ -121,7 +153,8 @@ def direction(patch, field, x, y):
 def spread_angles(work, at, start, end, turn, scale, rule):
     """Write angles and weights of [start, end] from place `at` on; return the next free place.
 
-    The angles are dense near `turn` if it is an end; neighbouring angles there are about `scale` apart.
+    The angles are dense near `turn` if it is an end; neighbouring angles there are about `scale`
+    apart.
     """
     span = end - start
     if span < 1e-15:
@@ -179,7 +212,9 @@ def _hertz_transform(p, q):
 
 @inner
 def sum_waves(patch, place, count, work, out):
-    """Add the stresses of `count` plane waves; their symmetric components are turned from the wave vector to x, y."""
+    """Add the stresses of `count` plane waves; their symmetric components are turned from the wave
+    vector to x, y.
+    """
     inv_a, inv_b, mu, d_x, d_y = 1.0 / patch.a, 1.0 / patch.b, patch.friction, place.d_x, place.d_y
     px, py = place.x / patch.a, place.y / patch.b
     p_xx = p_yy = p_zz = p_xy = p_yz = p_zx = n_xx = n_yy = n_xy = 0.0
@@ -225,7 +260,9 @@ def sum_waves(patch, place, count, work, out):
 
 @inner
 def wave_angles(patch, px, py, rule, work):
-    """Write angles and weights of the plane waves for the point (px a, py b); return their number."""
+    """Write angles and weights of the plane waves for the point (px a, py b); return their
+    number.
+    """
     a, b = patch.a, patch.b
     r = math.sqrt(px * px + py * py)
     beta = math.acos(1.0 / r) if r > 1.0 else 0.0
@@ -242,17 +279,21 @@ def wave_angles(patch, px, py, rule, work):
     return count
 
 
-# Least length of a ray over the semi-axis. A ray from a point on the edge to its own side has none and would divide by
-# zero; in single precision the square of the shortest distance on it must stay above 1e-38.
+# Least length of a ray over the semi-axis. A ray from a point on the edge to its own side has none
+# and would divide by zero; in single precision the square of the shortest distance on it must stay
+# above 1e-38.
 SHORTEST = 1e-9
 
 
 @inner
 def chord_angles(patch, px, py, rule, work):
-    """Write angles and weights of chords through the point (px a, py b); return the number of chords."""
+    """Write angles and weights of chords through the point (px a, py b); return the number of
+    chords.
+    """
     a, b = patch.a, patch.b
     r2 = px * px + py * py
-    half = math.asin(1.0 / math.sqrt(r2)) if r2 > 1.0 else 0.5 * math.pi  # outside: the cone that meets the patch
+    # outside: the cone that meets the patch
+    half = math.asin(1.0 / math.sqrt(r2)) if r2 > 1.0 else 0.5 * math.pi
     first = math.atan2(py, px) + math.pi - half
     last = first + 2.0 * half
     center = 0.5 * math.pi if a >= b else 0.0  # angle near which the ray turns fast
@@ -269,7 +310,8 @@ def chord_angles(patch, px, py, rule, work):
 def rays_of_chords(patch, px, py, count, work):
     """Turn `count` chords through the point into rays from it and return the number of rays.
 
-    A point inside the patch has rays to both sides; from a point outside only one side meets the patch.
+    A point inside the patch has rays to both sides; from a point outside only one side meets the
+    patch.
     """
     a, b = patch.a, patch.b
     outside = px * px + py * py > 1.0
@@ -298,7 +340,9 @@ def rays_of_chords(patch, px, py, count, work):
 
 @inner
 def rounded_rays(patch, count, work, single):
-    """Write the rays in single precision into the scratch array `single`; the unit is the smaller semi-axis."""
+    """Write the rays in single precision into the scratch array `single`; the unit is the smaller
+    semi-axis.
+    """
     unit = min(patch.a, patch.b)
     for k in range(count):
         single[WEIGHT + k] = work[WEIGHT + k] / (unit * unit)
@@ -310,10 +354,11 @@ def rounded_rays(patch, count, work, single):
 
 @inner
 def _interpolate_rays(field, at, per, node, count, work, places):
-    """Interpolate the traction over its bound at a node of each ray, and write it into the scratch array.
+    """Interpolate the traction over its bound at a node of each ray, and write it into the scratch
+    array.
 
-    `at` is the place of the point on the grid (x, y), and `per` the number of elements per length; `places` (m,)
-    serves the numbers of the elements.
+    `at` is the place of the point on the grid (x, y), and `per` the number of elements per length;
+    `places` (m,) serves the numbers of the elements.
     """
     real, (_, ny, nx) = work.dtype.type, field.shape
     wide = real(nx)
@@ -330,7 +375,8 @@ def _interpolate_rays(field, at, per, node, count, work, places):
 
 @inner
 def _stresses_of_ray(c, s, q_e, q_t, share, deep, turn):
-    """Return the stresses of the friction q_e along a ray (c, s) and q_t across it, then the parts with factor nu.
+    """Return the stresses of the friction q_e along a ray (c, s) and q_t across it, then the parts
+    with factor nu.
 
     With the distance rho of the point: share = r/rho, deep = z/rho, turn = rho/(rho + z).
     """
@@ -343,22 +389,34 @@ def _stresses_of_ray(c, s, q_e, q_t, share, deep, turn):
     cc, ss, cs = c * c, s * s, c * s
     across = (cs + cs) * et
     stress = cc * e, ss * e, axial * deep * deep, cs * e, -s * slant, -c * slant
-    return stress, (cc * e_nu + ss * t_nu - across, ss * e_nu + cc * t_nu + across, cs * (e_nu - t_nu) + (cc - ss) * et)
+    return stress, (
+        cc * e_nu + ss * t_nu - across,
+        ss * e_nu + cc * t_nu + across,
+        cs * (e_nu - t_nu) + (cc - ss) * et,
+    )
 
 
 @inner
 def sum_rays(patch, field, place, count, rule, work, places, out):
-    """Add the stresses of the friction along `count` rays less those of friction in the direction at the point.
+    """Add the stresses of the friction along `count` rays less those of friction in the direction
+    at the point.
 
-    Without a `field` (None) the slip gives the direction. Under a field the rays are those of `rounded_rays`, and
-    `places` (m,) serves the interpolation. The scratch array sets the precision of the sums.
+    Without a `field` (None) the slip gives the direction. Under a field the rays are those of
+    `rounded_rays`, and `places` (m,) serves the interpolation. The scratch array sets the precision
+    of the sums.
     """
     real, unit = work.dtype.type, 1.0
     if field is not None:
         unit, ny, nx = min(patch.a, patch.b), field.shape[1], field.shape[2]
         at = real(grid_place(place.x / patch.a, nx)), real(grid_place(place.y / patch.b, ny))
         per = real(0.5 * nx * unit / patch.a), real(0.5 * ny * unit / patch.b)
-    x, y, z, d_x, d_y = real(place.x), real(place.y), real(place.z / unit), real(place.d_x), real(place.d_y)
+    x, y, z, d_x, d_y = (
+        real(place.x),
+        real(place.y),
+        real(place.z / unit),
+        real(place.d_x),
+        real(place.d_y),
+    )
     one = real(1.0)
     xx = yy = xy = zz = yz = zx = n_xx = n_yy = n_xy = real(0.0)
     for i in range(rule.shape[1]):
@@ -385,7 +443,9 @@ def sum_rays(patch, field, place, count, rule, work, places, out):
             inside = work[SPAN + k] * rest * (work[BEHIND + k] + gone)
             weight = share * work[WEIGHT + k] * tau * math.sqrt(inside) * inv_rho * inv_rho
             along, across = weight * (f_x * c + f_y * s), weight * (f_y * c - f_x * s)
-            stress, by_nu = _stresses_of_ray(c, s, along, across, r * inv_rho, z * inv_rho, rho * rho * inv)
+            stress, by_nu = _stresses_of_ray(
+                c, s, along, across, r * inv_rho, z * inv_rho, rho * rho * inv
+            )
             xx, yy, zz = xx + stress[0], yy + stress[1], zz + stress[2]
             xy, yz, zx = xy + stress[3], yz + stress[4], zx + stress[5]
             n_xx, n_yy, n_xy = n_xx + by_nu[0], n_yy + by_nu[1], n_xy + by_nu[2]
@@ -412,10 +472,13 @@ class Room(NamedTuple):
 
 @inner
 def _far_field(patch, field, x, y, z, rule, out):
-    """Sum point loads over the patch: exponentially exact at distances above the size of the patch."""
+    """Sum point loads over the patch: exponentially exact at distances above the size of the
+    patch.
+    """
     count = 4 * rule.shape[1]
     for i in range(rule.shape[1]):
-        rho = math.sqrt(rule[0, i] * (2.0 - rule[0, i]))  # 1 - rho^2 = (1 - v)^2 makes the pressure a polynomial
+        # 1 - rho^2 = (1 - v)^2 makes the pressure a polynomial
+        rho = math.sqrt(rule[0, i] * (2.0 - rule[0, i]))
         shrink = 1.0 - rule[0, i]
         weight = rule[1, i] * shrink * shrink * patch.a * patch.b * 2.0 * math.pi / count
         for j in range(count):
@@ -428,7 +491,9 @@ def _far_field(patch, field, x, y, z, rule, out):
 
 @fast
 def _add_hertzian(patch, field, points, rule, room, directions, out):
-    """Add the pressure, and the friction in its direction at the point, which is stored in `directions`."""
+    """Add the pressure, and the friction in its direction at the point, which is stored in
+    `directions`.
+    """
     for i in range(len(points)):
         x, y, z = points[i, 0], points[i, 1], points[i, 2]
         px, py = x / patch.a, y / patch.b
@@ -443,13 +508,17 @@ def _add_hertzian(patch, field, points, rule, room, directions, out):
 
 @fast
 def _add_other_directions(patch, field, points, rule, room, directions, out):
-    """Add the friction less that in its direction at the point; under traction fields in their precision."""
+    """Add the friction less that in its direction at the point; under traction fields in their
+    precision.
+    """
     if not (patch.friction > 0.0 and patch.fixed == 0.0):
         return
     for i in range(len(points)):
         x, y, z = points[i, 0], points[i, 1], points[i, 2]
         px, py = x / patch.a, y / patch.b
-        count = rays_of_chords(patch, px, py, chord_angles(patch, px, py, rule, room.rays), room.rays)
+        count = rays_of_chords(
+            patch, px, py, chord_angles(patch, px, py, rule, room.rays), room.rays
+        )
         place = Place(x, y, z, directions[i, 0], directions[i, 1])
         if field.shape[1] > 1:
             rounded_rays(patch, count, room.rays, room.single)
@@ -493,9 +562,13 @@ def _add_far_field(patch, field, points, rule, out):
 
 @lru_cache(maxsize=128)
 def unit_rule(order: int) -> np.ndarray:
-    """Return nodes and weights (2, order) of `clustered_rule`; raise InputError above the size of the scratch array."""
+    """Return nodes and weights (2, order) of `clustered_rule`; raise InputError above the size of
+    the scratch array.
+    """
     if not 1 <= order <= MOST_POINTS:
-        raise InputError("order of quadrature", order, f"1 to {MOST_POINTS}", "Ask for fewer quadrature points.")
+        raise InputError(
+            "order of quadrature", order, f"1 to {MOST_POINTS}", "Ask for fewer quadrature points."
+        )
     return np.stack(clustered_rule(order))
 
 
@@ -514,14 +587,20 @@ def refinement(patches: np.ndarray) -> np.ndarray:
 
 
 def fields_of(fields: np.ndarray | None, group: np.ndarray) -> np.ndarray:
-    """Return the traction fields (m, 2, ny, nx) of the patches `group` as kernels take them; `NO_FIELD` for None."""
+    """Return the traction fields (m, 2, ny, nx) of the patches `group` as kernels take them;
+    `NO_FIELD` for None.
+    """
     if fields is None:
         return np.zeros((group.size, *NO_FIELD.shape), FIELD)
     return np.ascontiguousarray(fields[group], dtype=FIELD)
 
 
 def stress_parts(
-    patch: np.ndarray, points: np.ndarray, waves: int = 24, nodes: int = 24, field: np.ndarray = NO_FIELD
+    patch: np.ndarray,
+    points: np.ndarray,
+    waves: int = 24,
+    nodes: int = 24,
+    field: np.ndarray = NO_FIELD,
 ) -> np.ndarray:
     """Compute stress parts per unit p_max at any points below one patch; see `stress.body_stress`.
 

@@ -1,4 +1,6 @@
-"""Stresses on whole planes below the nodes of a grid: convolutions with the stresses of hat loads."""
+"""Stresses on whole planes below the nodes of a grid: convolutions with the stresses of hat
+loads.
+"""
 
 from __future__ import annotations
 
@@ -13,19 +15,32 @@ from trackroller.numerics.compiled import compiled, fast
 
 @compiled
 def _mirror_hats(corners, area, signs, out):  # pragma: no cover (compiled)
-    """Write second differences of corner values (ny + 2, nx + 2) and their signed mirror images to `out`."""
+    """Write second differences of corner values (ny + 2, nx + 2) and their signed mirror images to
+    `out`.
+    """
     for j in range(corners.shape[0] - 2):
         for i in range(corners.shape[1] - 2):
             ends = corners[j, i] + corners[j, i + 2] + corners[j + 2, i] + corners[j + 2, i + 2]
-            beside = corners[j, i + 1] + corners[j + 2, i + 1] + corners[j + 1, i] + corners[j + 1, i + 2]
+            beside = (
+                corners[j, i + 1]
+                + corners[j + 2, i + 1]
+                + corners[j + 1, i]
+                + corners[j + 1, i + 2]
+            )
             value = (ends - 2.0 * beside + 4.0 * corners[j + 1, i + 1]) / area
             left, back = signs[0] if i > 0 else 1.0, signs[1] if j > 0 else 1.0
-            out[j, i], out[j, -i], out[-j, i], out[-j, -i] = value, left * value, back * value, left * back * value
+            out[j, i], out[j, -i], out[-j, i], out[-j, -i] = (
+                value,
+                left * value,
+                back * value,
+                left * back * value,
+            )
 
 
 @compiled
 def hat_kernels(sides, nodes, depths, lengths, zero):  # pragma: no cover (compiled)
-    """Return the stresses of unit hat loads at node offsets -(n - 1) to n - 1, for circular convolutions.
+    """Return the stresses of unit hat loads at node offsets -(n - 1) to n - 1, for circular
+    convolutions.
 
     Parameters
     ----------
@@ -61,11 +76,14 @@ def hat_kernels(sides, nodes, depths, lengths, zero):  # pragma: no cover (compi
         for load in range(3):
             for c in range(9):
                 kind = c if c < 6 else c - 6 + (c - 6) // 2
-                # xy and zx change their sign in the mirror image in x, xy and yz in y, and so do q_x and q_y
+                # xy and zx change their sign in the mirror image in x, xy and yz in y, and so do
+                # q_x and q_y
                 odd_x = (kind == 3 or kind == 5) != (load == 0)
                 odd_y = (kind == 3 or kind == 4) != (load == 1)
                 at, own = corners[9 * load + c], out[depth, load, c]
-                _mirror_hats(at, sides[0] * sides[1], (-1.0 if odd_x else 1.0, -1.0 if odd_y else 1.0), own)
+                _mirror_hats(
+                    at, sides[0] * sides[1], (-1.0 if odd_x else 1.0, -1.0 if odd_y else 1.0), own
+                )
     return out
 
 
@@ -90,24 +108,35 @@ def body_spectra(spectra, kernels, poisson_ratio, signs):  # pragma: no cover (c
         for c in range(6):
             k_x, k_y, k_p = kernel[depth, 0, c], kernel[depth, 1, c], kernel[depth, 2, c]
             by_nu = c + 6 if c < 2 else 8  # places of xx, yy and xy; the others do not depend on nu
-            n_x, n_y, n_p = kernel[depth, 0, by_nu], kernel[depth, 1, by_nu], kernel[depth, 2, by_nu]
+            n_x, n_y, n_p = (
+                kernel[depth, 0, by_nu],
+                kernel[depth, 1, by_nu],
+                kernel[depth, 2, by_nu],
+            )
             for body in range(bodies):
                 sign, nu = signs[body], poisson_ratio[body] if c < 2 or c == 3 else np.float32(0.0)
                 for i in range(load.shape[1]):
-                    sheared = load[0, i] * (k_x[i] + nu * n_x[i]) + load[1, i] * (k_y[i] + nu * n_y[i])
+                    sheared = load[0, i] * (k_x[i] + nu * n_x[i]) + load[1, i] * (
+                        k_y[i] + nu * n_y[i]
+                    )
                     stress[body, depth, c, i] = load[2, i] * (k_p[i] + nu * n_p[i]) + sign * sheared
     return out
 
 
 def planes_below(
-    tractions: np.ndarray, sides: tuple[float, float], depths: np.ndarray, poisson_ratio: ArrayLike, signs: ArrayLike
+    tractions: np.ndarray,
+    sides: tuple[float, float],
+    depths: np.ndarray,
+    poisson_ratio: ArrayLike,
+    signs: ArrayLike,
 ) -> np.ndarray:
     """Return the stresses of bodies on planes below the nodes of a grid.
 
     Parameters
     ----------
     tractions : numpy.ndarray
-        q_x, q_y, p at the nodes, (3, ny, nx) [MPa], bilinear between them. Their precision is that of the sums.
+        q_x, q_y, p at the nodes, (3, ny, nx) [MPa], bilinear between them. Their precision is that
+        of the sums.
     sides : tuple of float
         Grid spacings along x and y [mm].
     depths : numpy.ndarray

@@ -1,9 +1,10 @@
 """Stresses of point loads and corner functions of loaded rectangles. GENERATED: do not edit.
 
-Written by `python -m validation.derivations.kernel_writer`; `validation/derivations/potentials.py` derives them.
-Every function returns 36 numbers: A for the loads x, y, z (slowest) and the components xx, yy, zz, xy, yz, xz,
-then B in the same order; the stress is A + nu B. Lengths of corner functions are in units of the grid spacing:
-FLOOR is the distance below which logarithms stop growing, which keeps a step of traction finite on its edge.
+Written by `python -m validation.derivations.kernel_writer`; `validation/derivations/potentials.py`
+derives them. Every function returns 36 numbers: A for the loads x, y, z (slowest) and the
+components xx, yy, zz, xy, yz, xz, then B in the same order; the stress is A + nu B. Lengths of
+corner functions are in units of the grid spacing: FLOOR is the distance below which logarithms stop
+growing, which keeps a step of traction finite on its edge.
 """
 
 from math import asinh, atan2, log, sqrt
@@ -70,7 +71,14 @@ def point_kernel(x, y, z):
     t46 = t0 * t45 * (t32 + t44)
     t47 = t16 * y
     t48 = t34 * t47
-    load_x = t18 * (t10 + t14), t18 * (t19 + t21), t25, t28 * (t13 + t27 - 4.0 * t4), t31, t22 * t33 * (t12 * t4 + t32)
+    load_x = (
+        t18 * (t10 + t14),
+        t18 * (t19 + t21),
+        t25,
+        t28 * (t13 + t27 - 4.0 * t4),
+        t31,
+        t22 * t33 * (t12 * t4 + t32),
+    )
     load_y = t28 * (t14 + t27), t28 * (t19 + t34), t35, -t10 * t18, -t1 * t29, t31
     load_z = (
         t17 * (iS - t11 * z + t2 * t36 - t37 - t38 + t39),
@@ -88,7 +96,9 @@ def point_kernel(x, y, z):
 
 @compiled
 def bilinear_corner(x, y, z):
-    """Return the corner function of bilinear tractions: d4/dx2dy2 gives `point_kernel` [length^2]."""
+    """Return the corner function of bilinear tractions: d4/dx2dy2 gives `point_kernel`
+    [length^2].
+    """
     x2, y2, z2 = x * x, y * y, z * z
     R = sqrt(x2 + y2 + z2)
     S = R + z

@@ -1,11 +1,12 @@
 """The largest von Mises stress in the closed half-space below a sliding Hertzian ellipse.
 
-A coarse scan over surface and depth finds seeds; both bodies share its stress evaluations. From each seed a pattern
-search with parabolas climbs; points on the surface and on the edge of the patch are allowed. The highest point is
-evaluated again with finer quadrature.
+A coarse scan over surface and depth finds seeds; both bodies share its stress evaluations. From
+each seed a pattern search with parabolas climbs; points on the surface and on the edge of the patch
+are allowed. The highest point is evaluated again with finer quadrature.
 
-Coordinates are normalised: x over a, y over b, depth over the smaller semi-axis. Stresses are per unit p_max. The
-compiled functions treat one patch; with NumPy the arrays of a few points cost more than their stresses.
+Coordinates are normalised: x over a, y over b, depth over the smaller semi-axis. Stresses are per
+unit p_max. The compiled functions treat one patch; with NumPy the arrays of a few points cost more
+than their stresses.
 """
 
 from __future__ import annotations
@@ -29,7 +30,9 @@ Rings = tuple[tuple[float, int], ...]
 
 
 def _scan_points(surface: Rings, below: tuple[tuple[float, Rings], ...]) -> np.ndarray:
-    """Return points (rho cos, rho sin, depth) in normalised coordinates, (m, 3); rings are radii and counts."""
+    """Return points (rho cos, rho sin, depth) in normalised coordinates, (m, 3); rings are radii
+    and counts.
+    """
     rows = [(0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (-1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, -1.0, 0.0)]
     for rho, count in surface:
         angles = 2 * np.pi * (np.arange(count) + 0.5 * (count == 12)) / count
@@ -47,31 +50,41 @@ SCAN = _scan_points(
     ((0.3, 6), (0.53, 10), (0.75, 12), (0.92, 12), (1.0, 12)),
     ((0.12, ((0.4, 6), (0.8, 6))), (0.2, ((0.95, 8),)), (0.3, ((0.4, 6), (0.8, 6))), *_DEEP),
 )
-# For tractions with adhesion: in random designs the peaks lie below the centre, or on the surface far from the rim.
-SCAN_ADHESION = _scan_points(((0.3, 6), (0.53, 10), (0.78, 8), (1.0, 8)), ((0.3, ((0.6, 5),)), *_DEEP))
+# For tractions with adhesion: in random designs the peaks lie below the centre, or on the surface
+# far from the rim.
+SCAN_ADHESION = _scan_points(
+    ((0.3, 6), (0.53, 10), (0.78, 8), (1.0, 8)), ((0.3, ((0.6, 5),)), *_DEEP)
+)
 
-MOST_ON_RIDGE, OF_GRID = 128, 84  # points on the line where sliding begins, for each OF_GRID points of the grid
+# points on the line where sliding begins, for each OF_GRID points of the grid
+MOST_ON_RIDGE, OF_GRID = 128, 84
 STICKS = 1.0 - 1e-4  # square of the traction over its bound below which an element sticks
 NEAR_RIM = 0.98  # distance from the centre up to which the ridge is followed
 SEED_WORTH = 0.85  # least stress of a seed over the largest
-# The highest stress of the other kind, at the surface or below it, may lie this many times as far behind. Coarse rules
-# and few elements lower a ridge at the surface by some per cent, and hardly a summit below it.
+# The highest stress of the other kind, at the surface or below it, may lie this many times as far
+# behind. Coarse rules and few elements lower a ridge at the surface by some per cent, and hardly a
+# summit below it.
 RIVAL_LAG = 1.5
-# The rule of the summit decides between both kinds, because the rule of the polish errs otherwise at the surface than
-# below it. A climb below this share of the highest one is too low for that error.
+# The rule of the summit decides between both kinds, because the rule of the polish errs otherwise
+# at the surface than below it. A climb below this share of the highest one is too low for that
+# error.
 CLOSE_RIVAL = 0.97
 
-# Relative change on coarser elements at the place of a peak above which the top of its hill is sought there, in sweeps.
+# Relative change on coarser elements at the place of a peak above which the top of its hill is
+# sought there, in sweeps.
 FALLEN, TOP_SWEEPS = 0.03, 3
 
-SPLIT = (0.02, 0.06)  # distances from the pole over the semi-axis at which a spike begins to count, and counts in full
+# distances from the pole over the semi-axis at which a spike begins to count, and counts in full
+SPLIT = (0.02, 0.06)
 
 
 def scan_points(patches: np.ndarray, slender: bool, adhesion: bool) -> np.ndarray:
-    """Return the points of the scans, (n, m, 3): common points and points on the line where the lateral slip vanishes.
+    """Return the points of the scans, (n, m, 3): common points and points on the line where the
+    lateral slip vanishes.
 
-    The slip changes direction sharply on this line, which carries ridges of stress. In `slender` patches the slip turns
-    within a fraction of the long axis; lines on both sides of this line and across the pole are added.
+    The slip changes direction sharply on this line, which carries ridges of stress. In `slender`
+    patches the slip turns within a fraction of the long axis; lines on both sides of this line and
+    across the pole are added.
 
     Parameters
     ----------
@@ -80,7 +93,8 @@ def scan_points(patches: np.ndarray, slender: bool, adhesion: bool) -> np.ndarra
     slender : bool
         True for slender patches.
     adhesion : bool
-        True for tractions with adhesion, which turn smoothly: fewer points are enough, unless they are slender.
+        True for tractions with adhesion, which turn smoothly: fewer points are enough, unless they
+        are slender.
     """
     if adhesion and not slender:
         return np.broadcast_to(SCAN_ADHESION, (len(patches), *SCAN_ADHESION.shape))
@@ -90,7 +104,13 @@ def scan_points(patches: np.ndarray, slender: bool, adhesion: bool) -> np.ndarra
     u = np.stack([x, _fold(patches, x)], axis=2)
     if slender:
         u = np.concatenate(
-            [u, *_beside_turn(u[:, : 2 * share.size], pole, patches["a"][:, None], patches["b"][:, None])], axis=1
+            [
+                u,
+                *_beside_turn(
+                    u[:, : 2 * share.size], pole, patches["a"][:, None], patches["b"][:, None]
+                ),
+            ],
+            axis=1,
         )
     u /= np.maximum(np.hypot(u[..., 0], u[..., 1]), 1.0)[..., None]
     turning = np.concatenate([u, np.zeros((*u.shape[:2], 1))], axis=2)
@@ -99,10 +119,11 @@ def scan_points(patches: np.ndarray, slender: bool, adhesion: bool) -> np.ndarra
 
 @compiled
 def ridge_points(patch, field):
-    """Return surface points on the line where sliding begins, (m, 3); at most MOST_ON_RIDGE for each OF_GRID elements.
+    """Return surface points on the line where sliding begins, (m, 3); at most MOST_ON_RIDGE for
+    each OF_GRID elements.
 
-    Where a patch begins to slide, the traction changes with the root of the distance. Stresses at the surface have a
-    cusp there. Nearly all peaks that a coarse scan misses lie on this line.
+    Where a patch begins to slide, the traction changes with the root of the distance. Stresses at
+    the surface have a cusp there. Nearly all peaks that a coarse scan misses lie on this line.
 
     Parameters
     ----------
@@ -143,11 +164,12 @@ def _fold(patches: np.ndarray, x: np.ndarray) -> np.ndarray:
 
 
 def spike(patches: np.ndarray) -> np.ndarray:
-    """Return the friction over p_max at points where the slip vanishes apart from the spin pole, (n,); 0 if none.
+    """Return the friction over p_max at points where the slip vanishes apart from the spin pole,
+    (n,); 0 if none.
 
-    The rolling slip, eq. (21), vanishes at two x. The pole of eq. (22) is the first of them up to terms of second
-    order. Where both slips vanish under pressure, the stress of the model grows as a logarithm of the distance from
-    this point, times this friction.
+    The rolling slip, eq. (21), vanishes at two x. The pole of eq. (22) is the first of them up to
+    terms of second order. Where both slips vanish under pressure, the stress of the model grows as
+    a logarithm of the distance from this point, times this friction.
     """
     sine, cosine, radius, shift = (patches[name] for name in ("sine", "cosine", "radius", "shift"))
     with np.errstate(invalid="ignore"):
@@ -156,13 +178,19 @@ def spike(patches: np.ndarray) -> np.ndarray:
     apart = np.abs(x - (patches["pole_x"] / patches["a"])[:, None])
     inside = np.maximum(1.0 - x * x - _fold(patches, x) ** 2, 0.0)
     share = np.clip((apart - SPLIT[0]) / (SPLIT[1] - SPLIT[0]), 0.0, 1.0)
-    return np.where(patches["fixed"] == 0.0, patches["friction"] * (share * np.sqrt(inside)).max(axis=1), 0.0)
+    return np.where(
+        patches["fixed"] == 0.0, patches["friction"] * (share * np.sqrt(inside)).max(axis=1), 0.0
+    )
 
 
-def _beside_turn(fold: np.ndarray, pole: np.ndarray, a: np.ndarray, b: np.ndarray) -> list[np.ndarray]:
+def _beside_turn(
+    fold: np.ndarray, pole: np.ndarray, a: np.ndarray, b: np.ndarray
+) -> list[np.ndarray]:
     """Return points (n, m, 2) beside the line `fold`, and on and beside the chord x = pole."""
     width = np.minimum(a, b) / np.maximum(a, b)
-    shifts = [np.stack([np.zeros_like(width), k * np.minimum(a / b, 1.0)], axis=2) for k in (-1.0, 1.0)]
+    shifts = [
+        np.stack([np.zeros_like(width), k * np.minimum(a / b, 1.0)], axis=2) for k in (-1.0, 1.0)
+    ]
     chord = np.array([-0.95, -0.75, -0.5, -0.25, 0.0, 0.25, 0.5, 0.75, 0.95])
     lines = []
     for k in (-3.0, -1.0, 0.0, 1.0, 3.0):
@@ -174,9 +202,11 @@ def _beside_turn(fold: np.ndarray, pole: np.ndarray, a: np.ndarray, b: np.ndarra
 
 @compiled
 def along_turn(patch, u, out):
-    """Write the unit vector along which the slip changes its direction least at a point u (3,) into `out` (2,).
+    """Write the unit vector along which the slip changes its direction least at a point u (3,) into
+    `out` (2,).
 
-    In a patch long in x this is the direction of y; in a patch long in y it is the line without lateral slip.
+    In a patch long in x this is the direction of y; in a patch long in y it is the line without
+    lateral slip.
     """
     out[0], out[1] = 0.0, 1.0
     if patch.a <= patch.b:
@@ -187,10 +217,12 @@ def along_turn(patch, u, out):
 
 @compiled
 def best_rival(depth, values, leader):
-    """Return the index of the largest of `values` (m,) among the points of another kind than the leader; -1 if none.
+    """Return the index of the largest of `values` (m,) among the points of another kind than the
+    leader; -1 if none.
 
-    The kinds are points at the surface, with `depth` (m,) zero, and points below it. The highest stress at the surface
-    and the highest below it are separate hills. `leader` is the index of a point.
+    The kinds are points at the surface, with `depth` (m,) zero, and points below it. The highest
+    stress at the surface and the highest below it are separate hills. `leader` is the index of a
+    point.
     """
     shallow, best = depth[leader] == 0.0, -1
     for k in range(values.size):
@@ -203,7 +235,8 @@ def best_rival(depth, values, leader):
 def best_seeds(points, values, count, apart):
     """Return the indices of up to `count` scan points (m, 3) with the largest `values` (m,).
 
-    The points are `apart` from each other; they have at least the share SEED_WORTH of the largest value.
+    The points are `apart` from each other; they have at least the share SEED_WORTH of the largest
+    value.
     """
     left, chosen, number = values.copy(), np.empty(count, np.int64), 0
     enough = SEED_WORTH * values.max()
@@ -220,14 +253,18 @@ def best_seeds(points, values, count, apart):
 
 
 PROPORTIONS = np.array([1.0, 1.6, 1.0])  # of the first steps along radius, circumference and depth
-RIDGE_WORTH, LITTLE_FRICTION = 0.75, 0.15  # stress at the surface over the largest, and friction, that ridges need
-# The plane waves of a scan: 24 of them, a multiple of the lanes of vector registers, cost less than 18.
+# stress at the surface over the largest, and friction, that ridges need
+RIDGE_WORTH, LITTLE_FRICTION = 0.75, 0.15
+# The plane waves of a scan: 24 of them, a multiple of the lanes of vector registers, cost less than
+# 18.
 LEAST_WAVES = 8
-MORE_RAYS = 2  # points of the polish on the surface of a patch with adhesion beyond those below the surface
+# points of the polish on the surface of a patch with adhesion beyond those below the surface
+MORE_RAYS = 2
 
 
 class Rules(NamedTuple):
-    """Quadrature rules for the steps of a search: pairs of one for the plane waves and one for the rays.
+    """Quadrature rules for the steps of a search: pairs of one for the plane waves and one for the
+    rays.
 
     `ridge` serves the polish on the surface, where tractions with adhesion cause ridges of stress.
     """
@@ -241,7 +278,12 @@ class Rules(NamedTuple):
     @classmethod
     def of(cls, settings: PeakSettings, factor: int, quick: bool) -> Rules:
         """Return the rules of patches whose rules are refined by a factor."""
-        scan, climb, polish, summit = settings.scan, settings.climb, settings.polish, settings.summit
+        scan, climb, polish, summit = (
+            settings.scan,
+            settings.climb,
+            settings.polish,
+            settings.summit,
+        )
         orders = (
             (max(scan, LEAST_WAVES * quick), scan),
             (climb, climb),
@@ -249,7 +291,9 @@ class Rules(NamedTuple):
             (max(polish, 12), polish + MORE_RAYS * quick),
             (summit, summit),
         )
-        return cls(*((unit_rule(waves * factor), unit_rule(rays * factor)) for waves, rays in orders))
+        return cls(
+            *((unit_rule(waves * factor), unit_rule(rays * factor)) for waves, rays in orders)
+        )
 
 
 class Target(NamedTuple):
@@ -293,7 +337,8 @@ class Climbs(NamedTuple):
     along : numpy.ndarray, shape (m, 2)
         Direction of the first axis.
     spared : numpy.ndarray of bool, shape (m,)
-        Climbs that stand as the best of their kind only. They make no other climb be given up, see `standing`.
+        Climbs that stand as the best of their kind only. They make no other climb be given up, see
+        `standing`.
     """
 
     u: np.ndarray
@@ -305,7 +350,9 @@ class Climbs(NamedTuple):
 
 
 def lengths(rows: np.ndarray) -> np.ndarray:
-    """Return the units of normalised points, (n, 3) [mm]: a, b, and the smaller semi-axis for the depth."""
+    """Return the units of normalised points, (n, 3) [mm]: a, b, and the smaller semi-axis for the
+    depth.
+    """
     a, b = rows["a"], rows["b"]
     return np.stack([a, b, np.minimum(a, b)], axis=1)
 
@@ -333,7 +380,9 @@ def scan(target, points, rules):
     out = np.empty((2, len(points)))
     for body in range(2):
         for k in range(len(points)):
-            out[body, k] = von_mises_of_parts(parts[k], target.poisson_ratio[body], FRICTION_SIGNS[body])
+            out[body, k] = von_mises_of_parts(
+                parts[k], target.poisson_ratio[body], FRICTION_SIGNS[body]
+            )
     return out
 
 
@@ -381,7 +430,9 @@ def _axes(target, climbs, k, axes):
 
 @woven
 def _along(target, climbs, k, axis, d, rules):
-    """Search along axis d (3,): both sides, then the top of the parabola; return the move over the step."""
+    """Search along axis d (3,): both sides, then the top of the parabola; return the move over the
+    step.
+    """
     u_0, f_0, step = climbs.u[k].copy(), climbs.f[k], climbs.step[k, d]
     sides, heights = np.empty((2, 3)), np.full(2, f_0)
     assign(sides[0], u_0 + step * axis)
@@ -413,9 +464,11 @@ def _along(target, climbs, k, axis, d, rules):
 
 @woven
 def _turn(climbs, k, start, keep):
-    """Make the direction of the last move of climb k its first axis (Rosenbrock). The move began at `start` (3,).
+    """Make the direction of the last move of climb k its first axis (Rosenbrock). The move began at
+    `start` (3,).
 
-    With `keep`, both axes exchange their steps if the new first axis is closer to the old second one.
+    With `keep`, both axes exchange their steps if the new first axis is closer to the old second
+    one.
     """
     x, y = climbs.u[k, 0] - start[0], climbs.u[k, 1] - start[1]
     length = math.sqrt(x * x + y * y)
@@ -430,9 +483,9 @@ def _turn(climbs, k, start, keep):
 def sweep(target, climbs, k, rules, smallest, ridge):
     """Search along radius, circumference and depth in turn; return whether climb k still moves.
 
-    The whole move of the sweep is then repeated up to `ridge` times while the stress rises, each time over twice the
-    last length. This follows ridges oblique to the axes. If `ridge` is above 1, the axes also keep their steps, see
-    `_turn`.
+    The whole move of the sweep is then repeated up to `ridge` times while the stress rises, each
+    time over twice the last length. This follows ridges oblique to the axes. If `ridge` is above 1,
+    the axes also keep their steps, see `_turn`.
     """
     before, start, axes = climbs.f[k], climbs.u[k].copy(), np.empty((3, 3))
     _axes(target, climbs, k, axes)
@@ -461,12 +514,21 @@ def no_climbs(count, step):
     steps, along = step * PROPORTIONS * np.ones((2 * count, 3)), np.zeros((2 * count, 2))
     along[:, 1] = 1.0
     spared = np.zeros(2 * count, np.bool_)
-    return Climbs(np.zeros((2 * count, 3)), np.full(2 * count, -1.0), np.zeros(2 * count), steps, along, spared)
+    return Climbs(
+        np.zeros((2 * count, 3)),
+        np.full(2 * count, -1.0),
+        np.zeros(2 * count),
+        steps,
+        along,
+        spared,
+    )
 
 
 @compiled
 def polish(target, climbs, k, rules, smallest, sweeps):
-    """Let climb k rise, up to `sweeps` times, until it no longer moves; `smallest` is the last step."""
+    """Let climb k rise, up to `sweeps` times, until it no longer moves; `smallest` is the last
+    step.
+    """
     for number in range(sweeps):
         if not sweep(target, climbs, k, rules, smallest, int(number > 0)):
             break
@@ -483,12 +545,14 @@ def _give_up(climbs, stand):
 
 @compiled
 def standing(climbs, share, gap, most):
-    """Return which climbs stand, (m,): up to `most` of each body and a spared one; the others are given up.
+    """Return which climbs stand, (m,): up to `most` of each body and a spared one; the others are
+    given up.
 
-    The highest climb and those above its `share` stand. Of points closer than `gap` only the highest stands. If all of
-    them are of one kind, the best of the other kind is spared, see `best_rival`: it may lie RIVAL_LAG times as far
-    behind. A spared climb makes no other climb be given up, because rough rules may raise a point at the surface beside
-    the spin pole far above its stress.
+    The highest climb and those above its `share` stand. Of points closer than `gap` only the
+    highest stands. If all of them are of one kind, the best of the other kind is spared, see
+    `best_rival`: it may lie RIVAL_LAG times as far behind. A spared climb makes no other climb be
+    given up, because rough rules may raise a point at the surface beside the spin pole far above
+    its stress.
     """
     count = climbs.f.size // 2
     stand = np.zeros(climbs.f.size, np.bool_)
@@ -538,7 +602,8 @@ def has_ridges(target, points, values):
 
 APART = (0.5, 0.2)  # distance of seeds in ordinary and in slender patches
 ROUGH = 48  # most elements along an axis for the first climbs, which search below merged elements
-GAPS = (0.045, 0.017, 0.008)  # relative distance to the highest, per finalist, below which a climb is given up
+# relative distance to the highest, per finalist, below which a climb is given up
+GAPS = (0.045, 0.017, 0.008)
 
 
 class SearchedPatches(NamedTuple):
@@ -549,7 +614,8 @@ class SearchedPatches(NamedTuple):
     rows : numpy.ndarray, shape (n,)
         Records of `ellipse.patch_rows`.
     fields, rough, coarse : numpy.ndarray, shape (n, 2, ny, nx)
-        Traction fields; those of few elements for the first climbs; those of a coarser grid for the estimated error.
+        Traction fields; those of few elements for the first climbs; those of a coarser grid for the
+        estimated error.
     poisson_ratio : numpy.ndarray, shape (n, 2)
         Poisson's ratios of roller and guide [1].
     units : numpy.ndarray, shape (n, 3)
@@ -568,7 +634,9 @@ class SearchedPatches(NamedTuple):
 
 
 class Effort(NamedTuple):
-    """Effort of a search: seeds and finalists of each body, distance of seeds, smallest step, kind of the patches."""
+    """Effort of a search: seeds and finalists of each body, distance of seeds, smallest step, kind
+    of the patches.
+    """
 
     seeds: int
     finalists: int
@@ -584,8 +652,9 @@ class Effort(NamedTuple):
 class Peak(Rows):
     """Peak von Mises stress and its place; arrays (n, 2), second axis roller and guide.
 
-    `stress` per unit p_max (in MPa below solved patches), `x`, `y`, `z` [mm], `error` the estimated relative error, and
-    `change` the relative change of the stress at this place with tractions on a coarser grid.
+    `stress` per unit p_max (in MPa below solved patches), `x`, `y`, `z` [mm], `error` the estimated
+    relative error, and `change` the relative change of the stress at this place with tractions on a
+    coarser grid.
     """
 
     stress: np.ndarray
@@ -608,7 +677,9 @@ class Peak(Rows):
 
 @compiled
 def _search_rows(first, last, patches, rules, effort, room, out):
-    """Write stress, place and relative error of the peaks of patches `first` to `last` into `out` (n, 2, 6)."""
+    """Write stress, place and relative error of the peaks of patches `first` to `last` into `out`
+    (n, 2, 6).
+    """
     for i in range(first, last):
         row, nu, unit = patches.rows[i], patches.poisson_ratio[i], patches.units[i]
         fine = Target(row, patches.fields[i], nu, unit, effort.slender, room)
@@ -627,9 +698,11 @@ def _search_rows(first, last, patches, rules, effort, room, out):
 
 @woven
 def _top_beside(coarse, body, u, height, rules):
-    """Return the stress at the top of the hill of a coarse grid beside a point u (3,), where the stress is `height`.
+    """Return the stress at the top of the hill of a coarse grid beside a point u (3,), where the
+    stress is `height`.
 
-    A narrow hill lies elsewhere on coarse elements, and the stress at its place on finer ones says little of its top.
+    A narrow hill lies elsewhere on coarse elements, and the stress at its place on finer ones says
+    little of its top.
     """
     climbs = no_climbs(1, 0.1)
     assign(climbs.u[body], u)
@@ -643,10 +716,13 @@ def _top_beside(coarse, body, u, height, rules):
 
 @woven
 def _climbed(fine, rough, points, rules, effort):
-    """Return climbs from the highest points of a scan, below few elements at first; the best are polished."""
+    """Return climbs from the highest points of a scan, below few elements at first; the best are
+    polished.
+    """
     climbs = _seeded(fine, rough, points, rules, effort)
-    # Tractions on a grid are less smooth than sliding ones, so that a finer rule gains little in the first sweep.
-    # the scan is rough: climbs that fall behind with better quadrature are given up, and sooner with every sweep
+    # Tractions on a grid are less smooth than sliding ones, so that a finer rule gains little in
+    # the first sweep. the scan is rough: climbs that fall behind with better quadrature are given
+    # up, and sooner with every sweep
     most = max(effort.finalists, 2)
     for k in range(0 if effort.quick else len(GAPS)):
         if k == 1:
@@ -696,7 +772,10 @@ def _seeded(fine, rough, points, rules, effort):
     count, values = effort.seeds, scan(rough, points, rules.scan)
     if effort.adhesion and has_ridges(fine, points, values):
         line = ridge_points(fine.patch, fine.field)
-        points, values = np.concatenate((points, line)), np.concatenate((values, scan(fine, line, rules.scan)), axis=1)
+        points, values = (
+            np.concatenate((points, line)),
+            np.concatenate((values, scan(fine, line, rules.scan)), axis=1),
+        )
     climbs = no_climbs(count + 1, 0.12)
     for body in range(2):
         k = body * (count + 1)
@@ -721,13 +800,16 @@ def _start(fine, rough, climbs, k, u, height, rules, effort):
     """Let climb k start at a point u (3,) of a scan, where the stress is `height`."""
     assign(climbs.u[k], u)
     climbs.f[k] = height
-    if not effort.gridded:  # the first sweep of the others takes the rule of the scan, see `_climbed`
+    # the first sweep of the others takes the rule of the scan, see `_climbed`
+    if not effort.gridded:
         climbs.f[k] = stress_at(rough, 2 * k // climbs.f.size, climbs.u[k], rules.climb)
     along_turn(fine.patch, climbs.u[k], climbs.along[k])
 
 
 def _rough(fields: np.ndarray) -> np.ndarray:
-    """Return fields with at most ROUGH elements along each axis for the first climbs: these stay in the fast caches."""
+    """Return fields with at most ROUGH elements along each axis for the first climbs: these stay in
+    the fast caches.
+    """
     while min(fields.shape[-2:]) > 4 * ROUGH:  # neighbours of so fine a grid hardly differ
         fields = np.ascontiguousarray(fields[..., ::2, ::2])
     while min(fields.shape[-2:]) > ROUGH and not (fields.shape[-1] % 2 or fields.shape[-2] % 2):
@@ -736,7 +818,9 @@ def _rough(fields: np.ndarray) -> np.ndarray:
 
 
 def _merged(fields: np.ndarray) -> np.ndarray:
-    """Return the mean tractions of elements of twice the size; the fields themselves for odd numbers of elements."""
+    """Return the mean tractions of elements of twice the size; the fields themselves for odd
+    numbers of elements.
+    """
     if fields.shape[-1] % 2 or fields.shape[-2] % 2:
         return fields
     blocks = [fields[..., j::2, i::2] for j in (0, 1) for i in (0, 1)]
@@ -765,11 +849,11 @@ def find_peaks(
     fields : numpy.ndarray, shape (n, 2, ny, nx), optional
         Traction over its bound at element centres; full sliding if not given.
     coarse : numpy.ndarray, optional
-        The same on a coarser grid, for the estimated error; only tractions of the exact theory, which have adhesion,
-        come with it. Means over 2 x 2 elements if not given.
+        The same on a coarser grid, for the estimated error; only tractions of the exact theory,
+        which have adhesion, come with it. Means over 2 x 2 elements if not given.
     quick : bool
-        Polish the best seeds at once, without climbs below few elements. On 12 elements across, whose own error is
-        larger, the peaks err as much as after climbs.
+        Polish the best seeds at once, without climbs below few elements. On 12 elements across,
+        whose own error is larger, the peaks err as much as after climbs.
 
     Returns
     -------
@@ -778,9 +862,10 @@ def find_peaks(
 
     Notes
     -----
-    Valid for any ellipticity and 0 <= nu <= 0.5. The estimated error contains the change from the quadrature of the
-    climb to that of the summit, the last gain of the climb, and with `fields` the change on elements of twice the size:
-    at the place of the peak, or from top to top of the hill where the stress at this place changes much.
+    Valid for any ellipticity and 0 <= nu <= 0.5. The estimated error contains the change from the
+    quadrature of the climb to that of the summit, the last gain of the climb, and with `fields` the
+    change on elements of twice the size: at the place of the peak, or from top to top of the hill
+    where the stress at this place changes much.
     """
     patches = np.ascontiguousarray(patches)
     out = Peak.empty(len(patches))
@@ -799,7 +884,8 @@ def find_peaks(
             units[group],
             np.ascontiguousarray(scan_points(patches[group], slender, adhesion)),
         )
-        # tractions on grids need no finer rules: at the same order, stresses err as little as in round patches
+        # tractions on grids need no finer rules: at the same order, stresses err as little as in
+        # round patches
         rules = Rules.of(settings, int(factor) if fields is None else 1, quick)
         effort = Effort(
             settings.seeds + 5 * slender,
@@ -829,14 +915,24 @@ def _found(patches: SearchedPatches, rules: Rules, effort: Effort) -> Peak:
     return Peak(*np.moveaxis(peaks, 2, 0))
 
 
-def _hidden_error(patches: np.ndarray, settings: PeakSettings, stress: np.ndarray, slides: bool) -> np.ndarray:
-    """Return the part of the relative error (n, 2) that the changes between the steps do not show."""
+def _hidden_error(
+    patches: np.ndarray, settings: PeakSettings, stress: np.ndarray, slides: bool
+) -> np.ndarray:
+    """Return the part of the relative error (n, 2) that the changes between the steps do not
+    show.
+    """
     a, b, friction = patches["a"], patches["b"], patches["friction"]
     slenderness = np.maximum(a, b) / np.minimum(a, b)
-    # a ridge that the search misses shows nowhere; this error was measured to grow with friction and slenderness
-    error = np.repeat((settings.floor * (1.0 + 10.0 * friction**2 * np.sqrt(slenderness)))[:, None], 2, axis=1)
-    if slides:  # chance decides whether the search meets the spike of a logarithm, and how far it follows the spike
+    # a ridge that the search misses shows nowhere; this error was measured to grow with friction
+    # and slenderness
+    error = np.repeat(
+        (settings.floor * (1.0 + 10.0 * friction**2 * np.sqrt(slenderness)))[:, None], 2, axis=1
+    )
+    # chance decides whether the search meets the spike of a logarithm, and how far it follows the
+    # spike
+    if slides:
         error += 4.0 * spike(patches)[:, None] / stress
-    # very slender patches under friction hide ridges from a rough search: 5 % were measured at `standard`
+    # very slender patches under friction hide ridges from a rough search: 5 % were measured at
+    # `standard`
     hidden = (slenderness > 50.0) & (friction > 0)
     return error + np.where(hidden, 160.0 * settings.floor, 0.0)[:, None]

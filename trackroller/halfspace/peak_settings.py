@@ -1,4 +1,6 @@
-"""Effort of the search for the largest stress; a module without numba, which planning a study does not need."""
+"""Effort of the search for the largest stress; a module without numba, which planning a study does
+not need.
+"""
 
 from __future__ import annotations
 

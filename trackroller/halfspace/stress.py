@@ -1,9 +1,11 @@
-"""Stresses in an elastic half-space under any tractions, and the stress measures of the whole package.
+"""Stresses in an elastic half-space under any tractions, and the stress measures of the whole
+package.
 
-Frame: x lateral, y in the rolling direction, z into the body. Kalker and CONTACT use x for the rolling direction.
-Tractions act on the body: `pressure` > 0 presses (sigma_z = -p at the surface), `shear_lateral` acts along +x and
-`shear_rolling` along +y (tau_xz = -q_x, tau_yz = -q_y at the surface).
-Stresses have a last axis of six in the order of COMPONENTS. They do not depend on Young's modulus.
+Frame: x lateral, y in the rolling direction, z into the body. Kalker and CONTACT use x for the
+rolling direction. Tractions act on the body: `pressure` > 0 presses (sigma_z = -p at the surface),
+`shear_lateral` acts along +x and `shear_rolling` along +y (tau_xz = -q_x, tau_yz = -q_y at the
+surface). Stresses have a last axis of six in the order of COMPONENTS. They do not depend on Young's
+modulus.
 """
 
 from __future__ import annotations
@@ -20,7 +22,8 @@ from trackroller.numerics.numbers import number_in, read_array
 from trackroller.numerics.threads import share_rows
 
 Array = NDArray[np.float64]
-FRICTION_SIGNS = (1.0, -1.0)  # of the shear on roller and guide, which is opposite on the two bodies
+# of the shear on roller and guide, which is opposite on the two bodies
+FRICTION_SIGNS = (1.0, -1.0)
 _CHUNK = 16384  # points in a piece of work; this bounds the memory to a few MB for each thread
 
 
@@ -35,9 +38,9 @@ def stress_from_tractions(
 ) -> Array:
     """Compute stresses at any points under tractions sampled on a regular grid.
 
-    Exact half-space solution (Boussinesq-Cerruti potentials, eqs. (1)-(5)) for tractions that are bilinear between the
-    nodes and fall to zero within one spacing outside the grid, including z = 0 and the edge of the patch. All stresses
-    are continuous and finite.
+    Exact half-space solution (Boussinesq-Cerruti potentials, eqs. (1)-(5)) for tractions that are
+    bilinear between the nodes and fall to zero within one spacing outside the grid, including z = 0
+    and the edge of the patch. All stresses are continuous and finite.
 
     Parameters
     ----------
@@ -64,9 +67,9 @@ def stress_from_tractions(
 
     Notes
     -----
-    Valid for any tractions. The error against a smooth field is that of the interpolation, O(h^1.5) for a Hertzian
-    edge. The cost grows with the number of points times the number of loaded nodes; `stress_on_grid` is far cheaper for
-    whole planes.
+    Valid for any tractions. The error against a smooth field is that of the interpolation, O(h^1.5)
+    for a Hertzian edge. The cost grows with the number of points times the number of loaded nodes;
+    `stress_on_grid` is far cheaper for whole planes.
 
     References
     ----------
@@ -83,7 +86,9 @@ def stress_from_tractions(
     q = grid_tractions(xa, ya, pressure, shear_lateral, shear_rolling)
     at = read_array(points, "points", "points have shape (..., 3)")
     if at.shape[-1:] != (3,) or not np.all(np.isfinite(at)):
-        raise InputError("points", at if at.shape[-1:] == (3,) else at.shape, "finite points of shape (..., 3)")
+        raise InputError(
+            "points", at if at.shape[-1:] == (3,) else at.shape, "finite points of shape (..., 3)"
+        )
     check_depth("points", at[..., 2])
     poisson_ratio = number_in(poisson_ratio, "poisson_ratio", "0 <= poisson_ratio <= 0.5", 0.0, 0.5)
     loads = influence.corner_loads(xa, ya, q)
@@ -91,7 +96,9 @@ def stress_from_tractions(
     out = np.empty((flat.shape[0], 6))
 
     def work(start: int, stop: int) -> None:
-        out[start:stop] = body_stress(influence.stress_parts(loads, flat[start:stop]), poisson_ratio, 1.0)
+        out[start:stop] = body_stress(
+            influence.stress_parts(loads, flat[start:stop]), poisson_ratio, 1.0
+        )
 
     share_rows(work, flat.shape[0], 64, _CHUNK)
     return out.reshape((*at.shape[:-1], 6))
@@ -133,9 +140,10 @@ def stress_on_grid(
 
     Notes
     -----
-    The field is that of `stress_from_tractions`. It is a discrete convolution of the tractions with the influence of
-    one node's hat load; zero padding prevents periodic images. The computation needs about 3 kB of memory per node of
-    one plane besides the result. Rounding errors grow with (patch / spacing)^2: 1e-11 of the tractions at 200 nodes.
+    The field is that of `stress_from_tractions`. It is a discrete convolution of the tractions with
+    the influence of one node's hat load; zero padding prevents periodic images. The computation
+    needs about 3 kB of memory per node of one plane besides the result. Rounding errors grow with
+    (patch / spacing)^2: 1e-11 of the tractions at 200 nodes.
 
     References
     ----------
@@ -169,7 +177,8 @@ def body_stress(parts: Array, poisson_ratio: ArrayLike, sign: ArrayLike) -> Arra
     poisson_ratio : array_like, shape (...) or ()
         Poisson's ratio nu of the body [1].
     sign : array_like, shape (...) or ()
-        +1 if the shear acts on the body as given (roller), -1 if it acts in the opposite direction (guide).
+        +1 if the shear acts on the body as given (roller), -1 if it acts in the opposite direction
+        (guide).
 
     Returns
     -------
@@ -214,15 +223,27 @@ def _equivalent(sx, sy, sz, txy, tyz, txz):
 @inner
 def _of_body(parts, poisson_ratio, sign, k):
     """Return component k of `body_stress`."""
-    return parts[0, k] + poisson_ratio * parts[1, k] + sign * (parts[2, k] + poisson_ratio * parts[3, k])
+    return (
+        parts[0, k]
+        + poisson_ratio * parts[1, k]
+        + sign * (parts[2, k] + poisson_ratio * parts[3, k])
+    )
 
 
 @fast
 def von_mises_of_parts(parts, poisson_ratio, sign):
     """Return the von Mises stress of `body_stress`, from stress parts (4, 6)."""
     nu = poisson_ratio
-    sx, sy, sz = _of_body(parts, nu, sign, 0), _of_body(parts, nu, sign, 1), _of_body(parts, nu, sign, 2)
-    txy, tyz, txz = _of_body(parts, nu, sign, 3), _of_body(parts, nu, sign, 4), _of_body(parts, nu, sign, 5)
+    sx, sy, sz = (
+        _of_body(parts, nu, sign, 0),
+        _of_body(parts, nu, sign, 1),
+        _of_body(parts, nu, sign, 2),
+    )
+    txy, tyz, txz = (
+        _of_body(parts, nu, sign, 3),
+        _of_body(parts, nu, sign, 4),
+        _of_body(parts, nu, sign, 5),
+    )
     return _equivalent(sx, sy, sz, txy, tyz, txz)
 
 

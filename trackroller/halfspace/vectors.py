@@ -1,7 +1,8 @@
 """Elementary functions as branch-free arithmetic, so that loops over them run in vector registers.
 
-The functions of the mathematics library take one number at a time. The relative errors here are below 1e-11 in the
-stated ranges, far below the errors of the quadratures (tests/halfspace/test_vector_functions.py).
+The functions of the mathematics library take one number at a time. The relative errors here are
+below 1e-11 in the stated ranges, far below the errors of the quadratures
+(tests/halfspace/test_vector_functions.py).
 """
 
 from __future__ import annotations
@@ -19,7 +20,9 @@ def exp(x):
     k = math.floor(x * 1.4426950408889634 + 0.5)
     r = (x - k * 0.693147180369123816490) - k * 1.90821492927058770002e-10
     e = 1 / 5040 + r * (1 / 40320 + r * (1 / 362880 + r * (1 / 3628800 + r * (1 / 39916800))))
-    e = 1.0 + r * (1.0 + r * (0.5 + r * (1 / 6 + r * (1 / 24 + r * (1 / 120 + r * (1 / 720 + r * e))))))
+    e = 1.0 + r * (
+        1.0 + r * (0.5 + r * (1 / 6 + r * (1 / 24 + r * (1 / 120 + r * (1 / 720 + r * e)))))
+    )
     return e * np.int64((np.int64(k) + 1023) << 52).view(np.float64)
 
 
@@ -36,12 +39,16 @@ def sine_cosine(x):
     quarter = turns - 4.0 * math.floor(0.25 * turns)
     odd = quarter == 1.0 or quarter == 3.0
     first, second = (c, s) if odd else (s, c)
-    return (-first if quarter >= 2.0 else first), (-second if quarter == 1.0 or quarter == 2.0 else second)
+    return (-first if quarter >= 2.0 else first), (
+        -second if quarter == 1.0 or quarter == 2.0 else second
+    )
 
 
 @inner
 def log(x):
-    """Return ln x for normal x > 0: the exponent by its bits, the mantissa by the series of artanh."""
+    """Return ln x for normal x > 0: the exponent by its bits, the mantissa by the series of
+    artanh.
+    """
     bits = np.float64(x).view(np.int64)
     exponent = float((bits >> 52) - 1023)
     m = np.int64((bits & 0xFFFFFFFFFFFFF) | 0x3FF0000000000000).view(np.float64)
@@ -50,7 +57,9 @@ def log(x):
     exponent = exponent + 1.0 if large else exponent
     f = (m - 1.0) / (m + 1.0)
     q = f * f
-    series = 1.0 + q * (1 / 3 + q * (1 / 5 + q * (1 / 7 + q * (1 / 9 + q * (1 / 11 + q * (1 / 13 + q * (1 / 15)))))))
+    series = 1.0 + q * (
+        1 / 3 + q * (1 / 5 + q * (1 / 7 + q * (1 / 9 + q * (1 / 11 + q * (1 / 13 + q * (1 / 15))))))
+    )
     return exponent * 0.6931471805599453 + 2.0 * f * series
 
 
@@ -63,7 +72,9 @@ def angle(y, x):
     t = (low - high if wide else low) / (low + high if wide else high)
     q = t * t
     at = 1 / 15 - q * (1 / 17 - q * (1 / 19 - q * (1 / 21 - q * (1 / 23 - q * (1 / 25)))))
-    at = 1.0 - q * (1 / 3 - q * (1 / 5 - q * (1 / 7 - q * (1 / 9 - q * (1 / 11 - q * (1 / 13 - q * at))))))
+    at = 1.0 - q * (
+        1 / 3 - q * (1 / 5 - q * (1 / 7 - q * (1 / 9 - q * (1 / 11 - q * (1 / 13 - q * at)))))
+    )
     at = t * at
     at = at + 0.7853981633974483 if wide else at
     at = 1.5707963267948966 - at if y > a else at

@@ -1,7 +1,8 @@
 """Materials, friction coefficients, and the database that holds them.
 
-`load_database()` reads the built-in file and then the user's own file, whose values replace built-in ones. Every value
-has a unit and a source. The mark `placeholder` says that a value is a guess without a source.
+`load_database()` reads the built-in file and then the user's own file, whose values replace
+built-in ones. Every value has a unit and a source. The mark `placeholder` says that a value is a
+guess without a source.
 """
 
 from __future__ import annotations
@@ -22,8 +23,8 @@ def load_database(user_file: Path | str | None = None) -> MaterialDatabase:
     Parameters
     ----------
     user_file : pathlib.Path or str, optional
-        The user's file. Default: the file that the environment variable TRACKROLLER_MATERIALS names, otherwise
-        `config/materials.yaml` in the working directory if this file exists.
+        The user's file. Default: the file that the environment variable TRACKROLLER_MATERIALS
+        names, otherwise `config/materials.yaml` in the working directory if this file exists.
 
     Returns
     -------
@@ -37,7 +38,8 @@ def load_database(user_file: Path | str | None = None) -> MaterialDatabase:
 
     Notes
     -----
-    The user's file may add materials, change single values of built-in materials, and add friction pairs.
+    The user's file may add materials, change single values of built-in materials, and add friction
+    pairs.
 
     Examples
     --------

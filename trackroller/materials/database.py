@@ -15,7 +15,8 @@ from trackroller.materials.material import Material
 from trackroller.materials.properties import Value
 from trackroller.parameters import FRICTION_LEVELS
 
-FRICTION = "friction"  # attribute of a result: the coefficients that were taken from the database (JSON)
+# attribute of a result: the coefficients that were taken from the database (JSON)
+FRICTION = "friction"
 
 
 def _letters(text: str) -> str:
@@ -58,14 +59,16 @@ class MaterialDatabase:
         known = {m.family for m in self.materials.values() if m.family}
         return tuple(sorted(known | {part for pair in self.friction_table for part in pair}))
 
-    def material(self, material: str | Mapping[str, Any] | Material, field: str = "material") -> Material:
+    def material(
+        self, material: str | Mapping[str, Any] | Material, field: str = "material"
+    ) -> Material:
         """Return the material of a name, or make a material from a mapping.
 
         Parameters
         ----------
         material : str, mapping or Material
-            A name, or a mapping with the fields of `Material`. The entry `like: NAME` in a mapping takes missing values
-            from another material. A `Material` is returned as it is.
+            A name, or a mapping with the fields of `Material`. The entry `like: NAME` in a mapping
+            takes missing values from another material. A `Material` is returned as it is.
         field : str
             Name of the field that holds the name, for messages.
 
@@ -77,7 +80,8 @@ class MaterialDatabase:
         Raises
         ------
         InputError
-            For an unknown name, with the materials that it describes; for a missing or an impossible value.
+            For an unknown name, with the materials that it describes; for a missing or an
+            impossible value.
         """
         if isinstance(material, Material):
             return material
@@ -85,12 +89,16 @@ class MaterialDatabase:
             return inline_material(material, self.materials)
         if not isinstance(material, str):
             remedy = "Put a name that looks like a number in quotes."
-            raise InputError(field, material, "a name of the database or a mapping with its values", remedy)
+            raise InputError(
+                field, material, "a name of the database or a mapping with its values", remedy
+            )
         if material in self.materials:
             return self.materials[material]
         akin = self.search(material)
         same = {_letters(name) for name in self.materials}
-        if nearest(material, self.materials) is None or (len(akin) > 1 and _letters(material) not in same):
+        if nearest(material, self.materials) is None or (
+            len(akin) > 1 and _letters(material) not in same
+        ):
             allowed = "the name of a material of the database"
             remedy = f"Write the name of the material that is meant: {' or '.join(akin)}."
             if not akin:
@@ -100,15 +108,24 @@ class MaterialDatabase:
         raise unknown_name(field, material, self.materials)
 
     def search(self, text: str) -> tuple[str, ...]:
-        """Return the names of the materials whose name, family or description holds every word of a text.
+        """Return the names of the materials whose name, family or description holds every word of a
+        text.
 
-        Spaces, signs and upper or lower case do not count, so that '42CrMo4+QT' and 'en aw 7075' are found.
+        Spaces, signs and upper or lower case do not count, so that '42CrMo4+QT' and 'en aw 7075'
+        are found.
         """
         words = [_letters(word) for word in re.split(r"[\s+,]+", str(text)) if _letters(word)]
-        texts = {name: _letters(f"{name} {m.family} {m.description}") for name, m in self.materials.items()}
-        return tuple(name for name, own in texts.items() if words and all(word in own for word in words))
+        texts = {
+            name: _letters(f"{name} {m.family} {m.description}")
+            for name, m in self.materials.items()
+        }
+        return tuple(
+            name for name, own in texts.items() if words and all(word in own for word in words)
+        )
 
-    def friction(self, first: str | Material, second: str | Material, level: str = "typical") -> Value:
+    def friction(
+        self, first: str | Material, second: str | Material, level: str = "typical"
+    ) -> Value:
         """Return the friction coefficient of two bodies, in either order.
 
         Parameters
@@ -121,8 +138,8 @@ class MaterialDatabase:
         Returns
         -------
         Value
-            Friction coefficient [1], its source and its placeholder mark. An entry for a material has priority over an
-            entry for the material's family.
+            Friction coefficient [1], its source and its placeholder mark. An entry for a material
+            has priority over an entry for the material's family.
 
         Raises
         ------
@@ -141,8 +158,8 @@ class MaterialDatabase:
     def on(self, body: str | Material, partner: str | Material) -> Material:
         """Return the material of a body with its wear coefficient on the material of its partner.
 
-        A wear coefficient of the material itself has priority over that of the pair. Without either, the material has
-        no wear coefficient.
+        A wear coefficient of the material itself has priority over that of the pair. Without
+        either, the material has no wear coefficient.
         """
         own = self.material(body)
         other = self.material(partner)
@@ -153,15 +170,22 @@ class MaterialDatabase:
                 return _worn(own, id(own.records), self.wear_table[pair], other.name)
         return own
 
-    def friction_record(self, roller: str | Material, guide: str | Material, level: str | None) -> dict[str, Any]:
-        """Return the friction coefficient of a pair as a result records it: pair, level, value, source, mark and note.
+    def friction_record(
+        self, roller: str | Material, guide: str | Material, level: str | None
+    ) -> dict[str, Any]:
+        """Return the friction coefficient of a pair as a result records it: pair, level, value,
+        source, mark and note.
 
         Without a level it is the typical coefficient.
         """
         level = level or "typical"
         friction = self.friction(roller, guide, level)
         pair = " / ".join(self.material(body).name for body in (roller, guide))
-        values = {"value": friction.value, "source": friction.source, "placeholder": friction.placeholder}
+        values = {
+            "value": friction.value,
+            "source": friction.source,
+            "placeholder": friction.placeholder,
+        }
         note = {"note": friction.note} if friction.note else {}
         return {"material_pair": pair, "level": level, **values, **note}
 
@@ -177,7 +201,9 @@ class MaterialDatabase:
             return (body.name,)
         match = {family.lower(): family for family in self.families()}.get(body.lower())
         if match is None:
-            raise unknown_name("material or family", body, dict.fromkeys((*self.materials, *self.families())))
+            raise unknown_name(
+                "material or family", body, dict.fromkeys((*self.materials, *self.families()))
+            )
         return (match,)
 
     def _unknown_pair(self, names: list[tuple[str, ...]], level: str) -> InputError:
@@ -185,7 +211,8 @@ class MaterialDatabase:
         pairs = [sorted(pair) for pair in self.friction_table]  # one name stands for both bodies
         known = ", ".join(f"{pair[0]}-{pair[-1]}" for pair in pairs)
         remedy = (
-            "Give friction_coefficient in the case, add the pair under `friction:` in your materials file, "
+            "Give friction_coefficient in the case, add the pair under `friction:` in your "
+            "materials file, "
             "or give the material a `family` that has a friction coefficient."
         )
         for body in names:
@@ -196,15 +223,17 @@ class MaterialDatabase:
                 remedy += f" Did you mean the family '{close}'?"
         allowed = f"the pairs {known}"
         wrong = f"has no {level} value in the friction table"
-        return InputError("friction_coefficient of the pair", "-".join(label), allowed, remedy, wrong)
+        return InputError(
+            "friction_coefficient of the pair", "-".join(label), allowed, remedy, wrong
+        )
 
 
 @functools.lru_cache(maxsize=256)
 def _worn(own: Material, records: int, known: Value, partner: str) -> Material:
     """Return a material with its wear coefficient on its partner.
 
-    Equal materials may have different sources. The identity of their `records` tells them apart; the cache keeps the
-    material, so that no other one takes this identity.
+    Equal materials may have different sources. The identity of their `records` tells them apart;
+    the cache keeps the material, so that no other one takes this identity.
     """
     note = f"on {partner}"
     if known.note:

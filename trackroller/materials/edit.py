@@ -1,4 +1,6 @@
-"""Write a material into the user's file, keep the file's comments, and never leave a half-written file."""
+"""Write a material into the user's file, keep the file's comments, and never leave a half-written
+file.
+"""
 
 from __future__ import annotations
 
@@ -32,7 +34,9 @@ HEADER = """\
 FIELDS = (*NUMBERS, *TEXTS, POINTS, FIELD, "source", "placeholder")
 
 
-def add_material(path: Path | str, name: str, /, *, replace: bool = False, **values: Any) -> Material:
+def add_material(
+    path: Path | str, name: str, /, *, replace: bool = False, **values: Any
+) -> Material:
     """Write a material into the user's file and return the material as the file now defines it.
 
     Parameters
@@ -40,13 +44,15 @@ def add_material(path: Path | str, name: str, /, *, replace: bool = False, **val
     path : pathlib.Path or str
         The user's materials file; it is created if it does not exist.
     name : str
-        Name of the material. With the name of a built-in material, the entry changes single values of it.
+        Name of the material. With the name of a built-in material, the entry changes single values
+        of it.
     replace : bool
         Allow to change a material that the file already contains.
     **values
-        Fields of `Material`, each a number in the unit of the field, or a mapping with value, unit, source, placeholder
-        and note. Also `family`, `description` and `like`, the points `sn_points`, the table `temperature_dependence`,
-        and `source`, `placeholder` and `note` for all numbers, for the points and for the table.
+        Fields of `Material`, each a number in the unit of the field, or a mapping with value, unit,
+        source, placeholder and note. Also `family`, `description` and `like`, the points
+        `sn_points`, the table `temperature_dependence`, and `source`, `placeholder` and `note` for
+        all numbers, for the points and for the table.
 
     Returns
     -------
@@ -60,15 +66,19 @@ def add_material(path: Path | str, name: str, /, *, replace: bool = False, **val
 
     Notes
     -----
-    Comments, order and all other entries of the file are kept. The new text is checked and written to a temporary file,
-    which then replaces the old file in one step.
+    Comments, order and all other entries of the file are kept. The new text is checked and written
+    to a temporary file, which then replaces the old file in one step.
     """
     path = own_file(path)
     if not isinstance(name, str) or not name.strip():
         raise InputError("material name", name, "a text that is not empty")
     checked_text(name, "name of a material")
     check_fields(f"material '{name}': field", values, FIELDS)
-    values = {key: _plain(f"material '{name}': {key}", value) for key, value in values.items() if value is not None}
+    values = {
+        key: _plain(f"material '{name}': {key}", value)
+        for key, value in values.items()
+        if value is not None
+    }
     if not values:
         remedy = f"Give one of {', '.join(PROPERTIES)}."
         raise InputError(f"material '{name}'", None, "at least one value", remedy)
@@ -76,7 +86,8 @@ def add_material(path: Path | str, name: str, /, *, replace: bool = False, **val
     if path.exists():
         text = read_text(path, "materials file")
     builtin = read_database(None)
-    build_database(text, str(path), over=builtin)  # raises an error if the file is wrong before the change
+    # raises an error if the file is wrong before the change
+    build_database(text, str(path), over=builtin)
     text = _with_entry(text, path, name, _entry(values), replace)
     material = build_database(text, str(path), over=builtin, by_line=False).material(name)
     _write(path, text)
@@ -84,12 +95,19 @@ def add_material(path: Path | str, name: str, /, *, replace: bool = False, **val
 
 
 def _entry(values: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the entry for the file; every number becomes a mapping with unit, source and placeholder mark."""
-    common = {"source": values.get("source", "user's own"), "placeholder": values.get("placeholder", False)}
+    """Return the entry for the file; every number becomes a mapping with unit, source and
+    placeholder mark.
+    """
+    common = {
+        "source": values.get("source", "user's own"),
+        "placeholder": values.get("placeholder", False),
+    }
     note = {}
     if "note" in values:
         note = {"note": values["note"]}
-    entry: dict[str, Any] = {key: values[key] for key in ("description", "family", "like") if key in values}
+    entry: dict[str, Any] = {
+        key: values[key] for key in ("description", "family", "like") if key in values
+    }
     for key, prop in NUMBERS.items():
         if key not in values:
             continue
@@ -118,7 +136,9 @@ def _entry(values: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _plain(field: str, value: Any) -> Any:
-    """Return a number in its shortest form, NumPy's values as Python's, texts and mappings of them unchanged."""
+    """Return a number in its shortest form, NumPy's values as Python's, texts and mappings of them
+    unchanged.
+    """
     if isinstance(value, np.generic):
         value = value.item()
     if isinstance(value, Mapping):
@@ -143,7 +163,8 @@ def _with_entry(text: str, path: Path, name: str, entry: dict[str, Any], replace
     editor.width = 4096
     editor.indent(mapping=2, sequence=4, offset=2)
     data = editor.load(text)
-    # ruamel.yaml would drop the comments of a file without entries, so they are put before the new section.
+    # ruamel.yaml would drop the comments of a file without entries, so they are put before the new
+    # section.
     comments = ""
     if data is None:
         comments = text.rstrip() + "\n"
@@ -176,7 +197,9 @@ def _block(entry: Mapping[str, Any]) -> Any:
 
 
 def _text(value: Any) -> Any:
-    """Return a text, in quotes where YAML 1.1 would not read it as text, such as 1.4301, yes or 1:30."""
+    """Return a text, in quotes where YAML 1.1 would not read it as text, such as 1.4301, yes or
+    1:30.
+    """
     if isinstance(value, str) and needs_quotes(value):
         return DoubleQuotedScalarString(value)
     return value
@@ -195,4 +218,6 @@ def _write(path: Path, text: str) -> None:
     except WorkError as error:
         remedy = "Give another path, or make it possible to write here."
         wrong = f"cannot be written: {str(error).removeprefix(f'{path}: ').partition('. ')[0]}"
-        raise InputError("materials file", str(path), "a file in a folder that can be written", remedy, wrong) from None
+        raise InputError(
+            "materials file", str(path), "a file in a folder that can be written", remedy, wrong
+        ) from None

@@ -1,4 +1,6 @@
-"""Check the entries of a file or of a case and turn them into materials and friction coefficients."""
+"""Check the entries of a file or of a case and turn them into materials and friction
+coefficients.
+"""
 
 from __future__ import annotations
 
@@ -57,7 +59,9 @@ class EntryParser:
         self.wrong: set[str] = set()  # names of materials that could not be read
 
     def source(self, text: str) -> str:
-        """Return the full reference of a source, or of several separated by ', '; otherwise the text itself."""
+        """Return the full reference of a source, or of several separated by ', '; otherwise the
+        text itself.
+        """
         parts = text.split(", ")
         if all(p in self.sources for p in parts):
             return "; ".join(self.sources[p] for p in parts)
@@ -89,15 +93,26 @@ class EntryParser:
         if not isinstance(entry, Mapping):
             entry = {"value": entry}
         for key in entry:
-            if key not in VALUE_KEYS and entry[key] is None:  # YAML reads {source: a, b} as a key b without a value.
-                raise InputError(field, str(key), "a key with a value", "Put texts that contain a comma in quotes.")
+            # YAML reads {source: a, b} as a key b without a value.
+            if key not in VALUE_KEYS and entry[key] is None:
+                raise InputError(
+                    field,
+                    str(key),
+                    "a key with a value",
+                    "Put texts that contain a comma in quotes.",
+                )
         check_names(f"{field}: key", entry, VALUE_KEYS)
         if "value" not in entry:
             remedy = f"Write {{value: ..., unit: {prop.unit}}}."
             raise InputError(field, dict(entry), "a mapping with a `value`", remedy)
         unit = str(entry.get("unit", prop.unit))
         if "unit" in entry and split_quantity(entry["value"]):
-            raise InputError(f"{field}.unit", unit, f"one unit; the value {entry['value']} has its own", "Remove one.")
+            raise InputError(
+                f"{field}.unit",
+                unit,
+                f"one unit; the value {entry['value']} has its own",
+                "Remove one.",
+            )
         placeholder = entry.get("placeholder", False)
         if not isinstance(placeholder, bool):
             raise InputError(f"{field}.placeholder", placeholder, "true or false")
@@ -109,16 +124,24 @@ class EntryParser:
         span = self.range(prop, entry.get("range"), where, number, unit)
         return Value(number, prop.unit, source, placeholder, note, self.origin, span)
 
-    def range(self, prop: Parameter, given: Any, where: str, number: float, unit: str) -> tuple[float, float] | None:
-        """Return the checked range of a value in the unit of its property; None if it is not given."""
+    def range(
+        self, prop: Parameter, given: Any, where: str, number: float, unit: str
+    ) -> tuple[float, float] | None:
+        """Return the checked range of a value in the unit of its property; None if it is not
+        given.
+        """
         if given is None:
             return None
         if not isinstance(given, (list, tuple)) or len(given) != 2:
-            raise InputError(f"{where}.{prop.name}.range", given, "[lowest, highest] in the unit of the value")
+            raise InputError(
+                f"{where}.{prop.name}.range", given, "[lowest, highest] in the unit of the value"
+            )
         low, high = (check_number(prop, end, where, unit) for end in given)
         if not low <= number <= high:
             allowed = f"a range that holds the value {number:g}"
-            raise InputError(f"{where}.{prop.name}.range", given, allowed, "Correct the range or the value.")
+            raise InputError(
+                f"{where}.{prop.name}.range", given, allowed, "Correct the range or the value."
+            )
         return low, high
 
     def material(self, name: Any, entry: Any, known: Mapping[str, Material]) -> Material:
@@ -129,8 +152,8 @@ class EntryParser:
         name : str
             Name of the material.
         entry : mapping
-            Fields of the material. Missing values come from the known material that `like` names, otherwise from the
-            known material of the same name.
+            Fields of the material. Missing values come from the known material that `like` names,
+            otherwise from the known material of the same name.
         known : mapping of str to Material
             Materials by name.
 
@@ -165,13 +188,19 @@ class EntryParser:
             raise InputError(where, given_names, "", remedy, wrong)
         numbers = {key: value.value for key, value in records.items()}
         numbers["fatigue_limit"] = numbers["fatigue_strength_ratio"] * numbers["tensile_strength"]
-        for key in contradictions(numbers).keys() - given.keys():  # inherited, but a given value excludes it
+        # inherited, but a given value excludes it
+        for key in contradictions(numbers).keys() - given.keys():
             del records[key]
         table: Any = entry.get(FIELD)
         if isinstance(table, Mapping) and isinstance(table.get("source"), str):
             table = {**table, "source": self.source(table["source"])}
-        if FIELD not in entry and base and isinstance(base.temperature_dependence, TemperatureTable):
-            table = base.temperature_dependence.without(given)  # a value that is given replaces its inherited column
+        if (
+            FIELD not in entry
+            and base
+            and isinstance(base.temperature_dependence, TemperatureTable)
+        ):
+            # a value that is given replaces its inherited column
+            table = base.temperature_dependence.without(given)
         fields: dict[str, Any] = {key: value.value for key, value in records.items()}
         if points:
             fields[POINTS] = points
@@ -183,9 +212,15 @@ class EntryParser:
             raise error.named(f"{where}{field}") from None
 
     def _with_curve(
-        self, where: str, entry: Mapping[Any, Any], given: Mapping[str, Value], base: Material | None
+        self,
+        where: str,
+        entry: Mapping[Any, Any],
+        given: Mapping[str, Value],
+        base: Material | None,
     ) -> tuple[dict[str, Value], Points]:
-        """Return the numbers of an entry, completed by its base and its S-N curve, and the points of a free curve."""
+        """Return the numbers of an entry, completed by its base and its S-N curve, and the points
+        of a free curve.
+        """
         inherited = dict(base.records) if base else {}
         records = inherited | {key: value for key, value in given.items() if key in PROPERTIES}
         points, line = self._line(where, entry, given, base)
@@ -198,12 +233,18 @@ class EntryParser:
         return records, points
 
     def _line(
-        self, where: str, entry: Mapping[Any, Any], given: Mapping[str, Value], base: Material | None
+        self,
+        where: str,
+        entry: Mapping[Any, Any],
+        given: Mapping[str, Value],
+        base: Material | None,
     ) -> tuple[Points, dict[str, Value] | None]:
-        """Return the points of a curve that is free of R_m, or none, and the sources of a new one by names of `CURVE`.
+        """Return the points of a curve that is free of R_m, or none, and the sources of a new one
+        by names of `CURVE`.
 
-        A curve by points, or by the three values `FREE` in one entry, is free. An entry inherits the free curve of its
-        base as it is. It may change single ones of `FREE` of a curve without corners.
+        A curve by points, or by the three values `FREE` in one entry, is free. An entry inherits
+        the free curve of its base as it is. It may change single ones of `FREE` of a curve without
+        corners.
         """
         if entry.get(POINTS) is not None:
             return self._line_by_points(where, entry, given)
@@ -221,7 +262,9 @@ class EntryParser:
             wrong = f"would change a part of the {POINTS} of the material that it changes"
             name = min(of_curve)
             allowed = f"{', '.join(FREE)} together"
-            raise InputError(f"{where}.{name}", given[name].value, allowed, f"Or give {POINTS}.", wrong)
+            raise InputError(
+                f"{where}.{name}", given[name].value, allowed, f"Or give {POINTS}.", wrong
+            )
         values: dict[str, Any] = {name: getattr(base, name, None) for name in (*FREE, STRENGTH)}
         values |= {name: given[name].value for name in (*FREE, STRENGTH) if name in given}
         limit, knee, exponent, strength = values.values()
@@ -238,12 +281,16 @@ class EntryParser:
     def _line_by_points(
         self, where: str, entry: Mapping[Any, Any], given: Mapping[str, Value]
     ) -> tuple[Points, dict[str, Value]]:
-        """Return the points that an entry gives, and a value that holds their source and mark by names of `CURVE`."""
+        """Return the points that an entry gives, and a value that holds their source and mark by
+        names of `CURVE`.
+        """
         if isinstance(entry[POINTS], Mapping):
             record = entry[POINTS]
         else:
             record = {"value": entry[POINTS]}
-        check_names(f"{where}.{POINTS}: key", record, ("value", "unit", "source", "placeholder", "note"))
+        check_names(
+            f"{where}.{POINTS}: key", record, ("value", "unit", "source", "placeholder", "note")
+        )
         points = read_points(record.get("value"), where, str(record.get("unit", "MPa")))
         mark = {key: record[key] for key in ("source", "placeholder", "note") if key in record}
         line = self.value(ALTERNATIVES["fatigue_limit"], {"value": points[-1][0], **mark}, where)
@@ -262,7 +309,9 @@ class EntryParser:
         refuse_other_line(points, numbers, strength, where)
         return points, dict.fromkeys(CURVE, line)
 
-    def _given(self, where: str, entry: Mapping[Any, Any], known: Mapping[str, Material]) -> dict[str, Value]:
+    def _given(
+        self, where: str, entry: Mapping[Any, Any], known: Mapping[str, Material]
+    ) -> dict[str, Value]:
         """Return the numbers that an entry gives; raise the errors of all its fields together."""
         wrong = Collector()
         given = {}
@@ -270,12 +319,16 @@ class EntryParser:
             check_fields(f"{where}: field", entry, (*NUMBERS, *TEXTS, POINTS, FIELD))
         for key in TEXTS:
             if entry.get(key) is not None and not isinstance(entry[key], str):
-                wrong.errors.append(InputError(f"{where}.{key}", entry[key], "a text", "Put it in quotes."))
+                wrong.errors.append(
+                    InputError(f"{where}.{key}", entry[key], "a text", "Put it in quotes.")
+                )
         with wrong.part():
             like = entry.get("like")
             if isinstance(like, str) and like not in known:
                 if like in self.wrong:
-                    raise InputError(f"{where}.like", like, "a material without errors", f"Mend '{like}' first.")
+                    raise InputError(
+                        f"{where}.like", like, "a material without errors", f"Mend '{like}' first."
+                    )
                 raise unknown_name(f"{where}.like", like, known)
         for key, prop in NUMBERS.items():
             if key in CURVE and entry.get(POINTS) is not None:
@@ -287,14 +340,20 @@ class EntryParser:
         return given
 
     def friction(self, entry: Any) -> tuple[frozenset[str], dict[str, Value]]:
-        """Return the pair of names and the friction coefficients by level of one entry of the friction list."""
+        """Return the pair of names and the friction coefficients by level of one entry of the
+        friction list.
+        """
         prop = PARAMETERS["friction_coefficient"]
         pair, levels = self._of_pair(entry, "friction", "level", FRICTION_LEVELS, prop)
         return frozenset(pair), levels
 
     def wear(self, entry: Any) -> dict[tuple[str, str], Value]:
-        """Return the wear coefficients of one entry of the wear list, by the body that wears and its partner."""
-        pair, given = self._of_pair(entry, "wear", "body", BODIES_OF_PAIR, PROPERTIES["wear_coefficient"])
+        """Return the wear coefficients of one entry of the wear list, by the body that wears and
+        its partner.
+        """
+        pair, given = self._of_pair(
+            entry, "wear", "body", BODIES_OF_PAIR, PROPERTIES["wear_coefficient"]
+        )
         first, second = pair
         by_bodies = {"first": (first, second), "second": (second, first)}
         return {by_bodies[body]: value for body, value in given.items()}
@@ -302,12 +361,20 @@ class EntryParser:
     def _of_pair(
         self, entry: Any, section: str, kind: str, keys: tuple[str, ...], prop: Parameter
     ) -> tuple[tuple[str, str], dict[str, Value]]:
-        """Return the pair of names of an entry, and its values by `keys`, of which at least one must be given."""
+        """Return the pair of names of an entry, and its values by `keys`, of which at least one
+        must be given.
+        """
         where = section
         if not isinstance(entry, Mapping):
-            raise InputError(where, entry, f"an entry such as {{pair: [metal, PA6], {keys[0]}: NUMBER}}")
+            raise InputError(
+                where, entry, f"an entry such as {{pair: [metal, PA6], {keys[0]}: NUMBER}}"
+            )
         pair = entry.get("pair")
-        if not isinstance(pair, list) or len(pair) != 2 or not all(isinstance(p, str) and p for p in pair):
+        if (
+            not isinstance(pair, list)
+            or len(pair) != 2
+            or not all(isinstance(p, str) and p for p in pair)
+        ):
             allowed = "a list of two families or material names"
             raise InputError(f"{where}.pair", pair, allowed, "Write pair: [metal, PA6].")
         where = f"{where}.{'-'.join(pair)}"
@@ -326,7 +393,9 @@ class EntryParser:
 
 
 def _words(entry: Mapping[Any, Any], base: Material | None) -> dict[str, str]:
-    """Return family and description of an entry; a material with the same name or under `like` lends them."""
+    """Return family and description of an entry; a material with the same name or under `like`
+    lends them.
+    """
     words = {"family": entry.get("family") or "", "description": entry.get("description") or ""}
     if base and not words["family"]:
         words["family"] = base.family
@@ -341,6 +410,7 @@ def inline_material(entry: Mapping[str, Any], known: Mapping[str, Material]) -> 
     name = entry.pop("name", None) or UNNAMED
     entry = {key: value for key, value in entry.items() if value is not None}
     parser = EntryParser("material ", "case", {})
-    # A mapping inherits from a known material only if it asks for it by `like`, not because both have the same name.
+    # A mapping inherits from a known material only if it asks for it by `like`, not because both
+    # have the same name.
     lenders = {key: known[key] for key in known if key != name or entry.get("like") == name}
     return parser.material(name, entry, lenders)

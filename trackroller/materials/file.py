@@ -1,4 +1,6 @@
-"""Read material files: the built-in file, and the user's file, whose values replace built-in ones."""
+"""Read material files: the built-in file, and the user's file, whose values replace built-in
+ones.
+"""
 
 from __future__ import annotations
 
@@ -28,8 +30,8 @@ def find_user_file(argument: Path | str | None = None) -> Path | None:
     Parameters
     ----------
     argument : pathlib.Path or str, optional
-        Path that the user gave. Default: the value of the environment variable TRACKROLLER_MATERIALS, otherwise
-        `config/materials.yaml` in the working directory.
+        Path that the user gave. Default: the value of the environment variable
+        TRACKROLLER_MATERIALS, otherwise `config/materials.yaml` in the working directory.
 
     Returns
     -------
@@ -54,7 +56,9 @@ def find_user_file(argument: Path | str | None = None) -> Path | None:
         if argument is not None:
             field = "materials file"
         remedy = "Correct the path, or leave it out to use the built-in materials."
-        raise InputError(field, str(named), "the path of a YAML file", remedy, "does not exist or is no file")
+        raise InputError(
+            field, str(named), "the path of a YAML file", remedy, "does not exist or is no file"
+        )
     return path.resolve()
 
 
@@ -91,7 +95,9 @@ def posterior_path(file: Path | str, name: str) -> Path:
 
 
 def read_database(user_file: Path | None) -> MaterialDatabase:
-    """Return the built-in database with the values of the user's file, which is parsed again only if it has changed."""
+    """Return the built-in database with the values of the user's file, which is parsed again only
+    if it has changed.
+    """
     if user_file is None:
         return _cached(None, "")
     return _cached(user_file, read_text(user_file, "materials file"))
@@ -118,7 +124,8 @@ def build_database(
     over : MaterialDatabase, optional
         Database whose values are used where the file gives none.
     by_line : bool
-        Whether errors name the file and their lines; the text may not be the one that the user sees.
+        Whether errors name the file and their lines; the text may not be the one that the user
+        sees.
 
     Returns
     -------

@@ -1,4 +1,6 @@
-"""A material with its elastic constants and its S-N curve; each value has a unit, a source and a mark."""
+"""A material with its elastic constants and its S-N curve; each value has a unit, a source and a
+mark.
+"""
 
 from __future__ import annotations
 
@@ -24,12 +26,14 @@ _OfLimits = make_dataclass(
 
 
 def contradictions(values: Mapping[str, Any]) -> dict[str, str]:
-    """Return the values of limits that are impossible beside R_m and sigma_D of a material, with what is allowed.
+    """Return the values of limits that are impossible beside R_m and sigma_D of a material, with
+    what is allowed.
 
     Parameters
     ----------
     values : mapping
-        Values of the material by name, `fatigue_limit` among them; None or nothing where a value is not given.
+        Values of the material by name, `fatigue_limit` among them; None or nothing where a value is
+        not given.
     """
     strength = values["tensile_strength"]
     limit = values["fatigue_limit"]
@@ -41,14 +45,16 @@ def contradictions(values: Mapping[str, Any]) -> dict[str, str]:
     torsion = values.get("fatigue_limit_torsion")
     if torsion is not None and not 0.5 < torsion / limit < 1.0:
         out["fatigue_limit_torsion"] = (
-            f"it must lie between 0.5 and 1 times sigma_D = {limit:g} MPa, for Findley's and Dang Van's criteria"
+            f"it must lie between 0.5 and 1 times sigma_D = {limit:g} MPa, for Findley's and Dang "
+            "Van's criteria"
         )
     return out
 
 
 @dataclass(frozen=True)
 class Material(_OfLimits):  # type: ignore[misc, valid-type]
-    """A material whose S-N curve runs through (N_Rm, R_m) and (N_k, sigma_D), or through points of its own.
+    """A material whose S-N curve runs through (N_Rm, R_m) and (N_k, sigma_D), or through points of
+    its own.
 
     Parameters
     ----------
@@ -75,8 +81,9 @@ class Material(_OfLimits):  # type: ignore[misc, valid-type]
     description : str
         A short description.
     sn_points : sequence of pairs
-        Points (stress [MPa], cycles [1]) of the S-N curve, straight in logarithms between them; the last one is the
-        knee. They do not depend on R_m and replace sigma_D/R_m, N_Rm and N_k, which follow from them. Empty: none.
+        Points (stress [MPa], cycles [1]) of the S-N curve, straight in logarithms between them; the
+        last one is the knee. They do not depend on R_m and replace sigma_D/R_m, N_Rm and N_k, which
+        follow from them. Empty: none.
     temperature_dependence : TemperatureTable or mapping, optional
         E and R_m over temperature, for the output `heat`; see `trackroller.materials.temperature`.
     records : mapping of str to Value
@@ -84,7 +91,8 @@ class Material(_OfLimits):  # type: ignore[misc, valid-type]
 
     Other Parameters
     ----------------
-    Values that the limits declare, such as `yield_strength`; see `trackroller.materials.properties`.
+    Values that the limits declare, such as `yield_strength`; see
+    `trackroller.materials.properties`.
 
     Raises
     ------
@@ -106,7 +114,9 @@ class Material(_OfLimits):  # type: ignore[misc, valid-type]
     description: str = ""
     sn_points: tuple[tuple[float, float], ...] = ()
     temperature_dependence: Any = None
-    records: Mapping[str, Value] = field(default_factory=dict, compare=False, repr=False, hash=False)
+    records: Mapping[str, Value] = field(
+        default_factory=dict, compare=False, repr=False, hash=False
+    )
 
     def __post_init__(self) -> None:
         where = f"material '{self.name}'"
@@ -117,7 +127,10 @@ class Material(_OfLimits):  # type: ignore[misc, valid-type]
             object.__setattr__(self, prop.name, check_number(prop, value, where))
         if self.sn_points:
             points = read_points(self.sn_points, where)
-            for name, number in {POINTS: points, **numbers_of_line(points, self.tensile_strength)}.items():
+            for name, number in {
+                POINTS: points,
+                **numbers_of_line(points, self.tensile_strength),
+            }.items():
                 object.__setattr__(self, name, number)
         elif not self.cycles_at_tensile_strength < self.cycles_at_fatigue_limit:
             raise InputError(
@@ -127,10 +140,14 @@ class Material(_OfLimits):  # type: ignore[misc, valid-type]
                 "Give the lower number of cycles to the tensile strength.",
             )
 
-        for name, allowed in contradictions(vars(self) | {"fatigue_limit": self.fatigue_limit}).items():
+        for name, allowed in contradictions(
+            vars(self) | {"fatigue_limit": self.fatigue_limit}
+        ).items():
             raise InputError(f"{where}.{name}", getattr(self, name), allowed, "Correct the values.")
         if self.temperature_dependence is not None:
-            object.__setattr__(self, FIELD, read_table(self.temperature_dependence, vars(self), where))
+            object.__setattr__(
+                self, FIELD, read_table(self.temperature_dependence, vars(self), where)
+            )
 
     @property
     def fatigue_limit(self) -> float:
@@ -141,7 +158,9 @@ class Material(_OfLimits):  # type: ignore[misc, valid-type]
 
     @property
     def woehler_exponent(self) -> float:
-        """Return the exponent k > 0 of the S-N curve [1], of the segment above the knee if it has several."""
+        """Return the exponent k > 0 of the S-N curve [1], of the segment above the knee if it has
+        several.
+        """
         if self.sn_points:
             return float(SNCurve.of(self).exponent)
         cycles = self.cycles_at_fatigue_limit / self.cycles_at_tensile_strength
@@ -149,7 +168,9 @@ class Material(_OfLimits):  # type: ignore[misc, valid-type]
 
     @property
     def sn_line(self) -> tuple[tuple[float, float], ...]:
-        """Return the points (stress [MPa], cycles [1]) that the S-N curve runs through, the last one its knee."""
+        """Return the points (stress [MPa], cycles [1]) that the S-N curve runs through, the last
+        one its knee.
+        """
         upper = (self.tensile_strength, self.cycles_at_tensile_strength)
         knee = self.cycles_at_fatigue_limit
         return self.sn_points or (upper, (self.fatigue_limit, knee))
@@ -161,8 +182,14 @@ class Material(_OfLimits):  # type: ignore[misc, valid-type]
 
     @property
     def placeholders(self) -> tuple[str, ...]:
-        """Return the names of the values that are guesses without a source, those of single limits left out."""
-        guessed = [name for name, record in self.records.items() if record.placeholder and name not in OF_LIMITS]
+        """Return the names of the values that are guesses without a source, those of single limits
+        left out.
+        """
+        guessed = [
+            name
+            for name, record in self.records.items()
+            if record.placeholder and name not in OF_LIMITS
+        ]
         table: TemperatureTable | None = self.temperature_dependence
         if table is not None and table.placeholder:
             return (*guessed, FIELD)
@@ -171,16 +198,26 @@ class Material(_OfLimits):  # type: ignore[misc, valid-type]
     @property
     def guesses_of_limits(self) -> dict[str, Value]:
         """Return the values of single limits that are guesses without a source."""
-        return {name: own for name, own in self.records.items() if own.placeholder and name in OF_LIMITS}
+        return {
+            name: own for name, own in self.records.items() if own.placeholder and name in OF_LIMITS
+        }
 
     @property
     def ends_of_limits(self) -> dict[str, tuple[float, float]]:
-        """Return the worse and the better end of each placeholder of a limit that has a range, over its value."""
+        """Return the worse and the better end of each placeholder of a limit that has a range, over
+        its value.
+        """
         values = {name: float(getattr(self, name)) for name in self._ends()}
-        return {name: (worse / v, better / v) for name, (worse, better) in self._ends().items() if (v := values[name])}
+        return {
+            name: (worse / v, better / v)
+            for name, (worse, better) in self._ends().items()
+            if (v := values[name])
+        }
 
     def _ends(self) -> dict[str, tuple[float, float]]:
-        """Return the worse and the better end of each placeholder of a limit; one without a range has none."""
+        """Return the worse and the better end of each placeholder of a limit; one without a range
+        has none.
+        """
         ends = {}
         for name, record in self.records.items():
             if record.placeholder and record.range is not None and name in OF_LIMITS:
@@ -196,14 +233,16 @@ class Material(_OfLimits):  # type: ignore[misc, valid-type]
         Parameters
         ----------
         position : float
-            -1 for the worse end of each range, 0 for the value, 1 for the better end; linear between them.
+            -1 for the worse end of each range, 0 for the value, 1 for the better end; linear
+            between them.
         fixed : collection of str
             Names of values that stay, because the user gave what replaces their range.
 
         Returns
         -------
         Material
-            Values that are no placeholders, or that have no range, stay. The material itself for a position of 0.
+            Values that are no placeholders, or that have no range, stay. The material itself for a
+            position of 0.
 
         Notes
         -----
@@ -223,7 +262,8 @@ class Material(_OfLimits):  # type: ignore[misc, valid-type]
         return self
 
     def at(self, temperature: float) -> Material:
-        """Return the material with the values of its table at a temperature [degC]; NaN leaves them.
+        """Return the material with the values of its table at a temperature [degC]; NaN leaves
+        them.
 
         Notes
         -----
@@ -232,23 +272,35 @@ class Material(_OfLimits):  # type: ignore[misc, valid-type]
         table: TemperatureTable | None = self.temperature_dependence
         if table is None or math.isnan(temperature):
             return self
-        values: dict[str, Any] = {name: float(table.at(name, np.asarray(temperature))) for name in table.columns}
+        values: dict[str, Any] = {
+            name: float(table.at(name, np.asarray(temperature))) for name in table.columns
+        }
         share = values.get("tensile_strength", self.tensile_strength) / self.tensile_strength
-        values |= {name: share * v for name in FOLLOW_STRENGTH if (v := getattr(self, name)) is not None}
+        values |= {
+            name: share * v for name in FOLLOW_STRENGTH if (v := getattr(self, name)) is not None
+        }
         values[POINTS] = tuple((share * stress, cycles) for stress, cycles in self.sn_points)
         return dataclasses.replace(self, **values)
 
     def as_dict(self) -> dict[str, Any]:
         """Return plain numbers and texts, which a case accepts as a material."""
-        values = {f.name: getattr(self, f.name) for f in dataclasses.fields(self) if f.name != "records"}
+        values = {
+            f.name: getattr(self, f.name) for f in dataclasses.fields(self) if f.name != "records"
+        }
         if self.temperature_dependence is not None:
             values[FIELD] = self.temperature_dependence.as_dict()
         return {key: value for key, value in values.items() if value not in (None, "", ())}
 
     def with_sources(self) -> dict[str, Any]:
-        """Return `as_dict` with `sources` and `notes` of the values, and the names of those that are `guesses`."""
+        """Return `as_dict` with `sources` and `notes` of the values, and the names of those that
+        are `guesses`.
+        """
         return self.as_dict() | {
             "sources": {k: r.source for k, r in self.records.items()},
-            "notes": {k: r.note for k, r in self.records.items() if r.note and not (r.placeholder and k in OF_LIMITS)},
+            "notes": {
+                k: r.note
+                for k, r in self.records.items()
+                if r.note and not (r.placeholder and k in OF_LIMITS)
+            },
             "guesses": self.placeholders,
         }

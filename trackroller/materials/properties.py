@@ -24,7 +24,9 @@ def _number(
     closed: bool = False,
     optional: bool = False,
 ) -> Parameter:
-    """Return a number of a material; `closed` allows its bounds, `optional` lets a material leave it out."""
+    """Return a number of a material; `closed` allows its bounds, `optional` lets a material leave
+    it out.
+    """
     return Parameter(
         name,
         symbol,
@@ -45,18 +47,49 @@ _PROPERTIES = (
     _number("youngs_modulus", "E", "MPa", "Young's modulus", 1e-6, 2e6),
     _number("poisson_ratio", "nu", "-", "Poisson's ratio", 0.0, 0.5, closed=True),
     _number("tensile_strength", "R_m", "MPa", "tensile strength", 1e-6, 2e5),
-    _number("fatigue_strength_ratio", "sigma_D/R_m", "-", "fatigue limit over tensile strength", 0.0, 1.0),
-    _number("cycles_at_tensile_strength", "N_Rm", "-", "cycles at the tensile strength", 0.0, math.inf),
+    _number(
+        "fatigue_strength_ratio",
+        "sigma_D/R_m",
+        "-",
+        "fatigue limit over tensile strength",
+        0.0,
+        1.0,
+    ),
+    _number(
+        "cycles_at_tensile_strength", "N_Rm", "-", "cycles at the tensile strength", 0.0, math.inf
+    ),
     _number("cycles_at_fatigue_limit", "N_k", "-", "cycles at the fatigue limit", 0.0, math.inf),
-    _number("second_exponent", "k_2", "-", "exponent of the S-N curve below sigma_D", 0.0, 1e3, optional=True),
-    _number("scatter_in_cycles", "T_N", "-", "scatter of the life T_N = N_90/N_10", 1.0, 1e6, True, True),
-    _number("scatter_in_stress", "T_S", "-", "scatter of the strength T_S = S_90/S_10", 1.0, 1e3, True, True),
+    _number(
+        "second_exponent",
+        "k_2",
+        "-",
+        "exponent of the S-N curve below sigma_D",
+        0.0,
+        1e3,
+        optional=True,
+    ),
+    _number(
+        "scatter_in_cycles", "T_N", "-", "scatter of the life T_N = N_90/N_10", 1.0, 1e6, True, True
+    ),
+    _number(
+        "scatter_in_stress",
+        "T_S",
+        "-",
+        "scatter of the strength T_S = S_90/S_10",
+        1.0,
+        1e3,
+        True,
+        True,
+    ),
 )
-OF_LIMITS: dict[str, Parameter] = {own.name: own for limit in LIMITS.values() for own in limit.materials}
+OF_LIMITS: dict[str, Parameter] = {
+    own.name: own for limit in LIMITS.values() for own in limit.materials
+}
 PROPERTIES: dict[str, Parameter] = with_limits(
     {p.name: p for p in _PROPERTIES}, OF_LIMITS.values(), "a value of a material"
 )
-# Other ways to give the S-N curve; `trackroller.materials.sn_curve` turns them into the properties above.
+# Other ways to give the S-N curve; `trackroller.materials.sn_curve` turns them into the properties
+# above.
 _ALTERNATIVES = (
     _number("fatigue_limit", "sigma_D", "MPa", "fatigue limit", 0.0, 2e5),
     _number("woehler_exponent", "k", "-", "exponent of the S-N curve", 0.0, 1e3),
@@ -67,10 +100,11 @@ REQUIRED = tuple(p.name for p in _PROPERTIES if not p.allow_missing)
 
 @dataclass(frozen=True)
 class Value:
-    """A property or a friction coefficient: number, unit, source, note, and the file that defines it (`origin`).
+    """A property or a friction coefficient: number, unit, source, note, and the file that defines
+    it (`origin`).
 
-    `placeholder` is True if the number is a guess without a source. `range` then holds the bounds between which the
-    true number is expected, if they are given.
+    `placeholder` is True if the number is a guess without a source. `range` then holds the bounds
+    between which the true number is expected, if they are given.
     """
 
     value: float
@@ -109,7 +143,11 @@ def check_number(prop: Parameter, value: Any, where: str, unit: str = "") -> flo
     remedy = "Correct the value."
     if prop.unit != "-":
         remedy = f"Give {prop.name} in {prop.unit}."
-    if prop.name in ("woehler_exponent", "second_exponent") and isinstance(value, (int, float)) and -1.0 < value < 0.0:
+    if (
+        prop.name in ("woehler_exponent", "second_exponent")
+        and isinstance(value, (int, float))
+        and -1.0 < value < 0.0
+    ):
         remedy = f"If Basquin's b is meant, the exponent is k = -1/b: write {-1.0 / value:.3g}."
     if prop.name in ("scatter_in_cycles", "scatter_in_stress"):
         remedy = "Give the larger over the smaller value; 1 means no scatter."

@@ -10,7 +10,8 @@ from trackroller.materials.properties import PROPERTIES, REQUIRED, Value
 
 
 def material_rows(database: MaterialDatabase, search: str = "") -> list[dict[str, str]]:
-    """Return one row for each material: name, family, values, number of placeholders, origin, description.
+    """Return one row for each material: name, family, values, number of placeholders, origin,
+    description.
 
     With `search`, only the materials whose name, family or description holds its words.
     """
@@ -21,7 +22,9 @@ def material_rows(database: MaterialDatabase, search: str = "") -> list[dict[str
         names = database.names()
     if not names:
         remedy = "`trackroller materials list` shows all materials."
-        raise InputError("material", search, "words of the name or the description of a material", remedy)
+        raise InputError(
+            "material", search, "words of the name or the description of a material", remedy
+        )
     for material in map(database.material, names):
         row = {"name": material.name, "family": material.family or "-"}
         for name in REQUIRED:
@@ -32,14 +35,18 @@ def material_rows(database: MaterialDatabase, search: str = "") -> list[dict[str
                 heading = f"{prop.symbol} [{prop.unit}]"
             row[heading] = f"{getattr(material, name):g}"
         row["placeholders"] = str(len(material.placeholders) + len(material.guesses_of_limits))
-        row["origin"] = ", ".join(dict.fromkeys(r.origin for r in material.records.values())) or "inline"
+        row["origin"] = (
+            ", ".join(dict.fromkeys(r.origin for r in material.records.values())) or "inline"
+        )
         row["description"] = material.description
         rows.append(row)
     return rows
 
 
 def material_details(database: MaterialDatabase, name: str) -> list[dict[str, str]]:
-    """Return one row for each value of a material: field, symbol, value, unit, source, mark, note, origin."""
+    """Return one row for each value of a material: field, symbol, value, unit, source, mark, note,
+    origin.
+    """
     material = database.material(name)
     rows = []
     for prop in PROPERTIES.values():
@@ -63,14 +70,18 @@ def material_details(database: MaterialDatabase, name: str) -> list[dict[str, st
     if table is not None:
         over = ", ".join(f"{value:g}" for value in table.temperature)
         for key, column in table.columns.items():
-            record = Value(column[0], PROPERTIES[key].unit, table.source, table.placeholder, f"at {over} degC")
+            record = Value(
+                column[0], PROPERTIES[key].unit, table.source, table.placeholder, f"at {over} degC"
+            )
             row = _row(f"{key} over temperature", f"{PROPERTIES[key].symbol}(theta)", record)
             rows.append(row | {"value": ", ".join(f"{value:g}" for value in column)})
     return [*rows, _row("fatigue_limit", "sigma_D", limit), _row("woehler_exponent", "k", exponent)]
 
 
 def friction_rows(database: MaterialDatabase) -> list[dict[str, str]]:
-    """Return one row for each pair and level of the friction table, and for each pair and body of the wear table."""
+    """Return one row for each pair and level of the friction table, and for each pair and body of
+    the wear table.
+    """
     rows = []
     for pair, levels in database.friction_table.items():
         if len(pair) == 2:
@@ -94,6 +105,7 @@ def _row(name: str, symbol: str, record: Value) -> dict[str, str]:
         "unit": record.unit,
         "source": record.source,
         "placeholder": "placeholder" if record.placeholder else "",
-        "note": record.note or ("" if record.range is None else "expected from {:g} to {:g}".format(*record.range)),
+        "note": record.note
+        or ("" if record.range is None else "expected from {:g} to {:g}".format(*record.range)),
         "origin": record.origin,
     }

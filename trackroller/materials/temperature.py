@@ -1,4 +1,6 @@
-"""Young's modulus and tensile strength of a material over temperature, as a table that its user gives."""
+"""Young's modulus and tensile strength of a material over temperature, as a table that its user
+gives.
+"""
 
 from __future__ import annotations
 
@@ -21,14 +23,16 @@ _TEMPERATURE = Parameter("temperature", "theta", "degC", 20.0, "temperature", -2
 
 @dataclass(frozen=True)
 class TemperatureTable:
-    """Values of a material over its temperature, linear between the rows and constant beyond the ends.
+    """Values of a material over its temperature, linear between the rows and constant beyond the
+    ends.
 
     Parameters
     ----------
     temperature : tuple of float
         Rising temperatures [degC].
     youngs_modulus, tensile_strength : tuple of float
-        E and R_m [MPa] at these temperatures; empty for a value that does not depend on temperature.
+        E and R_m [MPa] at these temperatures; empty for a value that does not depend on
+        temperature.
     source, note : str
         Where the table comes from, and what else there is to say.
     placeholder : bool
@@ -55,7 +59,9 @@ class TemperatureTable:
 
     @property
     def text(self) -> str:
-        """Return the numbers of the table as JSON, which `json.loads` turns into arguments of this class."""
+        """Return the numbers of the table as JSON, which `json.loads` turns into arguments of this
+        class.
+        """
         return json.dumps({"temperature": self.temperature} | self.columns)
 
     def at(self, name: str, temperature: np.ndarray) -> np.ndarray:
@@ -81,10 +87,11 @@ def read_table(given: Any, values: Mapping[str, float], where: str) -> Temperatu
     Parameters
     ----------
     given : TemperatureTable or mapping
-        The lists `temperature` and `youngs_modulus`, `tensile_strength` or both, with source, placeholder and note.
-        A number may have a unit of its own, such as '3 GPa'.
+        The lists `temperature` and `youngs_modulus`, `tensile_strength` or both, with source,
+        placeholder and note. A number may have a unit of its own, such as '3 GPa'.
     values : mapping of str to float
-        E and R_m of the material [MPa], which hold without a known temperature and must lie within the table.
+        E and R_m of the material [MPa], which hold without a known temperature and must lie within
+        the table.
     where : str
         Place of the material, for messages.
 
@@ -101,14 +108,30 @@ def read_table(given: Any, values: Mapping[str, float], where: str) -> Temperatu
         raise InputError(field, given, f"a mapping with the lists {', '.join(lists)}")
     check_names(f"{field}: key", given, (*lists, "source", "placeholder", "note"))
     if "temperature" not in given or not any(name in given for name in TABLED):
-        raise InputError(field, ", ".join(given) or "nothing", f"temperature and {' or '.join(TABLED)}")
-    numbers = {name: _numbers(name, given[name], field, given["temperature"]) for name in lists if name in given}
-    if not all(low < high for low, high in zip(numbers["temperature"], numbers["temperature"][1:], strict=False)):
-        raise InputError(f"{field}.temperature", given["temperature"], "rising temperatures", "Sort the rows.")
+        raise InputError(
+            field, ", ".join(given) or "nothing", f"temperature and {' or '.join(TABLED)}"
+        )
+    numbers = {
+        name: _numbers(name, given[name], field, given["temperature"])
+        for name in lists
+        if name in given
+    }
+    if not all(
+        low < high
+        for low, high in zip(numbers["temperature"], numbers["temperature"][1:], strict=False)
+    ):
+        raise InputError(
+            f"{field}.temperature", given["temperature"], "rising temperatures", "Sort the rows."
+        )
     for name in TABLED:
         if name in numbers and not min(numbers[name]) <= values[name] <= max(numbers[name]):
             allowed = f"a table that holds the material's own value, {values[name]:g} MPa"
-            raise InputError(f"{field}.{name}", given[name], allowed, f"Correct the table, or give {name} as well.")
+            raise InputError(
+                f"{field}.{name}",
+                given[name],
+                allowed,
+                f"Correct the table, or give {name} as well.",
+            )
     if not isinstance(given.get("placeholder", False), bool):
         raise InputError(f"{field}.placeholder", given["placeholder"], "true or false")
     texts = {key: str(given[key]) for key in ("source", "note") if given.get(key)}
@@ -121,5 +144,7 @@ def _numbers(name: str, given: Any, field: str, temperatures: Any) -> tuple[floa
     if not isinstance(given, (list, tuple)) or len(given) < 2:
         raise InputError(f"{field}.{name}", given, "a list of at least two numbers")
     if len(given) != len(temperatures):
-        raise InputError(f"{field}.{name}", given, f"one value for each of the {len(temperatures)} temperatures")
+        raise InputError(
+            f"{field}.{name}", given, f"one value for each of the {len(temperatures)} temperatures"
+        )
     return tuple(check_number(PROPERTIES.get(name, _TEMPERATURE), value, field) for value in given)

@@ -1,4 +1,6 @@
-"""Designs of experiments, one file each behind the class `Method`: how they draw rows, and how they analyse them."""
+"""Designs of experiments, one file each behind the class `Method`: how they draw rows, and how they
+analyse them.
+"""
 
 from __future__ import annotations
 
@@ -6,7 +8,14 @@ from trackroller.methods.arrays import BoxBehnken, CentralComposite, PlackettBur
 from trackroller.methods.grid import Grid
 from trackroller.methods.inner_outer import InnerOuter
 from trackroller.methods.lhs import LatinHypercube
-from trackroller.methods.method import METHODS, Design, Method, register, those_that_take, those_with
+from trackroller.methods.method import (
+    METHODS,
+    Design,
+    Method,
+    register,
+    those_that_take,
+    those_with,
+)
 from trackroller.methods.morris import Morris
 from trackroller.methods.optimise import Optimise
 from trackroller.methods.saltelli import Saltelli

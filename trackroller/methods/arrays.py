@@ -1,8 +1,9 @@
 """Classical designs in coded units: -1 and +1 are the ends of a factor's range, 0 its middle.
 
-pyDOE gives the central composite designs and the Box-Behnken designs of 3 to 5 factors. This module has what pyDOE
-lacks: for 6 and 7 factors the published Box-Behnken blocks (49 and 57 rows; pyDOE combines all pairs: 61 and 85), and
-Plackett-Burman designs for each number of factors up to 47 (pyDOE fails for 24 to 27, 32 to 35 and 40 to 43).
+pyDOE gives the central composite designs and the Box-Behnken designs of 3 to 5 factors. This module
+has what pyDOE lacks: for 6 and 7 factors the published Box-Behnken blocks (49 and 57 rows; pyDOE
+combines all pairs: 61 and 85), and Plackett-Burman designs for each number of factors up to 47
+(pyDOE fails for 24 to 27, 32 to 35 and 40 to 43).
 
 SALib has no counterpart for the fit of a response surface with lists.
 """
@@ -36,7 +37,9 @@ Terms = list[tuple[Any, ...]]
 
 
 class Coded(Method):
-    """A classical design over the continuous factors, repeated for each combination of listed values."""
+    """A classical design over the continuous factors, repeated for each combination of listed
+    values.
+    """
 
     quick = quadratic = True
     tail = TAIL
@@ -82,7 +85,8 @@ class CentralComposite(Coded):
     name = "central_composite"
     reference = (
         "Design: central composite",
-        "Box, Wilson (1951): On the experimental attainment of optimum conditions. J. R. Stat. Soc. B 13, 1–45",
+        "Box, Wilson (1951): On the experimental attainment of optimum conditions. J. R. Stat. "
+        "Soc. B 13, 1–45",
     )
 
     @staticmethod
@@ -97,7 +101,8 @@ class BoxBehnken(Coded):
     name = "box_behnken"
     reference = (
         "Design: Box–Behnken",
-        "Box, Behnken (1960): Some new three level designs for the study of quantitative variables. "
+        "Box, Behnken (1960): Some new three level designs for the study of quantitative "
+        "variables. "
         "Technometrics 2, 455–475",
     )
 
@@ -115,7 +120,8 @@ class PlackettBurman(Coded):
     needs = "enough rows for the fitted main effects"
     reference = (
         "Design: Plackett–Burman",
-        "Plackett, Burman (1946): The design of optimum multifactorial experiments. Biometrika 33, 305–325",
+        "Plackett, Burman (1946): The design of optimum multifactorial experiments. Biometrika "
+        "33, 305–325",
     )
 
     def values(self, factor: Factor, places: np.ndarray) -> np.ndarray:
@@ -127,12 +133,16 @@ class PlackettBurman(Coded):
         for name, factor in free.items():
             if factor.discrete and len(factor.levels) != 2:
                 allowed = "two values a factor, with plackett_burman"
-                raise InputError(f"factors.{name}", factor.levels, allowed, "Give two values, or choose morris.")
+                raise InputError(
+                    f"factors.{name}", factor.levels, allowed, "Give two values, or choose morris."
+                )
         coded = plackett_burman(len(free))
         return coded, {"runs": len(coded), "crossed": []}
 
     def lists(self, design: Design) -> np.ndarray:
-        """Return that no factor enters the fit by its values: two values are the ends of a range."""
+        """Return that no factor enters the fit by its values: two values are the ends of a
+        range.
+        """
         return np.zeros(len(design.factors), dtype=bool)
 
 
@@ -142,7 +152,10 @@ _BLOCKS: dict[int, tuple[tuple[int, int, int], ...]] = {
     7: ((3, 4, 5), (0, 5, 6), (1, 4, 6), (0, 1, 3), (2, 3, 6), (0, 2, 4), (1, 2, 5)),
 }
 
-_RANGE = "Give the factors ranges, such as {uniform: [low, high]}; a list of values is no numeric factor."
+_RANGE = (
+    "Give the factors ranges, such as {uniform: [low, high]}; a list of values is no numeric "
+    "factor."
+)
 
 
 def central_composite(count: int) -> np.ndarray:
@@ -154,7 +167,8 @@ def central_composite(count: int) -> np.ndarray:
 
     Returns
     -------
-    Coded design, shape (2**count + 2 count + 1, count). A deterministic solver needs only one centre point.
+    Coded design, shape (2**count + 2 count + 1, count). A deterministic solver needs only one
+    centre point.
 
     Raises
     ------
@@ -166,7 +180,9 @@ def central_composite(count: int) -> np.ndarray:
     """
     remedy = _RANGE
     if count > 8:
-        remedy = "Screen the factors first (morris or plackett_burman) and keep the influential ones."
+        remedy = (
+            "Screen the factors first (morris or plackett_burman) and keep the influential ones."
+        )
     if not 1 <= count <= 8:
         name = f"central_composite with {count} numeric factors"
         raise InputError("design", name, "1 to 8 numeric factors", remedy)
@@ -200,7 +216,9 @@ def box_behnken(count: int) -> np.ndarray:
     if count:
         remedy = "Use central_composite (up to 8 factors), or lhs."
     if not 3 <= count <= 7:
-        raise InputError("design", f"box_behnken with {count} numeric factors", "3 to 7 numeric factors", remedy)
+        raise InputError(
+            "design", f"box_behnken with {count} numeric factors", "3 to 7 numeric factors", remedy
+        )
     if count not in _BLOCKS:
         from pydoe import bbdesign  # heavy, as above
 
@@ -213,7 +231,8 @@ def box_behnken(count: int) -> np.ndarray:
 
 
 def plackett_burman(count: int) -> np.ndarray:
-    """Return a folded two-level screening design, whose main effects are clear of two-factor interactions.
+    """Return a folded two-level screening design, whose main effects are clear of two-factor
+    interactions.
 
     Parameters
     ----------
@@ -221,8 +240,8 @@ def plackett_burman(count: int) -> np.ndarray:
 
     Returns
     -------
-    Coded design, shape (2 m, count), m the smallest Hadamard order above `count`: a power of two (Sylvester)
-    or q + 1 with a prime q = 3 mod 4 (Paley).
+    Coded design, shape (2 m, count), m the smallest Hadamard order above `count`: a power of two
+    (Sylvester) or q + 1 with a prime q = 3 mod 4 (Paley).
 
     Raises
     ------
@@ -233,7 +252,9 @@ def plackett_burman(count: int) -> np.ndarray:
     Plackett & Burman (1946), Biometrika 33, 305-325; Box & Wilson (1951) for the fold-over.
     """
     if not 1 <= count <= 47:
-        raise InputError("design", f"plackett_burman with {count} factors", "1 to 47 factors", "Use morris.")
+        raise InputError(
+            "design", f"plackett_burman with {count} factors", "1 to 47 factors", "Use morris."
+        )
     from scipy.linalg import hadamard  # heavy, as above
 
     order = next(m for m in (2, 4, 8, 12, 16, 20, 24, 32, 44, 48) if m > count)
@@ -246,7 +267,9 @@ def plackett_burman(count: int) -> np.ndarray:
 
 
 def _paley(order: int) -> np.ndarray:
-    """Return the Hadamard matrix of Paley's first construction, shape (order, order), first column +1."""
+    """Return the Hadamard matrix of Paley's first construction, shape (order, order), first column
+    +1.
+    """
     q = order - 1
     legendre = np.full(q, -1.0)
     legendre[0] = 0.0
@@ -268,19 +291,24 @@ def effects(y: np.ndarray, coded: np.ndarray, listed: np.ndarray, quadratic: boo
 
     Returns
     -------
-    effect, effect_low, effect_high (k,), curvature (k,), interaction (k, k), r_squared (), rows_used ().
+    effect, effect_low, effect_high (k,), curvature (k,), interaction (k, k), r_squared (),
+    rows_used ().
 
     Notes
     -----
-    y = c + sum b_i x_i (+ sum b_ij x_i x_j + sum b_ii x_i^2), x in [-1, 1]. The effect of a factor is 2 b_i, the
-    change of the output over its range. A list enters by its values; its effect is the largest less the smallest
-    mean. Intervals come from the residuals (Student t). The solver has no noise, so they show lack of fit.
+    y = c + sum b_i x_i (+ sum b_ij x_i x_j + sum b_ii x_i^2), x in [-1, 1]. The effect of a factor
+    is 2 b_i, the change of the output over its range. A list enters by its values; its effect is
+    the largest less the smallest mean. Intervals come from the residuals (Student t). The solver
+    has no noise, so they show lack of fit.
     """
     from scipy.stats import t as student  # heavy, as above
 
     good = np.isfinite(y)
     y, coded, count = y[good], coded[good], coded.shape[1]
-    out: Estimates = {name: np.full(count, np.nan) for name in ("effect", "effect_low", "effect_high", "curvature")}
+    out: Estimates = {
+        name: np.full(count, np.nan)
+        for name in ("effect", "effect_low", "effect_high", "curvature")
+    }
     out |= {"interaction": np.full((count, count), np.nan), "r_squared": np.array(np.nan)}
     out["rows_used"] = np.array(good.sum())
     terms, matrix = _terms(coded, listed, quadratic)

@@ -30,7 +30,10 @@ def sizes(total: int, smallest: int = 16, points: int = 7) -> np.ndarray:
 
 
 def course(
-    estimate: Callable[[int], Estimates], at: Sequence[int] | np.ndarray, whole: Estimates, names: Sequence[str]
+    estimate: Callable[[int], Estimates],
+    at: Sequence[int] | np.ndarray,
+    whole: Estimates,
+    names: Sequence[str],
 ) -> Estimates:
     """Estimate indices and their intervals from the first samples of a design.
 
@@ -47,7 +50,9 @@ def course(
     """
     rows = [*(estimate(int(size)) for size in at[:-1]), whole]
     keys = [(name, end) for name in names for end in ("", "_low", "_high")]
-    return {f"{name}_course{end}": np.stack([row[name + end] for row in rows]) for name, end in keys}
+    return {
+        f"{name}_course{end}": np.stack([row[name + end] for row in rows]) for name, end in keys
+    }
 
 
 def half_width(low: np.ndarray, high: np.ndarray) -> float:
@@ -71,8 +76,8 @@ def take_times(low: np.ndarray, high: np.ndarray, target: float) -> float:
 
     Notes
     -----
-    The half width falls as one over the root of the samples. A Sobol sequence does better, so the factor is
-    conservative.
+    The half width falls as one over the root of the samples. A Sobol sequence does better, so the
+    factor is conservative.
     """
     if target > 0:
         times = (half_width(low, high) / target) ** 2

@@ -15,7 +15,8 @@ from trackroller.methods.factor import Factor
 from trackroller.methods.method import Design
 
 KEY = "rank_correlations"
-SMALLEST = 1e-6  # eigenvalue of the correlation matrix below which it does not count as positive definite
+# eigenvalue of the correlation matrix below which it does not count as positive definite
+SMALLEST = 1e-6
 Entry = tuple[str, str, float]
 CORRELATED = 0.5  # rank correlation of two columns of a table above which the result warns
 
@@ -25,7 +26,8 @@ def copula(entries: Sequence[Entry], factors: Mapping[str, Factor]) -> np.ndarra
 
     Parameters
     ----------
-    entries : (factor, factor, Spearman rank correlation [1]); a pair that is not listed has no correlation
+    entries : (factor, factor, Spearman rank correlation [1]); a pair that is not listed has no
+        correlation
     factors : the factors of the random sample by name
 
     Returns
@@ -34,7 +36,8 @@ def copula(entries: Sequence[Entry], factors: Mapping[str, Factor]) -> np.ndarra
 
     Raises
     ------
-    InputError : a name that is no factor with a distribution, or a matrix that is not positive definite
+    InputError : a name that is no factor with a distribution, or a matrix that is not positive
+        definite
 
     References
     ----------
@@ -47,20 +50,32 @@ def copula(entries: Sequence[Entry], factors: Mapping[str, Factor]) -> np.ndarra
         if name not in factors:
             raise unknown_name(KEY, name, [n for n, f in factors.items() if not f.discrete])
         if factors[name].discrete:
-            remedy = "Give a distribution such as {uniform: [low, high]}: equal values have no rank."
-            raise InputError(KEY, name, "factors with a distribution, not with a list of values", remedy)
+            remedy = (
+                "Give a distribution such as {uniform: [low, high]}: equal values have no rank."
+            )
+            raise InputError(
+                KEY, name, "factors with a distribution, not with a list of values", remedy
+            )
     rho = np.eye(len(names))
     for one, other, value in entries:
         i, j = names.index(one), names.index(other)
         rho[i, j] = rho[j, i] = value
     if not _is_definite(rho):
-        raise InputError(KEY, [list(e) for e in entries], "rank correlations that can hold together", _remedy(rho))
+        raise InputError(
+            KEY,
+            [list(e) for e in entries],
+            "rank correlations that can hold together",
+            _remedy(rho),
+        )
     return np.linalg.cholesky(normal_correlation(rho))
 
 
 def normal_correlation(rho: np.ndarray) -> np.ndarray:
-    """Return the correlation of normal variables with a rank correlation, r = 2 sin(pi rho / 6) [1], any shape."""
-    return np.where(np.asarray(rho) == 1.0, 1.0, 2 * np.sin(np.pi * np.asarray(rho) / 6))  # 2 sin(pi/6) rounds below 1
+    """Return the correlation of normal variables with a rank correlation, r = 2 sin(pi rho / 6)
+    [1], any shape.
+    """
+    # 2 sin(pi/6) rounds below 1
+    return np.where(np.asarray(rho) == 1.0, 1.0, 2 * np.sin(np.pi * np.asarray(rho) / 6))
 
 
 def _is_definite(rho: np.ndarray) -> bool:
@@ -81,21 +96,23 @@ def correlate(unit: np.ndarray, root: np.ndarray | None, strata: bool) -> np.nda
     ----------
     unit : quantiles of independent factors [1], shape (n, k)
     root : see `copula`
-    strata : whether each column keeps its values and changes their order, so that a Latin hypercube stays one;
-        otherwise each row is correlated by itself and depends on no other row
+    strata : whether each column keeps its values and changes their order, so that a Latin hypercube
+        stays one; otherwise each row is correlated by itself and depends on no other row
 
     Returns
     -------
-    Quantiles, shape (n, k), whose ranks are those of correlated normal variables. Columns of factors without
-    correlation are the same as before.
+    Quantiles, shape (n, k), whose ranks are those of correlated normal variables. Columns of
+    factors without correlation are the same as before.
 
     Notes
     -----
-    With strata, the chance correlation of the sample is taken out first, where it has more rows than twice its factors.
+    With strata, the chance correlation of the sample is taken out first, where it has more rows
+    than twice its factors.
 
     References
     ----------
-    Iman & Conover (1982), Commun. Stat. Simul. Comput. 11, 311-334; Stein (1987), Technometrics 29, 143-151.
+    Iman & Conover (1982), Commun. Stat. Simul. Comput. 11, 311-334; Stein (1987), Technometrics 29,
+    143-151.
     """
     if root is None:
         return unit
@@ -125,11 +142,13 @@ def correlated_pairs(design: Design) -> list[tuple[str, str, float]]:
 
     Returns
     -------
-    (factor, factor, rank correlation [1]): the pairs of the study file, or the pair of columns of a table with the
-    largest correlation above 0.5. The factors of every other design are independent.
+    (factor, factor, rank correlation [1]): the pairs of the study file, or the pair of columns of a
+    table with the largest correlation above 0.5. The factors of every other design are independent.
     """
     if not design.method.observed or len(design.factors) < 2:
-        return [(one, other, rho) for one, other, rho in design.meta.get("rank_correlations", ()) if rho]
+        return [
+            (one, other, rho) for one, other, rho in design.meta.get("rank_correlations", ()) if rho
+        ]
     from scipy.stats import rankdata  # heavy, and drawing does not need it
 
     names = list(design.factors)

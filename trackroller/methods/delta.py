@@ -1,26 +1,31 @@
-"""Borgonovo's delta from given data: how far knowing a factor moves the whole distribution of an output.
+"""Borgonovo's delta from given data: how far knowing a factor moves the whole distribution of an
+output.
 
-delta = E[ integral |f(y) - f(y | x)| dy ] / 2 lies between 0 (no influence) and 1. It is the total variation distance
-between the pair (x, y) and a pair without a link, so monotonic transformations of x or y do not change it. This
-module therefore works with ranks, or with the values of a list.
+delta = E[ integral |f(y) - f(y | x)| dy ] / 2 lies between 0 (no influence) and 1. It is the total
+variation distance between the pair (x, y) and a pair without a link, so monotonic transformations
+of x or y do not change it. This module therefore works with ranks, or with the values of a list.
 
-The total variation distance also says how well the best rule separates linked from unlinked pairs: the error of the
-best rule is (1 - delta) / 2 [3]_. The rule used here is the sign of a smoothed difference of densities. Its error is
-estimated from held-out rows (too large on average) and from its own rows (too small), weighted as in the .632+
-estimator [4]_: the weight depends on how far the rule overfits.
+The total variation distance also says how well the best rule separates linked from unlinked pairs:
+the error of the best rule is (1 - delta) / 2 [3]_. The rule used here is the sign of a smoothed
+difference of densities. Its error is estimated from held-out rows (too large on average) and from
+its own rows (too small), weighted as in the .632+ estimator [4]_: the weight depends on how far the
+rule overfits.
 
 SALib's estimator (class-conditional densities [2]_) was measured beside this one by
-``validation/benchmarks/index_estimators.py``. For pairs of normal variables and 400 rows its bias is 0.08 for an inert
-factor and 0.14 for a strong one (ours: at most 0.02), its 95 % intervals cover the truth in 0 to 73 % of samples (ours:
-93 to 100 %), and it takes 6 to 30 times longer. Its delta of an exponential of y exceeds 1. For the factors of the
-Ishigami function (exact: 0.26, 0.43 and 0.21) and 400 rows its bias is 0.06, 0.21 and 0.05 (ours: 0.04, 0.05 and 0.07).
-Its intervals cover the truth in 20, 0 and 28 % of 40 samples (ours: 93, 98 and 90 %); both take about as long there.
+``validation/benchmarks/index_estimators.py``. For pairs of normal variables and 400 rows its bias
+is 0.08 for an inert factor and 0.14 for a strong one (ours: at most 0.02), its 95 % intervals cover
+the truth in 0 to 73 % of samples (ours: 93 to 100 %), and it takes 6 to 30 times longer. Its delta
+of an exponential of y exceeds 1. For the factors of the Ishigami function (exact: 0.26, 0.43 and
+0.21) and 400 rows its bias is 0.06, 0.21 and 0.05 (ours: 0.04, 0.05 and 0.07). Its intervals cover
+the truth in 20, 0 and 28 % of 40 samples (ours: 93, 98 and 90 %); both take about as long there.
 
 References
 ----------
 .. [1] Borgonovo (2007), Reliab. Eng. Syst. Saf. 92, 771-784 (the measure and its invariance)
-.. [2] Plischke, Borgonovo & Smith (2013), Eur. J. Oper. Res. 226, 536-550 (estimation from given data)
-.. [3] Sriperumbudur et al. (2012), Electron. J. Stat. 6, 1550-1599 (total variation as the risk of a classifier)
+.. [2] Plischke, Borgonovo & Smith (2013), Eur. J. Oper. Res. 226, 536-550 (estimation from given
+   data)
+.. [3] Sriperumbudur et al. (2012), Electron. J. Stat. 6, 1550-1599 (total variation as the risk of
+   a classifier)
 .. [4] Efron & Tibshirani (1997), J. Am. Stat. Assoc. 92, 548-560 (the .632+ estimator)
 .. [5] Dunn (1961), J. Am. Stat. Assoc. 56, 52-64 (the largest of several chance results)
 """
@@ -44,7 +49,9 @@ ROUNDS = 2
 
 
 class Delta(NamedTuple):
-    """Delta with its 95 % interval, and the value below which an inert factor stays in 95 of 100 samples."""
+    """Delta with its 95 % interval, and the value below which an inert factor stays in 95 of 100
+    samples.
+    """
 
     value: float
     low: float
@@ -64,9 +71,9 @@ def delta(y: np.ndarray, x: np.ndarray, ordered: bool = True, seed: int = 0) -> 
 
     Returns
     -------
-    Value, low, high and noise [1]. The half width is 1.96 binomial standard errors and the gap between held-out and
-    own rows times sqrt(1 - overfit). The interval reaches at least up to the noise. It covers the true delta of
-    normal pairs in 90 to 100 % of samples.
+    Value, low, high and noise [1]. The half width is 1.96 binomial standard errors and the gap
+    between held-out and own rows times sqrt(1 - overfit). The interval reaches at least up to the
+    noise. It covers the true delta of normal pairs in 90 to 100 % of samples.
     """
     x_cells = _cells(x, CELLS_X, ordered)
     y_cells = _cells(y, CELLS_Y, True)
@@ -77,7 +84,9 @@ def delta(y: np.ndarray, x: np.ndarray, ordered: bool = True, seed: int = 0) -> 
     weight = 0.632 / (1 - 0.368 * overfit)
     value = weight * held_out + (1 - weight) * own
     free = min(1.0, 2 * _different(x_cells.place), 2 * _different(y_cells.place)) ** 0.5
-    half = Z * 0.5 * free * (1 - value**2) ** 0.5 / rows**0.5 + (1 - overfit) ** 0.5 * max(0.0, own - held_out)
+    half = Z * 0.5 * free * (1 - value**2) ** 0.5 / rows**0.5 + (1 - overfit) ** 0.5 * max(
+        0.0, own - held_out
+    )
     noise = float(norm.ppf(1 - 0.05 / len(pairs))) * 0.5 * free / rows**0.5
     return Delta(value, max(0.0, value - half), min(1.0, max(value + half, noise)), noise)
 
@@ -119,8 +128,11 @@ def _kernels(x: _Cells, y: _Cells) -> list[tuple[np.ndarray, np.ndarray]]:
     return [(along(x, width), along(y, width)) for width in widths]
 
 
-def _separation(x: _Cells, y: _Cells, kernels: list[tuple[np.ndarray, np.ndarray]], seed: int) -> tuple[float, float]:
-    """Return how well the best rule distinguishes rows of the sample from independent pairs of x and y.
+def _separation(
+    x: _Cells, y: _Cells, kernels: list[tuple[np.ndarray, np.ndarray]], seed: int
+) -> tuple[float, float]:
+    """Return how well the best rule distinguishes rows of the sample from independent pairs of x
+    and y.
 
     The first number is the score on held-out rows, the second that on the rule's own rows.
     """
@@ -132,7 +144,11 @@ def _separation(x: _Cells, y: _Cells, kernels: list[tuple[np.ndarray, np.ndarray
     for _ in range(ROUNDS):
         part = rng.permutation(rows) % FOLDS
         cell = (part * x.number + x.place) * y.number + y.place
-        new = np.bincount(cell, minlength=FOLDS * size).reshape(FOLDS, x.number, y.number).astype(float)
+        new = (
+            np.bincount(cell, minlength=FOLDS * size)
+            .reshape(FOLDS, x.number, y.number)
+            .astype(float)
+        )
         whole = new.sum(axis=0)
         number = new.sum(axis=(1, 2))[:, None, None]
         unlinked = whole.sum(axis=1)[:, None] * whole.sum(axis=0) / rows**2
@@ -142,7 +158,9 @@ def _separation(x: _Cells, y: _Cells, kernels: list[tuple[np.ndarray, np.ndarray
         for i, (along_x, along_y) in enumerate(kernels):
             rule = np.sign(along_x @ training @ along_y)
             held_out[i] += (rule * tried).sum() / (2 * rows * ROUNDS)
-            own[i] = (np.sign(along_x @ (all_rows - unlinked) @ along_y) * (all_rows - unlinked)).sum() / 2
+            own[i] = (
+                np.sign(along_x @ (all_rows - unlinked) @ along_y) * (all_rows - unlinked)
+            ).sum() / 2
     best = int(np.argmax(held_out))
     return max(0.0, float(held_out[best])), float(own[best])
 

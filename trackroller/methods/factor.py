@@ -3,25 +3,25 @@
 A factor is a small dictionary with exactly one of these keys:
 
 ================ =====================================================================
-uniform          ``[low, high]``
-loguniform       ``[low, high]``, both of one sign
-normal           ``[mean, standard deviation]``
-truncnormal      ``[mean, standard deviation, low, high]`` (mean and deviation before the cut)
-triangular       ``[low, most likely, high]``
-lognormal        ``[median, standard deviation of the natural logarithm]``
-weibull          ``[scale, shape]``; 63.2 % of the values lie between 0 and the scale
-values           a list of numbers or of categories (names, pairs of names, null), equally likely
-linspace         ``[first, last, how many]``, equally likely
+uniform          ``[low, high]`` loguniform       ``[low, high]``, both of one sign normal
+``[mean, standard deviation]`` truncnormal      ``[mean, standard deviation, low, high]`` (mean and
+deviation before the cut) triangular       ``[low, most likely, high]`` lognormal        ``[median,
+standard deviation of the natural logarithm]`` weibull          ``[scale, shape]``; 63.2 % of the
+values lie between 0 and the scale values           a list of numbers or of categories (names, pairs
+of names, null), equally likely linspace         ``[first, last, how many]``, equally likely
 logspace         ``[first, last, how many]`` (the values themselves, not exponents), equally likely
-expression       arithmetic over other factors and base values, e.g. ``"-1.2 * guide_profile_radius"``
+expression       arithmetic over other factors and base values, e.g. ``"-1.2 *
+guide_profile_radius"``
 ================ =====================================================================
 
-Listed values are those that a person writes, 0.15 and not 0.15000000000000002; see `numerics.numbers.written`.
+Listed values are those that a person writes, 0.15 and not 0.15000000000000002; see
+`numerics.numbers.written`.
 
-`weights` may stand beside a list: one positive number a value. A random sample draws the values in their proportion.
+`weights` may stand beside a list: one positive number a value. A random sample draws the values in
+their proportion.
 
-In an inner/outer array design (`inner_outer`), `scatter: true | false` may stand beside the key. Without it,
-distributions scatter (inner array) and lists are design points (outer array).
+In an inner/outer array design (`inner_outer`), `scatter: true | false` may stand beside the key.
+Without it, distributions scatter (inner array) and lists are design points (outer array).
 """
 
 from __future__ import annotations
@@ -53,7 +53,8 @@ LISTS = ("values", "linspace", "logspace")
 KINDS = (*DISTRIBUTIONS, *LISTS, "expression")
 MOST_SPREAD = 5.0  # beyond, the values of one sample span 26 powers of ten
 LEAST_SHAPE = 0.2  # below, they span 50
-TAIL = 0.01  # quantile at which an unbounded distribution is cut in designs that visit the ends of a range
+# quantile at which an unbounded distribution is cut in designs that visit the ends of a range
+TAIL = 0.01
 
 
 @dataclass(frozen=True)
@@ -96,7 +97,9 @@ class Factor:
 
     @property
     def ordered(self) -> bool:
-        """Return whether the factor goes from less to more, which needs finite numbers as values."""
+        """Return whether the factor goes from less to more, which needs finite numbers as
+        values.
+        """
         return self.numeric and (not self.discrete or all(math.isfinite(v) for v in self.levels))
 
     def take(self, index: np.ndarray) -> np.ndarray:
@@ -124,7 +127,8 @@ class Factor:
         Parameters
         ----------
         unit : quantiles in [0, 1] [1], shape (n,)
-        tail : quantile [1] at which an unbounded distribution is cut, for designs that visit 0 and 1
+        tail : quantile [1] at which an unbounded distribution is cut, for designs that visit 0 and
+            1
 
         Returns
         -------
@@ -157,7 +161,9 @@ class Factor:
         low, high = ends
         cut_low = (low - mean) / deviation
         cut_high = (high - mean) / deviation
-        return np.asarray(np.clip(truncnorm.ppf(unit, cut_low, cut_high, mean, deviation), low, high))
+        return np.asarray(
+            np.clip(truncnorm.ppf(unit, cut_low, cut_high, mean, deviation), low, high)
+        )
 
 
 def column(values: list[Any], numeric: bool) -> np.ndarray:
@@ -194,7 +200,9 @@ def label(value: Any) -> str:
 
 
 def readable(values: np.ndarray) -> np.ndarray:
-    """Return a column (n,) with its categories as texts, see `label`; a column of numbers stays as it is."""
+    """Return a column (n,) with its categories as texts, see `label`; a column of numbers stays as
+    it is.
+    """
     if values.dtype.kind in "OSU":
         return np.array([label(v) for v in values], dtype=object)
     return values
@@ -222,7 +230,12 @@ def parse(name: str, spec: Any) -> Factor:
         example = ""
         if isinstance(spec, (list, tuple)):
             example = f"Write {{values: {spec}}}."
-        raise InputError(field, spec, allowed, example or "For example {uniform: [0.1, 0.3]} or {values: [1, 2]}.")
+        raise InputError(
+            field,
+            spec,
+            allowed,
+            example or "For example {uniform: [0.1, 0.3]} or {values: [1, 2]}.",
+        )
     scatter = spec.get("scatter")
     if not (scatter is None or isinstance(scatter, bool)):
         raise InputError(f"{field}.scatter", scatter, "true or false")
@@ -234,7 +247,9 @@ def parse(name: str, spec: Any) -> Factor:
     value = spec[kind]
     where = f"{field}.{kind}"
     if "weights" in spec and kind not in LISTS:
-        raise InputError(f"{field}.weights", spec["weights"], f"weights of the values of a list, not of {kind}")
+        raise InputError(
+            f"{field}.weights", spec["weights"], f"weights of the values of a list, not of {kind}"
+        )
     if kind == "expression":
         expressions.names(value, where)
         return Factor(name, kind, text=value)
@@ -255,7 +270,9 @@ def _weights(value: Any, levels: tuple[Any, ...], where: str) -> tuple[float, ..
         raise InputError(where, value, f"a list of {len(levels)} positive numbers, one a value")
     numbers = _numbers(value, len(levels), where)
     if not min(numbers) > 0:
-        raise InputError(where, value, "numbers above 0", "Remove the value that never occurs from the list.")
+        raise InputError(
+            where, value, "numbers above 0", "Remove the value that never occurs from the list."
+        )
     return tuple(number / sum(numbers) for number in numbers)
 
 
@@ -270,7 +287,10 @@ def _numbers(values: Any, count: int, where: str) -> tuple[float, ...]:
         if texts:
             remedy = "Sample a fraction in [0, 1] and write the dependent range as an expression."
         if any(map(split_quantity, texts)):
-            remedy = "Only parameters take units: write the numbers of a factor of your own without them."
+            remedy = (
+                "Only parameters take units: write the numbers of a factor of your own "
+                "without them."
+            )
         if where.endswith("space"):
             remedy = "Write [first, last, number of values]."
         raise InputError(where, values, f"{count} finite numbers", remedy)
@@ -284,13 +304,22 @@ def _distribution(kind: str, value: Any, where: str) -> tuple[float, ...]:
         "uniform": (low < high, "low < high"),
         "loguniform": (low < high and low * high > 0, "low < high of one sign, not 0"),
         "normal": (numbers[1] > 0, "a standard deviation > 0"),
-        "truncnormal": (numbers[1] > 0 and numbers[-2] < high, "a standard deviation > 0 and low < high"),
-        "triangular": (low <= numbers[1] <= high and low < high, "low <= most likely <= high, low < high"),
+        "truncnormal": (
+            numbers[1] > 0 and numbers[-2] < high,
+            "a standard deviation > 0 and low < high",
+        ),
+        "triangular": (
+            low <= numbers[1] <= high and low < high,
+            "low <= most likely <= high, low < high",
+        ),
         "lognormal": (
             low != 0 and 0 < high <= MOST_SPREAD,
             f"a median other than 0, and 0 < sd of ln <= {MOST_SPREAD:g}",
         ),
-        "weibull": (low != 0 and high >= LEAST_SHAPE, f"a scale other than 0, and a shape >= {LEAST_SHAPE:g}"),
+        "weibull": (
+            low != 0 and high >= LEAST_SHAPE,
+            f"a scale other than 0, and a shape >= {LEAST_SHAPE:g}",
+        ),
     }[kind]
     if not good:
         raise InputError(where, value, allowed)
@@ -301,13 +330,17 @@ def _levels(kind: str, value: list[Any], where: str) -> tuple[Any, ...]:
     if kind == "values":
         levels: list[Any] = [tuple(v) if isinstance(v, list) else v for v in value]
         if any(_is_number(v) and math.isnan(v) for v in levels):
-            raise InputError(where, value, "numbers or names, but not NaN", "Write null for 'not given'.")
+            raise InputError(
+                where, value, "numbers or names, but not NaN", "Write null for 'not given'."
+            )
         if all(_is_number(v) for v in levels):
             levels = written([float(v) for v in levels])
     else:
         first, last, count = _numbers(value, 3, where)
         if count != int(count) or count < 1:
-            raise InputError(where, value, "[first, last, how many] with a whole number >= 1 as the third")
+            raise InputError(
+                where, value, "[first, last, how many] with a whole number >= 1 as the third"
+            )
         if kind == "logspace" and first * last <= 0:
             raise InputError(where, value, "first and last of one sign, not 0")
         space: Any = np.geomspace

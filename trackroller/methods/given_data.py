@@ -1,9 +1,11 @@
-"""Sensitivity measures from given data: valid for any sample of independent factors, also where cases failed.
+"""Sensitivity measures from given data: valid for any sample of independent factors, also where
+cases failed.
 
-First-order shares of variance, delta with the level that chance alone reaches, partial rank correlations. Of a sample
-with independent replicates, the first-order index is the sum of squares of c_m = E[y phi_m(x)] over orthonormal
-functions phi_m. Its estimate multiplies coefficients of different replicates only, which makes it free of bias (a
-U-statistic, Hoeffding (1948), Ann. Math. Statist. 19, 293-325).
+First-order shares of variance, delta with the level that chance alone reaches, partial rank
+correlations. Of a sample with independent replicates, the first-order index is the sum of squares
+of c_m = E[y phi_m(x)] over orthonormal functions phi_m. Its estimate multiplies coefficients of
+different replicates only, which makes it free of bias (a U-statistic, Hoeffding (1948), Ann. Math.
+Statist. 19, 293-325).
 """
 
 from __future__ import annotations
@@ -23,8 +25,10 @@ MIN_ROWS = 30
 GROUPS = 20  # of the grouped jackknife
 HARMONICS = 10  # of RBD-FAST: SALib's number
 ROWS_PER_HARMONIC = 16  # fewer harmonics for small samples
-ROWS_PER_LEVEL = 10  # of a column whose means are taken out before RBD-FAST: fewer would take much of the rest out
-DEPENDENT = 0.05  # share of the variance of a factor between the levels of a column, from which on the two depend
+# of a column whose means are taken out before RBD-FAST: fewer would take much of the rest out
+ROWS_PER_LEVEL = 10
+# share of the variance of a factor between the levels of a column, from which on the two depend
+DEPENDENT = 0.05
 ROUNDING = 1e-12  # share of variance
 FAST_RESAMPLES = 32  # of the bootstrap
 FAST_ROWS = 4096
@@ -45,14 +49,15 @@ def given_data(y: np.ndarray, unit: np.ndarray, ordered: np.ndarray, seed: int =
     ----------
     y : output, shape (n,), NaN where unusable: such rows are left out
     unit : quantiles or list indices of the factors, shape (n, k)
-    ordered : for which factors more and less mean something, shape (k,); the others have no rank correlation
+    ordered : for which factors more and less mean something, shape (k,); the others have no rank
+        correlation
     seed : of all random numbers
 
     Returns
     -------
-    first (share of variance Var(E[y|x]) / V), delta and prcc, each with _low and _high, shape (k,); delta_noise, the
-    value below which an inert factor stays in 95 % of cases; rows_used, shape (). NaN for a
-    factor that does not vary, and everywhere if fewer than 30 rows are usable.
+    first (share of variance Var(E[y|x]) / V), delta and prcc, each with _low and _high, shape (k,);
+    delta_noise, the value below which an inert factor stays in 95 % of cases; rows_used, shape ().
+    NaN for a factor that does not vary, and everywhere if fewer than 30 rows are usable.
 
     Notes
     -----
@@ -61,14 +66,18 @@ def given_data(y: np.ndarray, unit: np.ndarray, ordered: np.ndarray, seed: int =
     good = np.isfinite(y)
     y = y[good]
     unit = unit[good]
-    out: Estimates = {name: np.full(unit.shape[1], np.nan) for names in MEASURES.values() for name in names}
+    out: Estimates = {
+        name: np.full(unit.shape[1], np.nan) for names in MEASURES.values() for name in names
+    }
     out["rows_used"] = np.array(len(y))
     if len(y) < MIN_ROWS or constant(y):
         return out
     out |= firsts(y, unit, ordered, seed)
     out |= dict(zip(MEASURES["prcc"], prcc(y, unit, ordered), strict=True))
     for j in np.flatnonzero(np.ptp(unit, axis=0) > 0):
-        for name, value in zip(MEASURES["delta"], delta(y, unit[:, j], bool(ordered[j]), seed), strict=True):
+        for name, value in zip(
+            MEASURES["delta"], delta(y, unit[:, j], bool(ordered[j]), seed), strict=True
+        ):
             out[name][j] = value
     return out
 
@@ -86,21 +95,22 @@ def firsts(y: np.ndarray, unit: np.ndarray, ordered: np.ndarray, seed: int = 0) 
 
     Notes
     -----
-    Continuous factors: RBD-FAST of SALib [1]_ with the bias correction of Tissot & Prieur, on the output without the
-    means of the categories: in a Sobol sequence a column of few levels may repeat at a frequency of the estimator, and
-    its effect would count for the factor. SALib's bootstrap draws half of the rows, so its half width is scaled by
-    sqrt(1/2) (m out of n bootstrap [2]_). The bootstrap of a long sample takes 4096 of its rows, more for a rare event,
-    and its half width is scaled by one over the root of the rows. For an inert factor the true half width falls faster,
-    as one over the rows; the interval is then too wide.
-    Categories and columns whose values repeat: `first_order` of the groups, because RBD-FAST orders equal values by
-    their rows. It is biased for a category (0.88 for a share of 0.96), and in a table with the rows of a grid it
-    takes other factors for this one (0.63 for a share of 0.004).
+    Continuous factors: RBD-FAST of SALib [1]_ with the bias correction of Tissot & Prieur, on the
+    output without the means of the categories: in a Sobol sequence a column of few levels may
+    repeat at a frequency of the estimator, and its effect would count for the factor. SALib's
+    bootstrap draws half of the rows, so its half width is scaled by sqrt(1/2) (m out of n bootstrap
+    [2]_). The bootstrap of a long sample takes 4096 of its rows, more for a rare event, and its
+    half width is scaled by one over the root of the rows. For an inert factor the true half width
+    falls faster, as one over the rows; the interval is then too wide. Categories and columns whose
+    values repeat: `first_order` of the groups, because RBD-FAST orders equal values by their rows.
+    It is biased for a category (0.88 for a share of 0.96), and in a table with the rows of a grid
+    it takes other factors for this one (0.63 for a share of 0.004).
     ``validation/benchmarks/index_estimators.py`` compares both.
 
     References
     ----------
-    .. [1] Tarantola, Gatelli & Mara (2006), Reliab. Eng. Syst. Saf. 91, 717-727; Plischke (2010), Reliab. Eng. Syst.
-       Saf. 95, 354-360
+    .. [1] Tarantola, Gatelli & Mara (2006), Reliab. Eng. Syst. Saf. 91, 717-727; Plischke (2010),
+       Reliab. Eng. Syst. Saf. 95, 354-360
     .. [2] Bickel, Goetze & van Zwet (1997), Statistica Sinica 7, 1-31
     """
     good = np.isfinite(y)
@@ -113,7 +123,10 @@ def firsts(y: np.ndarray, unit: np.ndarray, ordered: np.ndarray, seed: int = 0) 
     unlike = int((y != np.median(y)).sum())  # few if the output is 1 where a rare event occurs
     most = max(FAST_ROWS, RARE_ROWS * len(y) // max(1, unlike))
     some = np.linspace(0, len(y) - 1, min(len(y), most)).astype(int)
-    varied = [(j, *np.unique(unit[:, j], return_inverse=True)) for j in np.flatnonzero(np.ptp(unit, axis=0) > 0)]
+    varied = [
+        (j, *np.unique(unit[:, j], return_inverse=True))
+        for j in np.flatnonzero(np.ptp(unit, axis=0) > 0)
+    ]
     categories = [group for _, values, group in varied if ROWS_PER_LEVEL * len(values) <= len(y)]
     for j, values, group in varied:
         x = unit[:, j]
@@ -127,8 +140,12 @@ def firsts(y: np.ndarray, unit: np.ndarray, ordered: np.ndarray, seed: int = 0) 
             value = share * float(rbd_fast.unskew_S1(plain, harmonics, len(y)))
             rng = np.random.default_rng(seed)
             with np.errstate(invalid="ignore"):  # a resample may miss a rare event altogether
-                spread = rbd_fast.bootstrap(x[some], remainder[some], harmonics, FAST_RESAMPLES, 0.95, rng)
-            half = np.hypot(share * float(spread) * (0.5 * len(some) / len(y)) ** 0.5, Z * error * value / share)
+                spread = rbd_fast.bootstrap(
+                    x[some], remainder[some], harmonics, FAST_RESAMPLES, 0.95, rng
+                )
+            half = np.hypot(
+                share * float(spread) * (0.5 * len(some) / len(y)) ** 0.5, Z * error * value / share
+            )
         else:
             value, error = first_order(y, group, seed)
             half = Z * error
@@ -138,8 +155,11 @@ def firsts(y: np.ndarray, unit: np.ndarray, ordered: np.ndarray, seed: int = 0) 
     return out
 
 
-def _without(y: np.ndarray, categories: list[np.ndarray], x: np.ndarray) -> tuple[np.ndarray, float, float]:
-    """Return an output without the means of categories, and the share of the variance that is left, with its error.
+def _without(
+    y: np.ndarray, categories: list[np.ndarray], x: np.ndarray
+) -> tuple[np.ndarray, float, float]:
+    """Return an output without the means of categories, and the share of the variance that is left,
+    with its error.
 
     The means of a category that depends on the factor x stay: they hold influence of the factor.
     """
@@ -166,14 +186,16 @@ def first_order(y: np.ndarray, group: np.ndarray, seed: int = 0) -> tuple[float,
 
     Returns
     -------
-    Epsilon squared (Kelley 1935, Proc. Natl. Acad. Sci. 21, 554-559), which is free of the bias of the plain ratio,
-    and its standard error by a grouped jackknife; NaN where each group is one row.
+    Epsilon squared (Kelley 1935, Proc. Natl. Acad. Sci. 21, 554-559), which is free of the bias of
+    the plain ratio, and its standard error by a grouped jackknife; NaN where each group is one row.
     """
     count = int(group.max()) + 1
     part = np.random.default_rng(seed).permutation(len(y)) % GROUPS
     y = (y - y.mean()) / y.std()
     cell = part * count + group
-    sums = np.stack([np.bincount(cell, w, GROUPS * count).reshape(GROUPS, count) for w in (np.ones_like(y), y)])
+    sums = np.stack(
+        [np.bincount(cell, w, GROUPS * count).reshape(GROUPS, count) for w in (np.ones_like(y), y)]
+    )
     square = np.bincount(part, y**2, GROUPS)
     total = sums.sum(axis=1)
     total_square = square.sum()
@@ -184,18 +206,23 @@ def first_order(y: np.ndarray, group: np.ndarray, seed: int = 0) -> tuple[float,
 
 
 def _epsilon(sums: np.ndarray, square: np.ndarray) -> np.ndarray:
-    """Return epsilon squared from counts and sums of groups, shape (2, ..., groups), and sums of squares (...)."""
+    """Return epsilon squared from counts and sums of groups, shape (2, ..., groups), and sums of
+    squares (...).
+    """
     number, total = sums
     rows = number.sum(axis=-1)
     filled = (number > 0).sum(axis=-1)
     mean = total.sum(axis=-1) / rows
     whole = square - rows * mean**2
     between = (total**2 / np.maximum(number, 1)).sum(axis=-1) - rows * mean**2
-    free = np.where(rows > filled, rows - filled, np.nan)  # groups of one row each tell nothing of the rest
+    # groups of one row each tell nothing of the rest
+    free = np.where(rows > filled, rows - filled, np.nan)
     return np.asarray(1 - (whole - between) / free * (rows - 1) / whole)
 
 
-def prcc(y: np.ndarray, unit: np.ndarray, ordered: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def prcc(
+    y: np.ndarray, unit: np.ndarray, ordered: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Estimate partial rank correlation coefficients.
 
     Parameters
@@ -204,8 +231,8 @@ def prcc(y: np.ndarray, unit: np.ndarray, ordered: np.ndarray) -> tuple[np.ndarr
 
     Returns
     -------
-    Value, low and high (Fisher's interval), each shape (k,). NaN for a factor without an order; its influence is
-    still taken out of the other coefficients.
+    Value, low and high (Fisher's interval), each shape (k,). NaN for a factor without an order; its
+    influence is still taken out of the other coefficients.
 
     Notes
     -----
@@ -259,7 +286,8 @@ def measures(y: np.ndarray, design: Design, tied: bool) -> Estimated:
     at = convergence.sizes(len(y), smallest=64)
 
     def part(n: int) -> Estimates:
-        every = max(1, len(y) // n)  # the first rows of a table may be sorted, so take every so many rows
+        # the first rows of a table may be sorted, so take every so many rows
+        every = max(1, len(y) // n)
         return firsts(y[::every], places[::every], ordered)
 
     out |= convergence.course(part, at, out, ("first",))
@@ -267,17 +295,25 @@ def measures(y: np.ndarray, design: Design, tied: bool) -> Estimated:
 
 
 def firsts_within(y: np.ndarray, design: Design, place: int, inside: np.ndarray) -> Estimates:
-    """Return the first-order shares of all other factors among the rows `inside` a level of a category."""
+    """Return the first-order shares of all other factors among the rows `inside` a level of a
+    category.
+    """
     rows = inside & np.isfinite(y)
-    shares = firsts(y[rows], np.delete(design.places[rows], place, axis=1), np.delete(design.ordered, place))
+    shares = firsts(
+        y[rows], np.delete(design.places[rows], place, axis=1), np.delete(design.ordered, place)
+    )
     out: Estimates = {"conditional_rows": np.array(rows.sum())}
-    return out | {f"conditional_S1{end}": spread(shares[f"first{end}"], place) for end in ("", "_low", "_high")}
+    return out | {
+        f"conditional_S1{end}": spread(shares[f"first{end}"], place)
+        for end in ("", "_low", "_high")
+    }
 
 
 def first_indices(
     y: np.ndarray, unit: np.ndarray, ordered: np.ndarray, member: np.ndarray, copies: int
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Estimate the first-order share of variance of each factor from products of different replicates.
+    """Estimate the first-order share of variance of each factor from products of different
+    replicates.
 
     Parameters
     ----------
@@ -289,14 +325,15 @@ def first_indices(
 
     Returns
     -------
-    Var(E[y | x_j]) / V and the half width of its 95 % interval, each of shape (k,). NaN for a factor that does not
-    vary, and if a replicate has fewer than two usable rows.
+    Var(E[y | x_j]) / V and the half width of its 95 % interval, each of shape (k,). NaN for a
+    factor that does not vary, and if a replicate has fewer than two usable rows.
 
     Notes
     -----
-    The functions of a continuous factor are cosines of its rank, up to one for each `ROWS_PER_COSINE` rows; those of
-    a list mark its values. The variance of the U-statistic is that of its projections (rows of the kernel) and of the
-    remainder; a plain jackknife would count the remainder twice for an inert factor.
+    The functions of a continuous factor are cosines of its rank, up to one for each
+    `ROWS_PER_COSINE` rows; those of a list mark its values. The variance of the U-statistic is that
+    of its projections (rows of the kernel) and of the remainder; a plain jackknife would count the
+    remainder twice for an inert factor.
     """
     good = np.isfinite(y)
     y = y[good]
@@ -312,10 +349,14 @@ def first_indices(
     whole = float(spread.mean())
     for j in np.flatnonzero(np.ptp(unit, axis=0) > 0):
         functions = _functions(unit[:, j], bool(ordered[j]))
-        means = np.stack([np.bincount(member, y * phi, copies) for phi in functions], axis=1) / size[:, None]
+        means = (
+            np.stack([np.bincount(member, y * phi, copies) for phi in functions], axis=1)
+            / size[:, None]
+        )
         kernel = means @ means.T / whole
         value[j] = kernel[~np.eye(copies, dtype=bool)].mean()
-        kernel -= value[j] * (spread[:, None] + spread) / (2 * whole)  # the variance is estimated, too
+        # the variance is estimated, too
+        kernel -= value[j] * (spread[:, None] + spread) / (2 * whole)
         half[j] = wide(copies) * _deviation(kernel)
     return value, half
 
@@ -333,10 +374,12 @@ def _functions(x: np.ndarray, ordered: bool) -> np.ndarray:
 
 
 def _deviation(kernel: np.ndarray) -> float:
-    """Return the standard deviation of a U-statistic: the mean of a symmetric kernel over pairs of replicates.
+    """Return the standard deviation of a U-statistic: the mean of a symmetric kernel over pairs of
+    replicates.
 
-    By Hoeffding's decomposition, an entry is the mean, plus an effect of each of both replicates, plus a rest without
-    effects. `jackknifed` is the variance by the effects, which holds the rest twice; `least` is that by the rest alone.
+    By Hoeffding's decomposition, an entry is the mean, plus an effect of each of both replicates,
+    plus a rest without effects. `jackknifed` is the variance by the effects, which holds the rest
+    twice; `least` is that by the rest alone.
 
     References
     ----------

@@ -1,4 +1,5 @@
-"""Full grids of listed values: every combination once, with exact shares of variance (functional ANOVA).
+"""Full grids of listed values: every combination once, with exact shares of variance (functional
+ANOVA).
 
 SALib has no counterpart for the shares of a grid.
 """
@@ -11,7 +12,17 @@ import numpy as np
 
 from trackroller.errors import InputError
 from trackroller.methods.intervals import constant
-from trackroller.methods.method import Design, Drawn, Estimated, Estimates, Factors, Index, Method, Settings, spread
+from trackroller.methods.method import (
+    Design,
+    Drawn,
+    Estimated,
+    Estimates,
+    Factors,
+    Index,
+    Method,
+    Settings,
+    spread,
+)
 from trackroller.methods.sample import GIVEN_DATA
 
 MAX_ROWS = 50_000_000  # a larger number is a typing error
@@ -40,7 +51,10 @@ class Grid(Method):
             if not factor.discrete and factor.kind != "expression":
                 remedy = "Or choose a sampled design (lhs, sobol, saltelli, morris)."
                 raise InputError(
-                    f"factors.{name}", factor.kind, "values, linspace or logspace, with design grid", remedy
+                    f"factors.{name}",
+                    factor.kind,
+                    "values, linspace or logspace, with design grid",
+                    remedy,
                 )
 
     def draw(self, free: Factors, n: int, seed: int, settings: Settings) -> Drawn:
@@ -49,7 +63,9 @@ class Grid(Method):
         shape = tuple(len(f.levels) for f in free.values())
         if np.prod([float(s) for s in shape]) > MAX_ROWS:
             size = f"grid of {' x '.join(map(str, shape))}"
-            raise InputError("design", size, f"at most {MAX_ROWS} rows", "Take fewer levels or a sampled design.")
+            raise InputError(
+                "design", size, f"at most {MAX_ROWS} rows", "Take fewer levels or a sampled design."
+            )
         return cells(shape), {"shape": shape}
 
     def estimate(self, y: np.ndarray, design: Design) -> Estimated:
@@ -60,14 +76,18 @@ class Grid(Method):
         out |= given_data(y, design.unit, design.ordered)
         return Estimated(out, int(out.pop("cells_used")), int(out.pop("cells")))
 
-    def group_indices(self, y: np.ndarray, design: Design, groups: Mapping[str, Sequence[str]]) -> Estimates:
+    def group_indices(
+        self, y: np.ndarray, design: Design, groups: Mapping[str, Sequence[str]]
+    ) -> Estimates:
         """Return the exact indices of groups of factors."""
         names = list(design.factors)
         places = [tuple(names.index(name) for name in members) for members in groups.values()]
         first, total, _ = closed_shares(y.reshape(design.meta["shape"]), places)
         return {"group_S1": first, "group_ST": total}
 
-    def level_indices(self, y: np.ndarray, design: Design, place: int, inside: np.ndarray) -> Estimates:
+    def level_indices(
+        self, y: np.ndarray, design: Design, place: int, inside: np.ndarray
+    ) -> Estimates:
         """Return the exact indices within a level."""
         shape = tuple(size for j, size in enumerate(design.meta["shape"]) if j != place)
         table = y[inside].reshape(shape)  # the other factors keep their order
@@ -80,12 +100,15 @@ class Grid(Method):
 
 
 def cells(shape: Sequence[int]) -> np.ndarray:
-    """Return the index of the level of each factor in each cell of a grid, shape (cells, factors), the last fastest."""
+    """Return the index of the level of each factor in each cell of a grid, shape (cells, factors),
+    the last fastest.
+    """
     return np.indices(shape).reshape(len(shape), int(np.prod(shape))).T.astype(float)
 
 
 def complete_part(y: np.ndarray) -> list[np.ndarray]:
-    """Find the levels of a grid that span a part without unusable cells, dropping as few cells as possible.
+    """Find the levels of a grid that span a part without unusable cells, dropping as few cells as
+    possible.
 
     Parameters
     ----------
@@ -102,14 +125,19 @@ def complete_part(y: np.ndarray) -> list[np.ndarray]:
             if not bad.any():
                 return keep
             return [np.arange(0) for _ in keep]
-        shares = [bad.mean(axis=tuple(a for a in range(bad.ndim) if a != axis)) for axis in range(bad.ndim)]
-        # drop the level richest in unusable cells; of equal levels the one that costs the fewest cells
+        shares = [
+            bad.mean(axis=tuple(a for a in range(bad.ndim) if a != axis))
+            for axis in range(bad.ndim)
+        ]
+        # drop the level richest in unusable cells; of equal levels the one that costs the fewest
+        # cells
         axis = max(range(bad.ndim), key=lambda a: (round(float(shares[a].max()), 12), bad.shape[a]))
         keep[axis] = np.delete(keep[axis], int(shares[axis].argmax()))
 
 
 def variance_share(part: np.ndarray, axes: tuple[int, ...]) -> float:
-    """Return the share of variance of the means over all other axes, the closed index of some factors.
+    """Return the share of variance of the means over all other axes, the closed index of some
+    factors.
 
     Parameters
     ----------
@@ -122,28 +150,38 @@ def variance_share(part: np.ndarray, axes: tuple[int, ...]) -> float:
     """
     if constant(part):
         return float("nan")
-    return float(part.mean(axis=tuple(a for a in range(part.ndim) if a not in axes)).var() / part.var())
+    return float(
+        part.mean(axis=tuple(a for a in range(part.ndim) if a not in axes)).var() / part.var()
+    )
 
 
-def closed_shares(table: np.ndarray, groups: Sequence[tuple[int, ...]]) -> tuple[np.ndarray, np.ndarray, int]:
-    """Return first-order and total indices of groups of a grid's axes, and the number of cells behind them."""
+def closed_shares(
+    table: np.ndarray, groups: Sequence[tuple[int, ...]]
+) -> tuple[np.ndarray, np.ndarray, int]:
+    """Return first-order and total indices of groups of a grid's axes, and the number of cells
+    behind them.
+    """
     part = table[np.ix_(*complete_part(table))]
     complements = [tuple(j for j in range(table.ndim) if j not in group) for group in groups]
-    first, others = (np.array([variance_share(part, axes) for axes in which]) for which in (groups, complements))
+    first, others = (
+        np.array([variance_share(part, axes) for axes in which]) for which in (groups, complements)
+    )
     return first, 1 - others, part.size
 
 
 def grid_shares(y: np.ndarray) -> Estimates:
-    """Divide the variance over a full grid into main effects and two-factor interactions (functional ANOVA).
+    """Divide the variance over a full grid into main effects and two-factor interactions
+    (functional ANOVA).
 
     Parameters
     ----------
-    y : output over the grid, shape (levels of factor 1, ..., levels of factor k). A cell with NaN costs a level
-        (`complete_part`), because means over an incomplete grid mix the effects
+    y : output over the grid, shape (levels of factor 1, ..., levels of factor k). A cell with NaN
+        costs a level (`complete_part`), because means over an incomplete grid mix the effects
 
     Returns
     -------
-    main_share (k,), interaction_share (k, k) above the diagonal, higher_share (), cells_used (), cells ().
+    main_share (k,), interaction_share (k, k) above the diagonal, higher_share (), cells_used (),
+    cells ().
 
     Notes
     -----
@@ -156,7 +194,11 @@ def grid_shares(y: np.ndarray) -> Estimates:
     main = np.full(count, np.nan)
     pair = np.full((count, count), np.nan)
     if constant(part):
-        return out | {"main_share": main, "interaction_share": pair, "higher_share": np.array(np.nan)}
+        return out | {
+            "main_share": main,
+            "interaction_share": pair,
+            "higher_share": np.array(np.nan),
+        }
     for i in range(count):
         if part.shape[i] > 1:
             main[i] = variance_share(part, (i,))

@@ -1,7 +1,9 @@
-"""Inner/outer arrays (crossed arrays, Taguchi): one sample of what scatters at each of several design points.
+"""Inner/outer arrays (crossed arrays, Taguchi): one sample of what scatters at each of several
+design points.
 
-The same inner sample at every point (common random numbers) keeps chance out of differences between the points. Their
-analysis is that of a distribution at each point, see `trackroller.methods.b10` and `trackroller.methods.probability`.
+The same inner sample at every point (common random numbers) keeps chance out of differences between
+the points. Their analysis is that of a distribution at each point, see `trackroller.methods.b10`
+and `trackroller.methods.probability`.
 """
 
 from __future__ import annotations
@@ -17,13 +19,17 @@ from trackroller.methods.method import METHODS, Drawn, Factors, Key, Method, Set
 
 
 class InnerOuter(Method):
-    """A grid of the listed factors (outer array) times `samples` rows of those that scatter (inner array)."""
+    """A grid of the listed factors (outer array) times `samples` rows of those that scatter (inner
+    array).
+    """
 
     name = "inner_outer"
     takes = {
         "rank_correlations": (),
         "replicates": 1,
-        "inner": Key(Literal["lhs", "sobol"], "sobol", "how the inner array is sampled; default sobol"),
+        "inner": Key(
+            Literal["lhs", "sobol"], "sobol", "how the inner array is sampled; default sobol"
+        ),
         "point_samples": (),
     }
     sampled = weighted = grows = points = True
@@ -36,7 +42,8 @@ class InnerOuter(Method):
     def draw(self, free: Factors, n: int, seed: int, settings: Settings) -> Drawn:
         """Return indices of the outer factors and quantiles of the inner ones.
 
-        `point_samples` gives each design point its own number of the first rows of the inner sample.
+        `point_samples` gives each design point its own number of the first rows of the inner
+        sample.
         """
         outer = {name: f for name, f in free.items() if not f.scatter}
         inner = {name: f for name, f in free.items() if f.scatter}
@@ -45,7 +52,9 @@ class InnerOuter(Method):
             remedy = "Give one factor a distribution such as {normal: [0.1, 0.02]}."
             raise InputError("factors", list(free), allowed, remedy)
         if settings["replicates"] > 1 and not METHODS[settings["inner"]].grows:
-            raise InputError("inner", settings["inner"], "a sample that grows, for independent replicates")
+            raise InputError(
+                "inner", settings["inner"], "a sample that grows, for independent replicates"
+            )
         sample, of_sample = METHODS[settings["inner"]].draw(inner, n, seed, settings)
         index, meta = Grid().draw(outer, 0, 0, {})
         sizes = list(settings["point_samples"]) or [n] * len(index)

@@ -1,12 +1,15 @@
-"""Two-factor interactions from any sample of independent factors, by a fitted polynomial (approximate).
+"""Two-factor interactions from any sample of independent factors, by a fitted polynomial
+(approximate).
 
-The output is fitted with orthonormal functions of each factor (polynomials of its ranks, contrasts of categories) and
-their products for each pair. The squared coefficients of the products are the share of variance of the interaction
-(polynomial chaos [1]_). The variance that the fit misses cannot be divided. The share that the fit predicts for
-held-out rows therefore stands beside the result, and below `TRUSTED` there is no result.
+The output is fitted with orthonormal functions of each factor (polynomials of its ranks, contrasts
+of categories) and their products for each pair. The squared coefficients of the products are the
+share of variance of the interaction (polynomial chaos [1]_). The variance that the fit misses
+cannot be divided. The share that the fit predicts for held-out rows therefore stands beside the
+result, and below `TRUSTED` there is no result.
 
-SALib's `hdmr` was measured beside this fit by ``validation/benchmarks/index_estimators.py``: its error is two times
-larger, it finds 0.01 to 0.05 where there is no interaction, it needs 300 rows and it takes no categories.
+SALib's `hdmr` was measured beside this fit by ``validation/benchmarks/index_estimators.py``: its
+error is two times larger, it finds 0.01 to 0.05 where there is no interaction, it needs 300 rows
+and it takes no categories.
 
 References
 ----------
@@ -26,7 +29,8 @@ from trackroller.methods.intervals import Z, constant
 from trackroller.methods.method import Estimates
 
 TRUSTED = 0.8  # share of variance that a fit must predict
-# Degrees of a factor alone and in a product. Each pair contains the next one; the best prediction wins.
+# Degrees of a factor alone and in a product. Each pair contains the next one; the best prediction
+# wins.
 DEGREES = ((8, 4), (6, 3), (4, 2), (3, 1), (2, 1))
 ROWS_PER_TERM = 2.5
 MAX_ROWS = 4096
@@ -47,12 +51,15 @@ def pairs(y: np.ndarray, unit: np.ndarray, ordered: np.ndarray, seed: int = 0) -
 
     Returns
     -------
-    interaction_share with _low and _high (95 %, grouped jackknife): shape (k, k), above the diagonal, NaN elsewhere
-    and without a trusted fit. fit_alone, shape (k,): share of each factor alone in the same fit. fit_share, shape ():
-    share of variance that the fit predicts for held-out rows, NaN without a fit.
+    interaction_share with _low and _high (95 %, grouped jackknife): shape (k, k), above the
+    diagonal, NaN elsewhere and without a trusted fit. fit_alone, shape (k,): share of each factor
+    alone in the same fit. fit_share, shape (): share of variance that the fit predicts for held-out
+    rows, NaN without a fit.
     """
     count = unit.shape[1]
-    out: Estimates = {name: np.full((count, count), np.nan) for name in NAMES} | {"fit_share": np.array(np.nan)}
+    out: Estimates = {name: np.full((count, count), np.nan) for name in NAMES} | {
+        "fit_share": np.array(np.nan)
+    }
     out["fit_alone"] = np.full(count, np.nan)
     good = np.flatnonzero(np.isfinite(y))
     if len(good) > MAX_ROWS:
@@ -70,7 +77,9 @@ def pairs(y: np.ndarray, unit: np.ndarray, ordered: np.ndarray, seed: int = 0) -
         return out
     share, half = _jackknife(y, fit.table, fit.term, seed)
     out["fit_alone"] = share[:count]
-    for (i, j), value, wide in zip(combinations(range(count), 2), share[count:], half[count:], strict=True):
+    for (i, j), value, wide in zip(
+        combinations(range(count), 2), share[count:], half[count:], strict=True
+    ):
         for name, number in zip(NAMES, (value, value - wide, value + wide), strict=True):
             out[name][i, j] = number
     return out
@@ -83,7 +92,8 @@ class FittedPolynomial(NamedTuple):
     ----------
     share : share of the variance that it predicts for rows that were held out of the fit
     table : columns, shape (n, columns); the first one is the constant
-    term : number of the factor or (after the factors) of the pair of each column; -1 for the constant
+    term : number of the factor or (after the factors) of the pair of each column; -1 for the
+        constant
     """
 
     share: float
@@ -127,7 +137,8 @@ def best_fit(
 
 class _Columns(NamedTuple):
     table: np.ndarray  # shape (n, columns): the columns of the simplest polynomial first
-    term: np.ndarray  # number of the factor or (after the factors) of the pair of each column; -1 for the constant
+    # number of the factor or (after the factors) of the pair of each column; -1 for the constant
+    term: np.ndarray
     widths: list[int]  # number of columns of each polynomial of `DEGREES`
 
 
@@ -169,11 +180,13 @@ def held_out(y: np.ndarray, table: np.ndarray, widths: Sequence[int]) -> list[np
 
     Returns
     -------
-    For each width residuals of the shape of `y`; None if the rows are too few or the columns depend on each other.
+    For each width residuals of the shape of `y`; None if the rows are too few or the columns depend
+    on each other.
 
     Notes
     -----
-    One QR decomposition serves every fit, because its first columns are that of the first columns of the table.
+    One QR decomposition serves every fit, because its first columns are that of the first columns
+    of the table.
     """
     rows = len(y)
     widest = max((width for width in widths if rows >= ROWS_PER_TERM * width), default=0)
@@ -191,8 +204,11 @@ def held_out(y: np.ndarray, table: np.ndarray, widths: Sequence[int]) -> list[np
     return [residual(width) for width in widths]
 
 
-def orthonormal(x: np.ndarray, ordered: bool, degree: int, ranked: bool = True) -> np.ndarray | None:
-    """Return functions of a factor with mean 0, mean square 1 and no correlation; None for too many categories.
+def orthonormal(
+    x: np.ndarray, ordered: bool, degree: int, ranked: bool = True
+) -> np.ndarray | None:
+    """Return functions of a factor with mean 0, mean square 1 and no correlation; None for too many
+    categories.
 
     They are polynomials of the ranks of the factor, or of its values.
     """
@@ -205,14 +221,19 @@ def orthonormal(x: np.ndarray, ordered: bool, degree: int, ranked: bool = True) 
     elif len(values) > MAX_KINDS:
         return None
     else:
-        raw = np.column_stack([np.ones(len(x)), *(index == i for i in range(1, len(values)))]).astype(float)
+        raw = np.column_stack(
+            [np.ones(len(x)), *(index == i for i in range(1, len(values)))]
+        ).astype(float)
     return np.asarray(np.linalg.qr(raw)[0][:, 1:] * len(x) ** 0.5)
 
 
-def _jackknife(y: np.ndarray, table: np.ndarray, term: np.ndarray, seed: int) -> tuple[np.ndarray, np.ndarray]:
+def _jackknife(
+    y: np.ndarray, table: np.ndarray, term: np.ndarray, seed: int
+) -> tuple[np.ndarray, np.ndarray]:
     """Return the share of variance of each term and its half width (95 %) by a grouped jackknife.
 
-    The normal equations of all rows less those of a group are the normal equations without the group.
+    The normal equations of all rows less those of a group are the normal equations without the
+    group.
     """
     part = np.random.default_rng(seed).permutation(len(y)) % GROUPS
     gram = np.zeros((GROUPS, *[table.shape[1]] * 2))
@@ -227,7 +248,10 @@ def _jackknife(y: np.ndarray, table: np.ndarray, term: np.ndarray, seed: int) ->
     share = _shares(*whole, term=term)
     sums = (gram, moment, square, rows)
     without_one = np.array(
-        [_shares(*(a - b[g] for a, b in zip(whole, sums, strict=True)), term=term) for g in range(GROUPS)]
+        [
+            _shares(*(a - b[g] for a, b in zip(whole, sums, strict=True)), term=term)
+            for g in range(GROUPS)
+        ]
     )
     without_one = without_one[np.isfinite(without_one).all(axis=1)]
     if len(without_one) > 1:
@@ -237,16 +261,23 @@ def _jackknife(y: np.ndarray, table: np.ndarray, term: np.ndarray, seed: int) ->
     return share, Z * np.sqrt((len(without_one) - 1) / max(1, len(without_one)) * spread)
 
 
-def _shares(gram: np.ndarray, moment: np.ndarray, square: float, rows: int, *, term: np.ndarray) -> np.ndarray:
-    """Return the share of variance of each term: its squared coefficients less their expected sampling error.
+def _shares(
+    gram: np.ndarray, moment: np.ndarray, square: float, rows: int, *, term: np.ndarray
+) -> np.ndarray:
+    """Return the share of variance of each term: its squared coefficients less their expected
+    sampling error.
 
-    `gram`, `moment` and `square` are the products of the columns with each other, of the columns with y and of y with
-    itself. NaN if the columns depend on each other.
+    `gram`, `moment` and `square` are the products of the columns with each other, of the columns
+    with y and of y with itself. NaN if the columns depend on each other.
     """
     factor, failed = lapack.dpotrf(gram)
     if failed or np.diag(factor).min() < 1e-6 * rows**0.5:
         return np.full(int(term.max()) + 1, np.nan)
     coefficient = lapack.dpotrs(factor, moment)[0]
-    error = np.diag(lapack.dpotri(factor)[0]) * (square - moment @ coefficient) / max(1, rows - len(term))
+    error = (
+        np.diag(lapack.dpotri(factor)[0])
+        * (square - moment @ coefficient)
+        / max(1, rows - len(term))
+    )
     variance = square / rows - (moment[0] / rows) ** 2  # the first column is the constant
     return np.asarray(np.bincount(term + 1, coefficient**2 - error)[1:] / variance)

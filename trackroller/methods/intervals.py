@@ -1,4 +1,6 @@
-"""Confidence intervals of 95 %, on plain arrays: bootstrap and shares, and whether an output varies at all."""
+"""Confidence intervals of 95 %, on plain arrays: bootstrap and shares, and whether an output varies
+at all.
+"""
 
 from __future__ import annotations
 

@@ -15,7 +15,8 @@ class LatinHypercube(RandomSample):
     name = "lhs"
     reference = (
         "Design: Latin hypercube",
-        "McKay, Beckman, Conover (1979): A comparison of three methods for selecting values of input variables. "
+        "McKay, Beckman, Conover (1979): A comparison of three methods for selecting values of "
+        "input variables. "
         "Technometrics 21, 239–245",
     )
 
@@ -25,4 +26,6 @@ class LatinHypercube(RandomSample):
 
         entries = tuple(settings[correlation.KEY])
         unit = qmc.LatinHypercube(d=len(free), rng=np.random.default_rng(seed)).random(n)
-        return correlation.correlate(unit, correlation.copula(entries, free), strata=True), {correlation.KEY: entries}
+        return correlation.correlate(unit, correlation.copula(entries, free), strata=True), {
+            correlation.KEY: entries
+        }

@@ -1,7 +1,9 @@
-"""What every design of experiments is: how it draws rows, what they can be used for, and how it analyses them.
+"""What every design of experiments is: how it draws rows, what they can be used for, and how it
+analyses them.
 
-A method is one class in one file of this room, registered once. Study file, schema, plan, analysis and report take
-everything that they ask of a design from its class, so none of them asks for a method by its name.
+A method is one class in one file of this room, registered once. Study file, schema, plan, analysis
+and report take everything that they ask of a design from its class, so none of them asks for a
+method by its name.
 """
 
 from __future__ import annotations
@@ -16,9 +18,11 @@ import numpy as np
 from trackroller.errors import InputError
 from trackroller.methods.factor import Factor
 
-HALF_WIDTH = 0.05  # a share of variance or a probability whose 95 % interval has at most this half width is known
+# a share of variance or a probability whose 95 % interval has at most this half width is known
+HALF_WIDTH = 0.05
 Estimates = dict[str, np.ndarray]
-Drawn = tuple[np.ndarray, dict[str, Any]]  # places of the rows and numbers of the method, see `Design`
+# places of the rows and numbers of the method, see `Design`
+Drawn = tuple[np.ndarray, dict[str, Any]]
 Factors = Mapping[str, Factor]
 Settings = Mapping[str, Any]
 
@@ -37,7 +41,8 @@ class Index(NamedTuple):
     Parameters
     ----------
     words : name of the index in tables and data sets
-    sized : whether it has the unit of the output; otherwise it is a share or another number without a unit
+    sized : whether it has the unit of the output; otherwise it is a share or another number without
+        a unit
     signed : whether it may be negative, so that its size counts whatever its sign
     of_factor : whether tables show it beside each factor
     """
@@ -49,7 +54,9 @@ class Index(NamedTuple):
 
 
 class Estimated(NamedTuple):
-    """Estimates for one output, how many rows, blocks, effects or cells they used, and the sizes of their course."""
+    """Estimates for one output, how many rows, blocks, effects or cells they used, and the sizes of
+    their course.
+    """
 
     estimates: Estimates
     used: int
@@ -63,11 +70,12 @@ class Design:
 
     Parameters
     ----------
-    columns : every factor, derived ones included: name -> shape (n,), float, or object for categories
+    columns : every factor, derived ones included: name -> shape (n,), float, or object for
+        categories
     factors : the independent factors by name; indices are given for them
     method : how the rows were drawn
-    unit : shape (n, number of factors) [1]: quantiles; codes -1..1 in classical designs; the index of the
-        listed value for a list in a grid, an inner/outer array or a Morris design
+    unit : shape (n, number of factors) [1]: quantiles; codes -1..1 in classical designs; the index
+        of the listed value for a list in a grid, an inner/outer array or a Morris design
     meta : numbers of the method (base_samples, second_order, levels, shape, inner_samples, ...)
     """
 
@@ -86,13 +94,21 @@ class Design:
 
     @property
     def samples(self) -> int:
-        """Return the number of base samples, trajectories, samples of the largest design point, or rows."""
-        counts = (self.meta[key] for key in ("base_samples", "trajectories", "inner_samples") if key in self.meta)
+        """Return the number of base samples, trajectories, samples of the largest design point, or
+        rows.
+        """
+        counts = (
+            self.meta[key]
+            for key in ("base_samples", "trajectories", "inner_samples")
+            if key in self.meta
+        )
         return int(next(counts, self.size))
 
     @property
     def places(self) -> np.ndarray:
-        """Return `unit` with the index of the listed value for every list, also in random samples."""
+        """Return `unit` with the index of the listed value for every list, also in random
+        samples.
+        """
         places = self.unit.copy()
         for j, factor in enumerate(self.factors.values()):
             if factor.discrete and self.method.random(factor):
@@ -112,35 +128,51 @@ class Design:
     @property
     def points(self) -> list[slice]:
         """Return the rows of each design point of a method with `points`."""
-        sizes = self.meta.get("point_samples") or [self.meta["inner_samples"]] * self.meta["design_points"]
-        return [slice(end - size, end) for size, end in zip(sizes, itertools.accumulate(sizes), strict=True)]
+        sizes = (
+            self.meta.get("point_samples")
+            or [self.meta["inner_samples"]] * self.meta["design_points"]
+        )
+        return [
+            slice(end - size, end)
+            for size, end in zip(sizes, itertools.accumulate(sizes), strict=True)
+        ]
 
 
 class Method:
-    """A design of experiments. A class of its own states its name, `draw` and whatever differs from this class.
+    """A design of experiments. A class of its own states its name, `draw` and whatever differs from
+    this class.
 
     Attributes
     ----------
     name : word for `design` in a study file
-    takes : settings that other designs refuse, with the values that they have if they are not given; a `Key` adds a
-        key to the study file
+    takes : settings that other designs refuse, with the values that they have if they are not
+        given; a `Key` adds a key to the study file
     sampled : whether the key `samples` counts, and the rows are drawn at random
     weighs : whether the values of a list are drawn at random, in proportion to their weights
     weighted : whether rows have known weights, so that they give probabilities of a target
-    grows : whether more samples keep the rows of fewer samples, so that the key `until` can double them
-    crossed : whether the rows are the full grid of all lists, which become dimensions of the results
-    observed : whether the rows are the user's own, so that nothing is known of how the factors depend on each other
+    grows : whether more samples keep the rows of fewer samples, so that the key `until` can double
+        them
+    crossed : whether the rows are the full grid of all lists, which become dimensions of the
+        results
+    observed : whether the rows are the user's own, so that nothing is known of how the factors
+        depend on each other
     subset : whether any rows of the design are a smaller design of the same method
     points : whether one sample is repeated at each of several design points, which are compared
-    proposes : whether the next designs follow from results, so that rows are no even sample and have no indices
-    quick : whether the analysis leaves out the measures of given data, which take longer than all others
-    tail : quantile [1] at which an unbounded factor is cut, for designs that visit the ends of a range
+    proposes : whether the next designs follow from results, so that rows are no even sample and
+        have no indices
+    quick : whether the analysis leaves out the measures of given data, which take longer than all
+        others
+    tail : quantile [1] at which an unbounded factor is cut, for designs that visit the ends of a
+        range
     first_look : samples of a replicate at the first look of the key `until`
-    indices : every index that the analysis gives, by the name of its estimate and in the order of tables
+    indices : every index that the analysis gives, by the name of its estimate and in the order of
+        tables
     headline : index that ranks the factors; `first` if the analysis does not have it
     narrowed : indices whose intervals the key `until` narrows
-    judged : indices whose intervals say whether there are samples enough; empty for a design without an interval
-    effects : whether these indices have the unit of the output, and count relative to the largest of them
+    judged : indices whose intervals say whether there are samples enough; empty for a design
+        without an interval
+    effects : whether these indices have the unit of the output, and count relative to the largest
+        of them
     half_width : half width of an interval that counts as narrow
     needs : what the indices need, in words
     unit, samples_unit : what an index and the key `samples` count, in the plural
@@ -151,7 +183,9 @@ class Method:
 
     name: str
     takes: Mapping[str, Any] = {}
-    sampled = weighs = weighted = grows = crossed = observed = subset = points = proposes = quick = False
+    sampled = weighs = weighted = grows = crossed = observed = subset = points = proposes = (
+        quick
+    ) = False
     tail = 0.0
     first_look = 8
     indices: Mapping[str, Index] = {}
@@ -172,8 +206,8 @@ class Method:
         Parameters
         ----------
         free : the independent factors
-        n : number of samples. If the method `grows`, the rows of a larger number begin with those of a smaller one
-            (of each design point, if it has `points`)
+        n : number of samples. If the method `grows`, the rows of a larger number begin with those
+            of a smaller one (of each design point, if it has `points`)
         seed : the same seed gives the same rows
         settings : values of what the method `takes`
 
@@ -187,7 +221,9 @@ class Method:
         """Refuse factors that the design cannot take; raise `InputError`."""
 
     def random(self, factor: Factor) -> bool:
-        """Return whether the design draws the values of a factor at random, so that its place is a quantile."""
+        """Return whether the design draws the values of a factor at random, so that its place is a
+        quantile.
+        """
         return self.weighs
 
     def values(self, factor: Factor, places: np.ndarray) -> np.ndarray:
@@ -209,7 +245,8 @@ class Method:
     def from_replicates(
         self, y: np.ndarray, unit: np.ndarray, design: Design, member: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray]:
-        """Return the indices of `narrowed` one after the other, and the half widths of their intervals.
+        """Return the indices of `narrowed` one after the other, and the half widths of their
+        intervals.
 
         Parameters
         ----------
@@ -220,7 +257,8 @@ class Method:
         raise NotImplementedError
 
     def replicated(self, y: np.ndarray, design: Design, samples: int) -> Estimates:
-        """Estimate the indices of `narrowed` from the first samples, with intervals from independent replicates.
+        """Estimate the indices of `narrowed` from the first samples, with intervals from
+        independent replicates.
 
         Parameters
         ----------
@@ -230,7 +268,8 @@ class Method:
 
         Returns
         -------
-        Each index with _low and _high, shape (k,); NaN if too few rows are usable or the output is constant.
+        Each index with _low and _high, shape (k,); NaN if too few rows are usable or the output is
+        constant.
         """
         copies = int(design.meta["replicates"])
         count = len(design.factors)
@@ -244,7 +283,9 @@ class Method:
             out |= {name: value, f"{name}_low": value - wide, f"{name}_high": value + wide}
         return out
 
-    def group_indices(self, y: np.ndarray, design: Design, groups: Mapping[str, Sequence[str]]) -> Estimates:
+    def group_indices(
+        self, y: np.ndarray, design: Design, groups: Mapping[str, Sequence[str]]
+    ) -> Estimates:
         """Estimate the first-order and the total index of groups of factors.
 
         Parameters
@@ -254,12 +295,15 @@ class Method:
 
         Returns
         -------
-        group_S1, the share of variance Var(E[y | group]) / V, and group_ST, one minus that of all other factors, shape
-        (groups,), with _low and _high unless they are exact. Valid for independent factors.
+        group_S1, the share of variance Var(E[y | group]) / V, and group_ST, one minus that of all
+        other factors, shape (groups,), with _low and _high unless they are exact. Valid for
+        independent factors.
         """
         raise NotImplementedError
 
-    def level_indices(self, y: np.ndarray, design: Design, place: int, inside: np.ndarray) -> Estimates:
+    def level_indices(
+        self, y: np.ndarray, design: Design, place: int, inside: np.ndarray
+    ) -> Estimates:
         """Estimate the indices of all other factors within one level of a category.
 
         Parameters
@@ -270,14 +314,16 @@ class Method:
 
         Returns
         -------
-        conditional_S1 with _low and _high, shape (k,), NaN for the category itself; conditional_ST too from some
-        methods; conditional_rows, the blocks, cells or rows behind them, shape (). The variance is that among the rows
-        of the level. Valid for independent factors.
+        conditional_S1 with _low and _high, shape (k,), NaN for the category itself; conditional_ST
+        too from some methods; conditional_rows, the blocks, cells or rows behind them, shape ().
+        The variance is that among the rows of the level. Valid for independent factors.
         """
         raise NotImplementedError
 
     def independent_rows(self, design: Design) -> np.ndarray:
-        """Return the numbers of the rows that are draws of their own, from which shares are counted."""
+        """Return the numbers of the rows that are draws of their own, from which shares are
+        counted.
+        """
         return np.arange(design.size)
 
     @property
@@ -291,7 +337,9 @@ class Method:
 
     @property
     def follows(self) -> bool:
-        """Return whether the places of the rows follow from their values, so that they are not stored."""
+        """Return whether the places of the rows follow from their values, so that they are not
+        stored.
+        """
         return self.crossed or self.observed
 
     @property
@@ -306,7 +354,9 @@ class Method:
 
 
 GROUPED = {  # indices of the keys `groups` and `conditional_on`, of every method that takes them
-    "group_S1": Index("first-order Sobol index of the group, interactions inside the group included"),
+    "group_S1": Index(
+        "first-order Sobol index of the group, interactions inside the group included"
+    ),
     "group_ST": Index("total Sobol index of the group"),
     "conditional_S1": Index("first-order Sobol index, computed from the rows of one level only"),
     "conditional_ST": Index("total Sobol index, computed from the rows of one level only"),
@@ -317,7 +367,8 @@ M = TypeVar("M", bound=type[Method])
 
 
 def register(method: M) -> M:
-    """Add a design of experiments to study files, schema, plan, analysis and report; a decorator of its class.
+    """Add a design of experiments to study files, schema, plan, analysis and report; a decorator of
+    its class.
 
     Parameters
     ----------
@@ -338,7 +389,9 @@ def register(method: M) -> M:
 
 
 def indices_of(method: Method | None) -> dict[str, Index]:
-    """Return the indices that a method declares, or those of all methods, with those of groups and levels."""
+    """Return the indices that a method declares, or those of all methods, with those of groups and
+    levels.
+    """
     methods = list(METHODS.values())
     if method is not None:
         methods = [method]
@@ -390,7 +443,9 @@ def those_with(trait: str) -> list[str]:
 
 def crossed(outer: np.ndarray, inner: np.ndarray) -> np.ndarray:
     """Return each row of one array beside all rows of another one."""
-    return np.concatenate([np.repeat(outer, len(inner), axis=0), np.tile(inner, (len(outer), 1))], axis=1)
+    return np.concatenate(
+        [np.repeat(outer, len(inner), axis=0), np.tile(inner, (len(outer), 1))], axis=1
+    )
 
 
 def in_order(places: np.ndarray, names: list[str], free: Factors) -> np.ndarray:

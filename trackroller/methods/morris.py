@@ -1,4 +1,6 @@
-"""Morris trajectories: each step changes one factor, and its elementary effect is the change of the output."""
+"""Morris trajectories: each step changes one factor, and its elementary effect is the change of the
+output.
+"""
 
 from __future__ import annotations
 
@@ -8,7 +10,17 @@ from trackroller.errors import InputError
 from trackroller.methods import convergence
 from trackroller.methods.factor import TAIL
 from trackroller.methods.intervals import constant, percentile_bounds
-from trackroller.methods.method import Design, Drawn, Estimated, Estimates, Factors, Index, Key, Method, Settings
+from trackroller.methods.method import (
+    Design,
+    Drawn,
+    Estimated,
+    Estimates,
+    Factors,
+    Index,
+    Key,
+    Method,
+    Settings,
+)
 from trackroller.methods.replicates import jackknife, left_out
 
 
@@ -33,18 +45,23 @@ class Morris(Method):
     needs = "pairs of neighbouring rows of a trajectory"
     unit = "elementary effects"
     samples_unit = "trajectories"
-    uncorrelated = "Elementary effects change one factor at a time. Take design lhs: first and delta allow correlation."
+    uncorrelated = (
+        "Elementary effects change one factor at a time. Take design lhs: first and "
+        "delta allow correlation."
+    )
     reference = (
         "Design and indices: elementary effects",
-        "Morris (1991): Factorial sampling plans for preliminary computational experiments. Technometrics 33, 161–174",
+        "Morris (1991): Factorial sampling plans for preliminary computational experiments. "
+        "Technometrics 33, 161–174",
     )
 
     def draw(self, free: Factors, n: int, seed: int, settings: Settings) -> Drawn:
-        """Draw SALib's trajectories; a list moves between a random pair of its different values instead.
+        """Draw SALib's trajectories; a list moves between a random pair of its different values
+        instead.
 
-        If the values of a list were bins over SALib's four levels, a fifth value would never occur. A step between two
-        values would also be divided by the step 2/3 of the unit range, so that mu* of a list would be 1.5 times too
-        large beside that of continuous factors.
+        If the values of a list were bins over SALib's four levels, a fifth value would never occur.
+        A step between two values would also be divided by the step 2/3 of the unit range, so that
+        mu* of a list would be 1.5 times too large beside that of continuous factors.
         """
         from SALib.sample import morris  # heavy, and other designs do not need it
 
@@ -62,7 +79,9 @@ class Morris(Method):
         drawers = [np.random.default_rng([s, 1]) for s in seeds]
         for j, factor in enumerate(free.values()):
             if factor.discrete:
-                pair = np.array([rng.choice(len(factor.levels), 2, replace=False) for rng in drawers])
+                pair = np.array(
+                    [rng.choice(len(factor.levels), 2, replace=False) for rng in drawers]
+                )
                 moved = path[:, :, j] != path[:, :1, j]
                 path[:, :, j] = np.where(moved, pair[:, 1:], pair[:, :1])
         return path.reshape(-1, count), meta
@@ -96,7 +115,9 @@ class Morris(Method):
             return filled.sum(axis=0) / good.sum(axis=0), jackknife((keep @ filled) / (keep @ good))
 
 
-def morris(y: np.ndarray, unit: np.ndarray, listed: np.ndarray, seed: int = 0, resamples: int = 300) -> Estimates:
+def morris(
+    y: np.ndarray, unit: np.ndarray, listed: np.ndarray, seed: int = 0, resamples: int = 300
+) -> Estimates:
     """Estimate the elementary effects of Morris trajectories.
 
     Parameters
@@ -113,19 +134,22 @@ def morris(y: np.ndarray, unit: np.ndarray, listed: np.ndarray, seed: int = 0, r
 
     Notes
     -----
-    An effect is the change of the output divided by the step in units of the factor's range (quantiles 0 to 1). For
-    a list it is the whole change between two of its values. An unusable row costs the two effects that need it.
-    SALib's `morris` gives the same numbers on complete data. It returns no index at all if one value is NaN; without
-    incomplete trajectories, 5 % unusable rows would cost 43 % instead of 10 % of the effects of ten factors.
+    An effect is the change of the output divided by the step in units of the factor's range
+    (quantiles 0 to 1). For a list it is the whole change between two of its values. An unusable row
+    costs the two effects that need it. SALib's `morris` gives the same numbers on complete data. It
+    returns no index at all if one value is NaN; without incomplete trajectories, 5 % unusable rows
+    would cost 43 % instead of 10 % of the effects of ten factors.
 
-    An interval of the resamples alone is too narrow: of twelve effects it holds the mean in 9 of 10 studies. Here it is
-    wider by Student's t, by 17 % with twelve effects.
+    An interval of the resamples alone is too narrow: of twelve effects it holds the mean in 9 of 10
+    studies. Here it is wider by Student's t, by 17 % with twelve effects.
 
     References
     ----------
-    Morris (1991), Technometrics 33, 161-174; Campolongo et al. (2007), Environ. Model. Softw. 22, 1509-1518.
+    Morris (1991), Technometrics 33, 161-174; Campolongo et al. (2007), Environ. Model. Softw. 22,
+    1509-1518.
     """
-    from scipy.special import ndtri, stdtrit  # heavy, and a process that only plans needs no interval
+    # heavy, and a process that only plans needs no interval
+    from scipy.special import ndtri, stdtrit
 
     count = unit.shape[1]
     effect = elementary_effects(y, unit, listed)
@@ -133,7 +157,10 @@ def morris(y: np.ndarray, unit: np.ndarray, listed: np.ndarray, seed: int = 0, r
     used = good.sum(axis=0)
     out: Estimates = {"effects_used": used}
     if constant(y):
-        return out | {n: np.full(count, np.nan) for n in ("mu", "mu_star", "mu_star_low", "mu_star_high", "sigma")}
+        return out | {
+            n: np.full(count, np.nan)
+            for n in ("mu", "mu_star", "mu_star_low", "mu_star_high", "sigma")
+        }
     picks = np.random.default_rng(seed).integers(0, len(effect), (resamples, len(effect)))
     with np.errstate(invalid="ignore", divide="ignore"):
         filled = np.nan_to_num(np.abs(effect))
@@ -143,8 +170,9 @@ def morris(y: np.ndarray, unit: np.ndarray, listed: np.ndarray, seed: int = 0, r
         spread = np.where(good, (effect - out["mu"]) ** 2, 0.0).sum(axis=0) / (used - 1)
     out["sigma"] = np.sqrt(np.where(used > 1, spread, np.nan))
     low, high = percentile_bounds(resampled)
-    # resamples of a dozen effects spread less than their mean does: as a normal quantile to that of Student's t;
-    # of two or three effects t is so wide that nothing would follow for the samples that are needed
+    # resamples of a dozen effects spread less than their mean does: as a normal quantile to that of
+    # Student's t; of two or three effects t is so wide that nothing would follow for the samples
+    # that are needed
     least = np.maximum(used, 4)
     wider = stdtrit(least - 1.0, 0.975) / ndtri(0.975) * np.sqrt(least / (least - 1.0))
     mean = out["mu_star"]
@@ -155,7 +183,8 @@ def morris(y: np.ndarray, unit: np.ndarray, listed: np.ndarray, seed: int = 0, r
 
 
 def elementary_effects(y: np.ndarray, unit: np.ndarray, listed: np.ndarray) -> np.ndarray:
-    """Return the elementary effects of Morris trajectories, shape (trajectories, k); NaN where a row is unusable.
+    """Return the elementary effects of Morris trajectories, shape (trajectories, k); NaN where a
+    row is unusable.
 
     Parameters
     ----------

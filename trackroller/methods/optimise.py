@@ -2,13 +2,15 @@
 
 Factors are real numbers, ordered lists (integers) or categories.
 
-Every generation follows from the seed, its number and the results of all earlier generations alone. A search that was
-stopped is therefore replayed from stored results, without a stored state of the search.
+Every generation follows from the seed, its number and the results of all earlier generations alone.
+A search that was stopped is therefore replayed from stored results, without a stored state of the
+search.
 
-The method is NSGA-II [1]_ with the archive of all evaluated designs as the pool of parents: simulated binary crossover
-and polynomial mutation for real genes, the same with rounding for ordered lists, exchange and redrawing for categories.
-`validation/benchmarks/optimum.py` measures it beside the dense grid and a random search. pymoo 0.6.2 was not taken: its
-algorithm for mixed variables covered less of the fronts ZDT1, ZDT2 and of a mixed one after 480 to 960 designs, and it
+The method is NSGA-II [1]_ with the archive of all evaluated designs as the pool of parents:
+simulated binary crossover and polynomial mutation for real genes, the same with rounding for
+ordered lists, exchange and redrawing for categories. `validation/benchmarks/optimum.py` measures it
+beside the dense grid and a random search. pymoo 0.6.2 was not taken: its algorithm for mixed
+variables covered less of the fronts ZDT1, ZDT2 and of a mixed one after 480 to 960 designs, and it
 brings 20 further packages.
 
 References
@@ -48,7 +50,9 @@ class Gene:
 
 
 class Optimise(Method):
-    """Designs of a search, each at all conditions: lists of conditions in a grid, and `samples` rows of the others."""
+    """Designs of a search, each at all conditions: lists of conditions in a grid, and `samples`
+    rows of the others.
+    """
 
     name = "optimise"
     takes = {"conditions": (), "population": 32, "genes": None, "table": None}
@@ -58,21 +62,30 @@ class Optimise(Method):
     def draw(self, free: Factors, n: int, seed: int, settings: Settings) -> Drawn:
         """Return quantiles or indices of choices and conditions.
 
-        `conditions` are the factors that are no choices. `genes` are the designs, shape (designs, choices), by default
-        a first generation of `population` designs.
+        `conditions` are the factors that are no choices. `genes` are the designs, shape (designs,
+        choices), by default a first generation of `population` designs.
         """
         choices = {name: f for name, f in free.items() if name not in settings["conditions"]}
         inner = {name: f for name, f in free.items() if name not in choices}
         if not choices:
             remedy = "Give a choice two values or a range, or write roles: {NAME: choice}."
-            raise InputError("factors", list(free), "at least one choice of the designer that varies", remedy)
+            raise InputError(
+                "factors", list(free), "at least one choice of the designer that varies", remedy
+            )
         for name, f in choices.items():
             if not f.discrete and f.kind not in ("uniform", "loguniform"):
-                raise InputError(f"factors.{name}", f.kind, "a list, uniform or loguniform: the range of a search")
+                raise InputError(
+                    f"factors.{name}",
+                    f.kind,
+                    "a list, uniform or loguniform: the range of a search",
+                )
         genes = settings["genes"]
         if genes is None:
             genes = first_generation(genes_of(choices), settings["population"], seed)
-        listed, drawn = ({name: f for name, f in inner.items() if f.discrete is discrete} for discrete in (True, False))
+        listed, drawn = (
+            {name: f for name, f in inner.items() if f.discrete is discrete}
+            for discrete in (True, False)
+        )
         plain = {"rank_correlations": (), "replicates": 1}
         if drawn:
             sample = METHODS["sobol"].draw(drawn, n, seed, plain)[0]
@@ -89,13 +102,16 @@ def genes_of(choices: Factors) -> list[Gene]:
     return [Gene(len(f.levels), f.ordered) for f in choices.values()]
 
 
-def nondominated_ranks(costs: np.ndarray, violation: np.ndarray, enough: int | None = None) -> np.ndarray:
+def nondominated_ranks(
+    costs: np.ndarray, violation: np.ndarray, enough: int | None = None
+) -> np.ndarray:
     """Return the front of each design: 0 for designs that no other one beats.
 
     Parameters
     ----------
     costs : smaller is better, shape (n, goals); NaN counts as the worst value
-    violation : 0 for a design that meets every constraint, shape (n,). A design with less violation beats any other one
+    violation : 0 for a design that meets every constraint, shape (n,). A design with less violation
+        beats any other one
     enough : number of designs after which later fronts are not told apart; by default all of them
 
     Returns
@@ -128,7 +144,9 @@ def nondominated_ranks(costs: np.ndarray, violation: np.ndarray, enough: int | N
 
 
 def crowding(costs: np.ndarray) -> np.ndarray:
-    """Return the normalised distance between the neighbours of each design of a front, shape (n,); inf at its ends."""
+    """Return the normalised distance between the neighbours of each design of a front, shape (n,);
+    inf at its ends.
+    """
     out = np.zeros(len(costs))
     for values in np.nan_to_num(costs, posinf=np.nan, neginf=np.nan).T:
         finite = values[np.isfinite(values)]
@@ -156,12 +174,16 @@ def survivors(costs: np.ndarray, violation: np.ndarray, count: int) -> np.ndarra
 
 
 def first_generation(genes: Sequence[Gene], count: int, seed: int) -> np.ndarray:
-    """Return the genes of the first generation, a scrambled Sobol sequence, shape (count, genes); each design once."""
+    """Return the genes of the first generation, a scrambled Sobol sequence, shape (count, genes);
+    each design once.
+    """
     from scipy.stats import qmc  # heavy, and a plan of a grid does not need it
 
     size = 1 << max(0, count - 1).bit_length()
     unit = qmc.Sobol(d=len(genes), rng=np.random.default_rng(seed)).random(size)[:count]
-    return _new(_snapped(unit * [max(g.levels, 1) for g in genes], genes), np.empty((0, len(genes))), count)
+    return _new(
+        _snapped(unit * [max(g.levels, 1) for g in genes], genes), np.empty((0, len(genes))), count
+    )
 
 
 def next_generation(
@@ -184,28 +206,35 @@ def next_generation(
 
     Returns
     -------
-    Shape (count, genes); fewer if the lists hold no further design, empty if every design is evaluated.
+    Shape (count, genes); fewer if the lists hold no further design, empty if every design is
+    evaluated.
     """
     rng = np.random.default_rng(list(seed))
     parents = known[survivors(costs, violation, count)]
     children = np.empty((0, len(genes)))
     for attempt in range(ROUNDS):
         # a lower index stands for a better parent: of two drawn ones, the better one has children
-        mother, father = (parents[rng.integers(0, len(parents), (2, count)).min(axis=0)] for _ in range(2))
+        mother, father = (
+            parents[rng.integers(0, len(parents), (2, count)).min(axis=0)] for _ in range(2)
+        )
         drawn = _mutated(_mixed(mother, father, genes, rng), genes, rng)
         if attempt > ROUNDS // 2:
             drawn = _snapped(rng.random(drawn.shape) * [max(g.levels, 1) for g in genes], genes)
-        children = np.concatenate([children, _new(drawn, np.concatenate([known, children]), count - len(children))])
+        children = np.concatenate(
+            [children, _new(drawn, np.concatenate([known, children]), count - len(children))]
+        )
         if len(children) == count:
             return children
     return children
 
 
-def _mixed(mother: np.ndarray, father: np.ndarray, genes: Sequence[Gene], rng: np.random.Generator) -> np.ndarray:
+def _mixed(
+    mother: np.ndarray, father: np.ndarray, genes: Sequence[Gene], rng: np.random.Generator
+) -> np.ndarray:
     """Mix the genes of two parents; a child takes a gene of the mother as it is, or a new one.
 
-    The new gene is the father's, or of an ordered choice a value about both parents by simulated binary crossover (Deb
-    and Agrawal 1995), whose `spread` is 1 at the parents themselves.
+    The new gene is the father's, or of an ordered choice a value about both parents by simulated
+    binary crossover (Deb and Agrawal 1995), whose `spread` is 1 at the parents themselves.
     """
     out = mother.copy()
     mixed = rng.random(len(out)) < CROSSED
@@ -213,7 +242,9 @@ def _mixed(mother: np.ndarray, father: np.ndarray, genes: Sequence[Gene], rng: n
         u = rng.random(len(out))
         swap = rng.random(len(out)) < 0.5
         side = rng.random(len(out)) < 0.5
-        spread = np.where(u < 0.5, (2 * u) ** (1 / (CROSSOVER + 1)), (0.5 / (1 - u)) ** (1 / (CROSSOVER + 1)))
+        spread = np.where(
+            u < 0.5, (2 * u) ** (1 / (CROSSOVER + 1)), (0.5 / (1 - u)) ** (1 / (CROSSOVER + 1))
+        )
         middle = (mother[:, j] + father[:, j]) / 2
         half = np.abs(mother[:, j] - father[:, j]) / 2
         if gene.ordered:
@@ -229,7 +260,9 @@ def _mutated(children: np.ndarray, genes: Sequence[Gene], rng: np.random.Generat
     for j, gene in enumerate(genes):
         u = rng.random(len(children))
         hit = rng.random(len(children)) < 1 / len(genes)
-        step = np.where(u < 0.5, (2 * u) ** (1 / (MUTATION + 1)) - 1, 1 - (2 - 2 * u) ** (1 / (MUTATION + 1)))
+        step = np.where(
+            u < 0.5, (2 * u) ** (1 / (MUTATION + 1)) - 1, 1 - (2 - 2 * u) ** (1 / (MUTATION + 1))
+        )
         if not gene.ordered:
             moved = rng.integers(0, gene.levels, len(children)).astype(float)
         elif gene.levels:  # at least to the next value
@@ -241,7 +274,9 @@ def _mutated(children: np.ndarray, genes: Sequence[Gene], rng: np.random.Generat
 
 
 def _snapped(values: np.ndarray, genes: Sequence[Gene], whole: bool = True) -> np.ndarray:
-    """Return genes inside their bounds; lists as whole numbers, rounded down (`whole`) or to the nearest one."""
+    """Return genes inside their bounds; lists as whole numbers, rounded down (`whole`) or to the
+    nearest one.
+    """
     out = np.array(values, dtype=float)
     shift = 0.5
     if whole:
@@ -255,12 +290,14 @@ def _snapped(values: np.ndarray, genes: Sequence[Gene], whole: bool = True) -> n
 
 
 def _new(drawn: np.ndarray, known: np.ndarray, count: int) -> np.ndarray:
-    """Return the first designs that differ from each other and from the known ones, at most `count`."""
-    seen = {row.tobytes() for row in known}
+    """Return the first designs that differ from each other and from the known ones, at most
+    `count`.
+    """
+    drawn_before = {row.tobytes() for row in known}
     rows: list[np.ndarray] = []
     for row in drawn:
         key = row.tobytes()
-        if len(rows) < count and key not in seen:
-            seen.add(key)
+        if len(rows) < count and key not in drawn_before:
+            drawn_before.add(key)
             rows.append(row)
     return np.array(rows).reshape(len(rows), drawn.shape[1])

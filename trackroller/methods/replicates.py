@@ -1,8 +1,10 @@
-"""Independent replicates of a sample, which take turns in its rows, and the intervals that follow from their scatter.
+"""Independent replicates of a sample, which take turns in its rows, and the intervals that follow
+from their scatter.
 
-A bootstrap of rows takes them as independent, so it misses the gain of a low-discrepancy sequence. The replicates of a
-study with the key `until` are independent, whatever their rows have in common, so their scatter gives the intervals:
-a jackknife that leaves out one replicate at a time [1]_, with Student's t.
+A bootstrap of rows takes them as independent, so it misses the gain of a low-discrepancy sequence.
+The replicates of a study with the key `until` are independent, whatever their rows have in common,
+so their scatter gives the intervals: a jackknife that leaves out one replicate at a time [1]_, with
+Student's t.
 
 References
 ----------
@@ -15,15 +17,16 @@ from collections.abc import Callable
 
 import numpy as np
 
-# ASSUME: choosing the moment to stop by the width itself makes intervals too narrow by at most this factor; measured by
-# validation/benchmarks/until_sure.py
+# ASSUME: choosing the moment to stop by the width itself makes intervals too narrow by at most this
+# factor; measured by validation/benchmarks/until_sure.py
 WIDER = 1.15
 
 
 def in_turn(draw: Callable[[int], np.ndarray], seed: int, copies: int) -> np.ndarray:
     """Draw independent samples that take turns: row i belongs to sample i % copies.
 
-    The first rows are therefore the first rows of each sample, and a larger result begins with a smaller one.
+    The first rows are therefore the first rows of each sample, and a larger result begins with a
+    smaller one.
 
     Parameters
     ----------
@@ -43,18 +46,20 @@ def in_turn(draw: Callable[[int], np.ndarray], seed: int, copies: int) -> np.nda
 
 
 def wide(copies: int) -> float:
-    """Return the factor on the standard error of a mean of replicates that gives the half width of its interval."""
+    """Return the factor on the standard error of a mean of replicates that gives the half width of
+    its interval.
+    """
     from scipy.stats import t  # heavy, and drawing does not need it
 
     return float(WIDER * t.ppf(0.975, copies - 1))
 
 
-def jackknife(left: np.ndarray) -> np.ndarray:
+def jackknife(without_one: np.ndarray) -> np.ndarray:
     """Return the half width of the 95 % interval of a mean or a smooth function of means.
 
     Parameters
     ----------
-    left : estimates without one replicate each, shape (replicates, ...)
+    without_one : estimates without one replicate each, shape (replicates, ...)
 
     Returns
     -------
@@ -67,8 +72,8 @@ def jackknife(left: np.ndarray) -> np.ndarray:
     >>> bool(np.isclose(jackknife(left), 1.15 * 2.3646 * values.std(ddof=1) / 8**0.5, rtol=1e-4))
     True
     """
-    count = len(left)
-    variance = (count - 1) / count * ((left - left.mean(axis=0)) ** 2).sum(axis=0)
+    count = len(without_one)
+    variance = (count - 1) / count * ((without_one - without_one.mean(axis=0)) ** 2).sum(axis=0)
     return np.asarray(wide(count) * np.sqrt(variance))
 
 

@@ -1,17 +1,18 @@
 """Saltelli's design and its Sobol indices, by correlations.
 
-A block of k columns has the rows A, AB_1 .. AB_k, (BA_1 .. BA_k,) B. AB_j is A with column j from B. A set of columns
-is written as a number whose bit j stands for column j.
+A block of k columns has the rows A, AB_1 .. AB_k, (BA_1 .. BA_k,) B. AB_j is A with column j from
+B. A set of columns is written as a number whose bit j stands for column j.
 
-Two rows that share the factors u and no other have the correlation V_u / V, the closed index of u. The first-order
-index of factor j is therefore the correlation of B with AB_j (and of A with BA_j). The total index is one minus the
-correlation of A with AB_j (and of B with BA_j). S2_jk = corr(BA_j, AB_k) - S1_j - S1_k. The correlation of A with B,
-whose true value is 0, serves as control variate for each of them, so that neither an inert nor a dominant factor has
-noise [1]_, [2]_, [3]_.
+Two rows that share the factors u and no other have the correlation V_u / V, the closed index of u.
+The first-order index of factor j is therefore the correlation of B with AB_j (and of A with BA_j).
+The total index is one minus the correlation of A with AB_j (and of B with BA_j). S2_jk = corr(BA_j,
+AB_k) - S1_j - S1_k. The correlation of A with B, whose true value is 0, serves as control variate
+for each of them, so that neither an inert nor a dominant factor has noise [1]_, [2]_, [3]_.
 
-SALib's `sobol` (Saltelli 2010) was measured beside this estimator by ``validation/benchmarks/index_estimators.py``,
-incomplete blocks dropped first. At equal coverage its root mean square error is 1.6 to 6 times larger (four functions,
-128 blocks), its intervals are 1.4 to 3 times wider and it takes four times longer.
+SALib's `sobol` (Saltelli 2010) was measured beside this estimator by
+``validation/benchmarks/index_estimators.py``, incomplete blocks dropped first. At equal coverage
+its root mean square error is 1.6 to 6 times larger (four functions, 128 blocks), its intervals are
+1.4 to 3 times wider and it takes four times longer.
 
 References
 ----------
@@ -51,10 +52,16 @@ DRAWN_AT_ONCE = 4_000_000  # weights of the bootstrap that are held in memory
 
 
 class Saltelli(Method):
-    """`samples` blocks, rounded up to a power of two: each exchanges the columns of two Sobol samples A and B."""
+    """`samples` blocks, rounded up to a power of two: each exchanges the columns of two Sobol
+    samples A and B.
+    """
 
     name = "saltelli"
-    takes = {"replicates": 1, "second_order": Key(bool, True, "also the second-order indices"), "groups": None}
+    takes = {
+        "replicates": 1,
+        "second_order": Key(bool, True, "also the second-order indices"),
+        "groups": None,
+    }
     sampled = weighs = weighted = grows = quick = True
     indices = {
         "S1": Index("first-order index", of_factor=True),
@@ -68,7 +75,10 @@ class Saltelli(Method):
     needs = "whole blocks of the Saltelli design and independent factors"
     unit = "blocks"
     samples_unit = "base samples"
-    uncorrelated = "Sobol indices need independent factors. Take design lhs: first and delta allow correlation."
+    uncorrelated = (
+        "Sobol indices need independent factors. Take design lhs: first and delta "
+        "allow correlation."
+    )
     reference = (
         "Design and indices: Sobol indices",
         "Saltelli et al. (2010): Variance based sensitivity analysis of model output. "
@@ -81,7 +91,8 @@ class Saltelli(Method):
         blocks = 1 << max(0, n // copies - 1).bit_length()
         second = bool(settings["second_order"])
         meta: dict[str, Any] = {"base_samples": copies * blocks, "second_order": second}
-        groups = all_groups(settings["groups"] or {}, free)  # without groups each factor is one of its own
+        # without groups each factor is one of its own
+        groups = all_groups(settings["groups"] or {}, free)
         owner = {name: group for group, members in groups.items() for name in members}
         owners = [owner[name] for name in free]
         order = list(dict.fromkeys(owners))  # groups in the order of their first factors
@@ -92,7 +103,9 @@ class Saltelli(Method):
         return unit.reshape(-1, len(free)), meta
 
     def estimate(self, y: np.ndarray, design: Design) -> Estimated:
-        """Return Sobol indices with their course, and the measures of given data from the rows of A and B."""
+        """Return Sobol indices with their course, and the measures of given data from the rows of A
+        and B.
+        """
         from trackroller.methods.given_data import given_data  # heavy: SALib and scipy.stats
 
         groups = design.meta.get("groups")
@@ -138,7 +151,9 @@ class Saltelli(Method):
         drawn[:, count:] = 1 - drawn[:, count:]
         return drawn[0], jackknife(drawn[1:])
 
-    def group_indices(self, y: np.ndarray, design: Design, groups: Mapping[str, Sequence[str]]) -> Estimates:
+    def group_indices(
+        self, y: np.ndarray, design: Design, groups: Mapping[str, Sequence[str]]
+    ) -> Estimates:
         """Return the indices of the groups whose columns the design exchanges together."""
         second = bool(design.meta["second_order"])
         exchanged = design.meta["groups"]
@@ -152,12 +167,14 @@ class Saltelli(Method):
         first, of_complement = np.split(closed, 2, axis=1)
         return with_bounds("group_S1", first) | with_bounds("group_ST", 1 - of_complement)
 
-    def level_indices(self, y: np.ndarray, design: Design, place: int, inside: np.ndarray) -> Estimates:
+    def level_indices(
+        self, y: np.ndarray, design: Design, place: int, inside: np.ndarray
+    ) -> Estimates:
         """Estimate from the blocks whose rows all lie at one level.
 
-        Where A lies at the level, A, the rows AB_j of all other factors and BA of the category (B with the category of
-        A) form such a block. Where B lies there, B, BA_j and AB of the category do. Without BA, A and B must both lie
-        there.
+        Where A lies at the level, A, the rows AB_j of all other factors and BA of the category (B
+        with the category of A) form such a block. Where B lies there, B, BA_j and AB of the
+        category do. Without BA, A and B must both lie there.
         """
         count = len(design.factors)
         second = bool(design.meta["second_order"])
@@ -183,9 +200,11 @@ class Saltelli(Method):
         single = [1 << j for j in range(count - 1)]
         sets = [*single, *(whole ^ j for j in single)]
         drawn = closed_indices(part, count - 1, False, sets, cluster=cluster)
-        first, rest = np.split(drawn, 2, axis=1)
+        first, of_complement = np.split(drawn, 2, axis=1)
         out: Estimates = {"conditional_rows": np.array(len(part))}
-        bounds = with_bounds("conditional_S1", first) | with_bounds("conditional_ST", 1 - rest)
+        bounds = with_bounds("conditional_S1", first) | with_bounds(
+            "conditional_ST", 1 - of_complement
+        )
         return out | {name: spread(values, place) for name, values in bounds.items()}
 
     def independent_rows(self, design: Design) -> np.ndarray:
@@ -194,7 +213,8 @@ class Saltelli(Method):
 
 
 def by_block(values: np.ndarray, design: Design) -> np.ndarray:
-    """Return the values (n,) of a Saltelli design by base sample, shape (base samples, rows of a base sample).
+    """Return the values (n,) of a Saltelli design by base sample, shape (base samples, rows of a
+    base sample).
 
     The first row of a base sample is its row of A, and the last one its row of B.
     """
@@ -221,7 +241,8 @@ def draw(blocks: int, groups: Sequence[int], second_order: bool, seed: int) -> n
 
     k = len(groups)
     exchanged = max(groups) + 1
-    base = qmc.Sobol(d=2 * k, seed=seed).random(blocks)  # `seed`, as SALib has it: `rng` scrambles in another way
+    # `seed`, as SALib has it: `rng` scrambles in another way
+    base = qmc.Sobol(d=2 * k, seed=seed).random(blocks)
     a, b = base[:, :k], base[:, k:]
     size = exchanged + 2
     if second_order:
@@ -245,8 +266,9 @@ def pairs_sharing(count: int, second_order: bool) -> dict[int, list[tuple[int, i
 
     Returns
     -------
-    Set of columns -> pairs (row, row) with equal values in these columns and in no other. If pairs with A or with B are
-    among them, only these pairs are returned, because A and B give them the best control variate.
+    Set of columns -> pairs (row, row) with equal values in these columns and in no other. If pairs
+    with A or with B are among them, only these pairs are returned, because A and B give them the
+    best control variate.
     """
     whole = (1 << count) - 1
     from_a = [whole, *(whole ^ (1 << j) for j in range(count))]
@@ -259,25 +281,34 @@ def pairs_sharing(count: int, second_order: bool) -> dict[int, list[tuple[int, i
     for i, one in enumerate(from_a):
         for j in range(i):
             sharing.setdefault(whole ^ one ^ from_a[j], []).append((j, i))
-    ends = {columns: [pair for pair in pairs if pair[0] == 0 or pair[1] == last] for columns, pairs in sharing.items()}
+    ends = {
+        columns: [pair for pair in pairs if pair[0] == 0 or pair[1] == last]
+        for columns, pairs in sharing.items()
+    }
     return {columns: ends[columns] or pairs for columns, pairs in sharing.items()}
 
 
-def all_groups(groups: Mapping[str, Sequence[str]], factors: Iterable[str]) -> dict[str, tuple[str, ...]]:
-    """Return the groups of a study file and, after these, each factor in no group as a group of its own name."""
-    taken = {name for members in groups.values() for name in members}
+def all_groups(
+    groups: Mapping[str, Sequence[str]], factors: Iterable[str]
+) -> dict[str, tuple[str, ...]]:
+    """Return the groups of a study file and, after these, each factor in no group as a group of its
+    own name.
+    """
+    grouped = {name for members in groups.values() for name in members}
     return {name: tuple(members) for name, members in groups.items()} | {
-        name: (name,) for name in factors if name not in taken
+        name: (name,) for name in factors if name not in grouped
     }
 
 
-def sobol(y: np.ndarray, count: int, second_order: bool, seed: int = 0, resamples: int = 300) -> Estimates:
+def sobol(
+    y: np.ndarray, count: int, second_order: bool, seed: int = 0, resamples: int = 300
+) -> Estimates:
     """Estimate Sobol indices of a Saltelli design with bootstrap intervals.
 
     Parameters
     ----------
-    y : output, shape (blocks * (k + 2),) or, with second order, (blocks * (2 k + 2),); the rows of a block are
-        A, AB_1 .. AB_k, (BA_1 .. BA_k), B
+    y : output, shape (blocks * (k + 2),) or, with second order, (blocks * (2 k + 2),); the rows of
+        a block are A, AB_1 .. AB_k, (BA_1 .. BA_k), B
     count : number of factors k
     second_order : whether y holds the BA rows
     seed : of the bootstrap
@@ -285,14 +316,15 @@ def sobol(y: np.ndarray, count: int, second_order: bool, seed: int = 0, resample
 
     Returns
     -------
-    S1, ST, shape (k,), and S2, shape (k, k), with NaN on and below the diagonal, each with _low and _high;
-    blocks_used, blocks. NaN if fewer than 8 blocks are complete or the output is constant.
+    S1, ST, shape (k,), and S2, shape (k, k), with NaN on and below the diagonal, each with _low and
+    _high; blocks_used, blocks. NaN if fewer than 8 blocks are complete or the output is constant.
 
     Notes
     -----
-    Valid for independent factors. A block with an unusable row is left out, because the rows of A, B and their
-    mixtures belong together; the indices then describe the remaining rows (see `given_data`). The intervals treat
-    the blocks as random. The blocks of a Sobol sequence have smaller errors, so the intervals are conservative.
+    Valid for independent factors. A block with an unusable row is left out, because the rows of A,
+    B and their mixtures belong together; the indices then describe the remaining rows (see
+    `given_data`). The intervals treat the blocks as random. The blocks of a Sobol sequence have
+    smaller errors, so the intervals are conservative.
     """
     # a set of factors is a number with a bit for each of them
     single = [1 << j for j in range(count)]
@@ -335,13 +367,15 @@ def closed_indices(
     count, second_order : as in `sobol`
     sets : sets of columns as numbers, see this module's first lines
     seed, resamples : as in `sobol`
-    cluster : number of the base block of each block, shape (blocks,); blocks of one cluster are drawn together
-    weights : weights of the blocks, shape (m, blocks), each row with the sum 1; they replace the resamples
+    cluster : number of the base block of each block, shape (blocks,); blocks of one cluster are
+        drawn together
+    weights : weights of the blocks, shape (m, blocks), each row with the sum 1; they replace the
+        resamples
 
     Returns
     -------
-    Shape (1 + resamples, sets): the estimates, then the resamples. NaN if there are fewer than 8 clusters or the output
-    is constant.
+    Shape (1 + resamples, sets): the estimates, then the resamples. NaN if there are fewer than 8
+    clusters or the output is constant.
     """
     if cluster is None:
         cluster = np.arange(len(block))
@@ -351,7 +385,9 @@ def closed_indices(
     if len(clusters) < MIN_BLOCKS or constant(block):
         return np.full((1 + resamples, len(sets)), np.nan)
     pairs = pairs_sharing(count, second_order)
-    terms = _pair_terms((block - block.mean()) / block.std(), [[(0, -1)], *(pairs[columns] for columns in sets)])
+    terms = _pair_terms(
+        (block - block.mean()) / block.std(), [[(0, -1)], *(pairs[columns] for columns in sets)]
+    )
     beta = _control(*terms)
     drawn = [_correlations(np.full((1, len(block)), 1 / len(block)), terms, beta)]
     if weights is not None:
@@ -388,7 +424,9 @@ def _resampled(rows: int, resamples: int, seed: int) -> Iterator[np.ndarray]:
 
 
 def _pair_terms(block: np.ndarray, sets: Sequence[Sequence[tuple[int, int]]]) -> np.ndarray:
-    """Return half sums, half sums of squares and products of rows, means over the pairs, shape (3, blocks, sets)."""
+    """Return half sums, half sums of squares and products of rows, means over the pairs, shape (3,
+    blocks, sets).
+    """
     out = np.empty((3, len(block), len(sets)))
     for place, pairs in enumerate(sets):
         u = block[:, [i for i, _ in pairs]]
@@ -399,7 +437,9 @@ def _pair_terms(block: np.ndarray, sets: Sequence[Sequence[tuple[int, int]]]) ->
 
 
 def _control(half: np.ndarray, square: np.ndarray, product: np.ndarray) -> np.ndarray:
-    """Return the weight of the control variate for each set: regression of its influence on that of A with B."""
+    """Return the weight of the control variate for each set: regression of its influence on that of
+    A with B.
+    """
     mean = half.mean(axis=0)
     spread = square.mean(axis=0) - half.mean(axis=0) ** 2
     rho = (product.mean(axis=0) - mean**2) / spread
@@ -410,7 +450,9 @@ def _control(half: np.ndarray, square: np.ndarray, product: np.ndarray) -> np.nd
 
 
 def _correlations(weights: np.ndarray, terms: np.ndarray, beta: np.ndarray) -> np.ndarray:
-    """Return the correlation of each set but the first for each row of weights, shape (resamples, sets)."""
+    """Return the correlation of each set but the first for each row of weights, shape (resamples,
+    sets).
+    """
     half, square, product = weights @ terms
     spread = square - half**2
     spread = np.where(spread > 1e-12, spread, np.nan)  # a resample may miss a rare event altogether

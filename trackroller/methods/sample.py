@@ -31,7 +31,9 @@ class Sample(Method):
 
         return measures(y, design, bool(correlation.correlated_pairs(design)))
 
-    def level_indices(self, y: np.ndarray, design: Design, place: int, inside: np.ndarray) -> Estimates:
+    def level_indices(
+        self, y: np.ndarray, design: Design, place: int, inside: np.ndarray
+    ) -> Estimates:
         """Return the first-order shares of the rows of a level."""
         from trackroller.methods.given_data import firsts_within  # heavy, as above
 
@@ -39,7 +41,9 @@ class Sample(Method):
 
 
 class RandomSample(Sample):
-    """A sample of `samples` rows, drawn from the distributions of its factors, which may be correlated."""
+    """A sample of `samples` rows, drawn from the distributions of its factors, which may be
+    correlated.
+    """
 
     takes = {"rank_correlations": ()}
     sampled = weighs = True

@@ -1,4 +1,6 @@
-"""Scrambled Sobol sequences: rows that fill the ranges evenly, and that stay when more of them are drawn."""
+"""Scrambled Sobol sequences: rows that fill the ranges evenly, and that stay when more of them are
+drawn.
+"""
 
 from __future__ import annotations
 
@@ -20,7 +22,8 @@ class Sobol(RandomSample):
     grows = True
     reference = (
         "Design: Sobol sequence",
-        "Sobol (1967): On the distribution of points in a cube and the approximate evaluation of integrals. "
+        "Sobol (1967): On the distribution of points in a cube and the approximate evaluation of "
+        "integrals. "
         "USSR Comput. Math. Math. Phys. 7, 86–112",
     )
 
@@ -31,16 +34,21 @@ class Sobol(RandomSample):
         root = correlation.copula(entries, free)
 
         def one(seed: int) -> np.ndarray:
-            return correlation.correlate(sobol_rows(len(free), n // copies, seed), root, strata=False)
+            return correlation.correlate(
+                sobol_rows(len(free), n // copies, seed), root, strata=False
+            )
 
         return in_turn(one, seed, copies), {correlation.KEY: entries}
 
 
 def sobol_rows(count: int, n: int, seed: int) -> np.ndarray:
-    """Return the first n rows of a scrambled Sobol sequence of `count` factors, quantiles of shape (n, count)."""
+    """Return the first n rows of a scrambled Sobol sequence of `count` factors, quantiles of shape
+    (n, count).
+    """
     from scipy.stats import qmc  # heavy, and a plan of a grid does not need it
 
     engine = qmc.Sobol(d=count, rng=np.random.default_rng(seed))
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", UserWarning)  # the balance of a Sobol sequence needs a power of two
+        # the balance of a Sobol sequence needs a power of two
+        warnings.simplefilter("ignore", UserWarning)
         return np.asarray(engine.random(n))

@@ -23,7 +23,8 @@ class Table(Sample):
 
 
 def of_columns(columns: Mapping[str, np.ndarray]) -> tuple[dict[str, Factor], np.ndarray]:
-    """Return the columns that vary as factors, and `unit` of these: numbers, or the index of other values.
+    """Return the columns that vary as factors, and `unit` of these: numbers, or the index of other
+    values.
 
     Parameters
     ----------
@@ -34,7 +35,9 @@ def of_columns(columns: Mapping[str, np.ndarray]) -> tuple[dict[str, Factor], np
     Factors by name, and an array of shape (n, number of factors).
     """
     levels = {name: tuple(dict.fromkeys(values.tolist())) for name, values in columns.items()}
-    free = {name: Factor(name, "values", levels=own) for name, own in levels.items() if len(own) > 1}
+    free = {
+        name: Factor(name, "values", levels=own) for name, own in levels.items() if len(own) > 1
+    }
     unit = np.empty((max(map(len, columns.values()), default=0), len(free)))
     for j, (name, factor) in enumerate(free.items()):
         index = {level: i for i, level in enumerate(factor.levels)}

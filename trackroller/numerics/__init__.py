@@ -1,1 +1,3 @@
-"""Numerical helpers without physics: quadrature, threads, interpolation knots, rows and expressions."""
+"""Numerical helpers without physics: quadrature, threads, interpolation knots, rows and
+expressions.
+"""

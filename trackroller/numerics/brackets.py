@@ -12,7 +12,8 @@ def narrowed(
     rounds: Sequence[int],
     holds: Callable[[list[int], list[float]], Sequence[bool]],
 ) -> list[tuple[float, float]]:
-    """Narrow brackets, each from a value at which a condition holds to a value at which it does not.
+    """Narrow brackets, each from a value at which a condition holds to a value at which it does
+    not.
 
     Parameters
     ----------
@@ -21,17 +22,21 @@ def narrowed(
     rounds : sequence of int
         Number of equal parts into which each round cuts every bracket.
     holds : callable
-        Receives the numbers of brackets and a value for each, and returns whether the condition holds there. A round
-        asks for the values of all brackets at once, because many cases are solved faster together.
+        Receives the numbers of brackets and a value for each, and returns whether the condition
+        holds there. A round asks for the values of all brackets at once, because many cases are
+        solved faster together.
 
     Returns
     -------
     list of tuple of float
-        The brackets: each is the first part of the earlier one at whose end the condition does not hold.
+        The brackets: each is the first part of the earlier one at whose end the condition does not
+        hold.
 
     Examples
     --------
-    >>> narrowed([(0.0, 8.0), (0.0, -8.0)], (8, 4), lambda numbers, values: [abs(value) < 2.3 for value in values])
+    >>> def is_small(numbers, values):
+    ...     return [abs(value) < 2.3 for value in values]
+    >>> narrowed([(0.0, 8.0), (0.0, -8.0)], (8, 4), is_small)
     [(2.25, 2.5), (-2.25, -2.5)]
     """
     ends = list(brackets)
@@ -42,6 +47,7 @@ def narrowed(
         for number, values in enumerate(inner):
             truths = [bool(next(answers)) for _ in values]
             line = [ends[number][0], *values, ends[number][1]]
-            last = [*truths, False].index(False)  # the last value before the first one at which the condition fails
+            # the last value before the first one at which the condition fails
+            last = [*truths, False].index(False)
             ends[number] = line[last], line[last + 1]
     return ends

@@ -1,7 +1,9 @@
-"""Arithmetic on short vectors for numba, which keeps loops over a few numbers out of vector registers.
+"""Arithmetic on short vectors for numba, which keeps loops over a few numbers out of vector
+registers.
 
-Small systems of equations with the same pattern are solved side by side: each number of one system stands beside the
-numbers of the others, and one instruction treats all of them. Arrays are (m,) of floats.
+Small systems of equations with the same pattern are solved side by side: each number of one system
+stands beside the numbers of the others, and one instruction treats all of them. Arrays are (m,) of
+floats.
 """
 
 from __future__ import annotations
@@ -15,11 +17,14 @@ from numba.extending import intrinsic as _intrinsic
 
 intrinsic: Any = _intrinsic  # its calls lack the first argument of its definition
 
-LANES = 8  # numbers beside each other, in single precision: more of them would leave the fastest cache
+# numbers beside each other, in single precision: more of them would leave the fastest cache
+LANES = 8
 
 
 def _vectors(context, builder, signature, given, number):
-    """Return a function that gives the pointer to vector i of argument `number`; the next argument is its start."""
+    """Return a function that gives the pointer to vector i of argument `number`; the next argument
+    is its start.
+    """
     array, start = given[number], given[number + 1]
     data = context.make_array(signature.args[number])(context, builder, array).data
     vector = ir.VectorType(context.get_value_type(signature.args[number].dtype), LANES)
@@ -37,7 +42,9 @@ def _size(array) -> int:
 
 @intrinsic
 def multiply(typingctx, out, start, factors, at, count):
-    """Multiply each lane by its factor: out[start + t] *= factors[at + t % LANES] for t below count LANES."""
+    """Multiply each lane by its factor: out[start + t] *= factors[at + t % LANES] for t below count
+    LANES.
+    """
     signature = types.void(out, types.intp, factors, types.intp, types.intp)
 
     def generate(context, builder, signature, given):
@@ -54,18 +61,24 @@ def multiply(typingctx, out, start, factors, at, count):
 
 @intrinsic
 def subtract_multiple(typingctx, out, start, source, first, factors, at, count):
-    """Subtract multiples: out[start + t] -= factors[at + t % LANES] * source[first + t] for t below count LANES."""
+    """Subtract multiples: out[start + t] -= factors[at + t % LANES] * source[first + t] for t below
+    count LANES.
+    """
     signature = types.void(out, types.intp, source, types.intp, factors, types.intp, types.intp)
 
     def generate(context, builder, signature, given):
-        target, origin, factor = (_vectors(context, builder, signature, given, number) for number in (0, 2, 4))
+        target, origin, factor = (
+            _vectors(context, builder, signature, given, number) for number in (0, 2, 4)
+        )
         multiplier = builder.load(factor(ir.Constant(given[1].type, 0)), align=_size(factors))
         with cgutils.for_range(builder, given[6]) as loop:
             where = target(loop.index)
             value = builder.load(origin(loop.index), align=_size(source))
             product = builder.fmul(multiplier, value, flags=("contract",))
-            rest = builder.fsub(builder.load(where, align=_size(out)), product, flags=("contract",))
-            builder.store(rest, where, align=_size(out))
+            remainder = builder.fsub(
+                builder.load(where, align=_size(out)), product, flags=("contract",)
+            )
+            builder.store(remainder, where, align=_size(out))
         return context.get_dummy_value()
 
     return signature, generate
@@ -73,31 +86,41 @@ def subtract_multiple(typingctx, out, start, source, first, factors, at, count):
 
 @intrinsic
 def bilinear(typingctx, fields, first, row, plane, s, t):
-    """Return two fields between four neighbours, at the shares s, t of the way to the next column and row.
+    """Return two fields between four neighbours, at the shares s, t of the way to the next column
+    and row.
 
-    `first` is the place of the first neighbour in `fields` (m,), `row` and `plane` are the distances to the next row
-    and to the second field; s, t are of the type of the fields. Both fields and two columns share a vector.
+    `first` is the place of the first neighbour in `fields` (m,), `row` and `plane` are the
+    distances to the next row and to the second field; s, t are of the type of the fields. Both
+    fields and two columns share a vector.
     """
     number = fields.dtype
-    signature = types.UniTuple(number, 2)(fields, types.intp, types.intp, types.intp, number, number)
+    signature = types.UniTuple(number, 2)(
+        fields, types.intp, types.intp, types.intp, number, number
+    )
 
     def generate(context, builder, signature, given):
         data = context.make_array(fields)(context, builder, given[0]).data
         scalar, index = context.get_value_type(number), ir.IntType(32)
 
         def picked(one, other, *places):
-            mask = ir.Constant(ir.VectorType(index, len(places)), [ir.Constant(index, place) for place in places])
+            mask = ir.Constant(
+                ir.VectorType(index, len(places)), [ir.Constant(index, place) for place in places]
+            )
             return builder.shuffle_vector(one, other, mask)
 
         def pair(place):
-            pointer = builder.bitcast(builder.gep(data, [place]), ir.VectorType(scalar, 2).as_pointer())
+            pointer = builder.bitcast(
+                builder.gep(data, [place]), ir.VectorType(scalar, 2).as_pointer()
+            )
             return builder.load(pointer, align=_size(fields))
 
         def four(place):
             return picked(pair(place), pair(builder.add(place, given[3])), 0, 1, 2, 3)
 
         def mixed(one, other, share):
-            spread = builder.insert_element(ir.Constant(one.type, ir.Undefined), share, ir.Constant(index, 0))
+            spread = builder.insert_element(
+                ir.Constant(one.type, ir.Undefined), share, ir.Constant(index, 0)
+            )
             spread = picked(spread, spread, *[0] * one.type.count)
             change = builder.fmul(spread, builder.fsub(other, one), flags=("contract",))
             return builder.fadd(one, change, flags=("contract",))

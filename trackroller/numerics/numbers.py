@@ -14,7 +14,9 @@ from trackroller.errors import InputError
 from trackroller.numerics.table_cells import plain_quantity
 from trackroller.numerics.units import in_unit, split_quantity
 
-_TEXT = re.compile(r"[-+]?(?:(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?|\.?(?:inf|Inf|INF)|infinity)", re.ASCII)
+_TEXT = re.compile(
+    r"[-+]?(?:(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?|\.?(?:inf|Inf|INF)|infinity)", re.ASCII
+)
 MAX_LENGTH = 400  # characters of a number
 
 
@@ -38,7 +40,8 @@ def read_number(value: Any) -> float:
     Raises
     ------
     ValueError
-        If the value is no number, such as true, `3_0`, digits of other scripts, `nan` and texts over 400 characters.
+        If the value is no number, such as true, `3_0`, digits of other scripts, `nan` and texts
+        over 400 characters.
     """
     if type(value) is float:
         return value
@@ -62,17 +65,22 @@ def read_number(value: Any) -> float:
         raise ValueError(str(exc)) from None
 
 
-def number_or_nan(value: Any, unit: str | None = None, field: str = "", difference: bool = False) -> float:
-    """Return a number as `read_number` does, or NaN for a value that is no number; all bounds refuse NaN.
+def number_or_nan(
+    value: Any, unit: str | None = None, field: str = "", difference: bool = False
+) -> float:
+    """Return a number as `read_number` does, or NaN for a value that is no number; all bounds
+    refuse NaN.
 
     Parameters
     ----------
     value : int, float or str
         What the user wrote.
     unit : str, optional
-        Unit of the number, '-' for none; a text may then have a unit that can be converted to it, such as '70 GPa'.
+        Unit of the number, '-' for none; a text may then have a unit that can be converted to it,
+        such as '70 GPa'.
     field : str
-        Name of the field, for messages on the unit and on numbers that no computer holds; without it these are NaN.
+        Name of the field, for messages on the unit and on numbers that no computer holds; without
+        it these are NaN.
     difference : bool
         Whether the number is the difference of two values, see `in_unit`.
 
@@ -110,7 +118,8 @@ def number_or_nan(value: Any, unit: str | None = None, field: str = "", differen
 
 
 def finite_number(value: Any, unit: str | None = None, field: str = "") -> float:
-    """Return a number as `number_or_nan` does, but NaN for an infinite one too; all bounds refuse NaN.
+    """Return a number as `number_or_nan` does, but NaN for an infinite one too; all bounds refuse
+    NaN.
 
     Examples
     --------
@@ -192,7 +201,9 @@ def read_array(values: Any, field: str, allowed: str) -> np.ndarray:
 
 
 def all_equal(values: np.ndarray) -> bool:
-    """Return whether all values (n,) of a column are equal; NaN, which stands for 'not given', equals NaN."""
+    """Return whether all values (n,) of a column are equal; NaN, which stands for 'not given',
+    equals NaN.
+    """
     same = values == values[:1]
     if values.dtype.kind == "f":
         same |= np.isnan(values) & np.isnan(values[:1])
@@ -212,14 +223,15 @@ def written(values: list[float]) -> list[float]:
     Parameters
     ----------
     values : list of float
-        Such as the levels of `numpy.linspace`, `numpy.arange` or `numpy.geomspace`, or a list that a person wrote.
+        Such as the levels of `numpy.linspace`, `numpy.arange` or `numpy.geomspace`, or a list that
+        a person wrote.
 
     Returns
     -------
     list of float
-        Values that differ from the given ones by rounding errors only, a few in the last digit. Evenly spaced values
-        follow exactly from the first, the last and their number; other values get 12 digits if the difference is a
-        rounding error.
+        Values that differ from the given ones by rounding errors only, a few in the last digit.
+        Evenly spaced values follow exactly from the first, the last and their number; other values
+        get 12 digits if the difference is a rounding error.
 
     Examples
     --------
@@ -228,7 +240,8 @@ def written(values: list[float]) -> list[float]:
     """
     n = len(values)
     if n > 2 and all(map(math.isfinite, values)):
-        # the error of a step, at most one unit in the last place of the largest value, counts in each step
+        # the error of a step, at most one unit in the last place of the largest value, counts in
+        # each step
         error = 2 * n * math.ulp(max(map(abs, values)))
         ends = [Fraction(repr(_written(end, error))) for end in (values[0], values[-1])]
         below = ends[0].denominator * ends[1].denominator * (n - 1)

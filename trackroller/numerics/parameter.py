@@ -29,8 +29,8 @@ class Parameter:
     lower, upper : float
         Bounds, which are allowed values themselves unless `open_lower` or `open_upper` is True.
     allow_infinite, allow_missing, nonzero : bool
-        Whether +-inf is allowed, whether the value may be left out (None or NaN), and whether 0 is refused, with all
-        numbers that are smaller than `SMALLEST`.
+        Whether +-inf is allowed, whether the value may be left out (None or NaN), and whether 0 is
+        refused, with all numbers that are smaller than `SMALLEST`.
     label : str
         Name for figures and reports, if it differs from `name`.
     words : tuple of str
@@ -38,7 +38,8 @@ class Parameter:
     role : str
         Who sets the value: the designer (`choice`) or the use of the roller (`condition`).
     afterwards : bool
-        Whether the value only converts forces and stresses, to hours for example, and changes none of them.
+        Whether the value only converts forces and stresses, to hours for example, and changes none
+        of them.
     """
 
     name: str
@@ -66,7 +67,14 @@ class Parameter:
     @property
     def units(self) -> str:
         """Return the unit as the CF conventions write it."""
-        written = {"deg": "degree", "-": "1", "m/min": "m min-1", "1/h": "h-1", "m/s": "m s-1", "m/s2": "m s-2"}
+        written = {
+            "deg": "degree",
+            "-": "1",
+            "m/min": "m min-1",
+            "1/h": "h-1",
+            "m/s": "m s-1",
+            "m/s2": "m s-2",
+        }
         written |= {"1/mm": "mm-1", "mm3/N": "mm3 N-1"}
         return written.get(self.unit, self.unit)
 
@@ -107,7 +115,9 @@ class Parameter:
             What the user wrote.
         """
         if math.isfinite(value) and self.accepts(-value):
-            return f"Write {-value:g}." + (f" The sign means: {self.meaning}." if "0 " in self.meaning else "")
+            return f"Write {-value:g}." + (
+                f" The sign means: {self.meaning}." if "0 " in self.meaning else ""
+            )
         if isinstance(written, str):
             if self.allow_infinite and nearest(written, ("straight",)):
                 return "Write inf for a straight one."
@@ -127,8 +137,11 @@ class Parameter:
         return f"Write a number that is allowed{example}{left_out}."
 
     def accepts(self, value: np.ndarray | float) -> Any:
-        """Return which values are allowed, elementwise, a bool array of the shape of `value`; a bool for a number."""
-        if isinstance(value, (float, int)):  # arrays of one number would take most of the time of a case's checks
+        """Return which values are allowed, elementwise, a bool array of the shape of `value`; a
+        bool for a number.
+        """
+        # arrays of one number would take most of the time of a case's checks
+        if isinstance(value, (float, int)):
             return self._allows(value, math.isnan(value), not math.isinf(value))
         v = np.asarray(value, dtype=float)
         return self._allows(v, np.isnan(v), ~np.isinf(v))

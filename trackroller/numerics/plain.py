@@ -1,4 +1,6 @@
-"""Turn values of notebooks, such as arrays, columns and data frames, into numbers, texts, lists and mappings."""
+"""Turn values of notebooks, such as arrays, columns and data frames, into numbers, texts, lists and
+mappings.
+"""
 
 from __future__ import annotations
 
@@ -37,8 +39,9 @@ def plain(value: Any, field: str = "value", level: int = 0) -> Any:
     Parameters
     ----------
     value : object
-        Scalars and arrays of NumPy, columns and data frames, `xarray.DataArray`, quantities of pint, `Decimal`,
-        `Fraction`, paths, ranges, lists and mappings. A column of a data frame is a list, and a row is a mapping.
+        Scalars and arrays of NumPy, columns and data frames, `xarray.DataArray`, quantities of
+        pint, `Decimal`, `Fraction`, paths, ranges, lists and mappings. A column of a data frame is
+        a list, and a row is a mapping.
     field : str
         Name of the field, for messages.
     level : int
@@ -47,15 +50,15 @@ def plain(value: Any, field: str = "value", level: int = 0) -> Any:
     Returns
     -------
     object
-        Numbers, texts, lists and dicts. A data frame is a list of its rows, each a dict. A number with a unit, of pint
-        or in the attribute `units` or `unit`, is a text such as '0.2 kN'. Other objects, such as sets, are returned as
-        they are: whoever reads the field refuses them.
+        Numbers, texts, lists and dicts. A data frame is a list of its rows, each a dict. A number
+        with a unit, of pint or in the attribute `units` or `unit`, is a text such as '0.2 kN'.
+        Other objects, such as sets, are returned as they are: whoever reads the field refuses them.
 
     Raises
     ------
     InputError
-        For an iterator, a text with control characters, masked values, a data frame with two columns of one name, and
-        lists that contain themselves.
+        For an iterator, a text with control characters, masked values, a data frame with two
+        columns of one name, and lists that contain themselves.
 
     Examples
     --------
@@ -67,7 +70,9 @@ def plain(value: Any, field: str = "value", level: int = 0) -> Any:
     if type(value) in _PLAIN:
         return value
     if level > MOST_LEVELS:
-        raise InputError(field, type(value).__name__, f"at most {MOST_LEVELS} lists or mappings in each other")
+        raise InputError(
+            field, type(value).__name__, f"at most {MOST_LEVELS} lists or mappings in each other"
+        )
     value = _row(value)
     if isinstance(value, Mapping):
         return _mapping(value, field, level + 1)
@@ -77,10 +82,19 @@ def plain(value: Any, field: str = "value", level: int = 0) -> Any:
         remedy = "Give the values that count, such as values.compressed()."
         raise InputError(field, str(value), "values that are not masked", remedy)
     if isinstance(value, Iterator):
-        raise InputError(field, type(value).__name__, "a list, which can be read twice", "Write list(...) around it.")
-    if isinstance(value, (Sequence, KeysView, ValuesView)) and not isinstance(value, (str, bytes, bytearray)):
+        raise InputError(
+            field,
+            type(value).__name__,
+            "a list, which can be read twice",
+            "Write list(...) around it.",
+        )
+    if isinstance(value, (Sequence, KeysView, ValuesView)) and not isinstance(
+        value, (str, bytes, bytearray)
+    ):
         return [plain(one, field, level + 1) for one in value]
-    of_arrays = (hasattr(value, "tolist") or hasattr(value, "dims")) and not hasattr(value, "magnitude")
+    of_arrays = (hasattr(value, "tolist") or hasattr(value, "dims")) and not hasattr(
+        value, "magnitude"
+    )
     other = _array(value) if of_arrays else _scalar(value)
     if type(other) is type(value) or other is value:
         return value
@@ -88,7 +102,9 @@ def plain(value: Any, field: str = "value", level: int = 0) -> Any:
 
 
 def _array(value: Any) -> Any:
-    """Return an array, a column or a scalar of NumPy as a list or a number; what cannot be one as it is."""
+    """Return an array, a column or a scalar of NumPy as a list or a number; what cannot be one as
+    it is.
+    """
     unit = ""
     if hasattr(value, "attrs"):
         unit = stated_unit(value.attrs)
@@ -113,7 +129,9 @@ def _with_unit(numbers: np.ndarray, unit: str) -> Any:
 
 
 def _scalar(value: Any) -> Any:
-    """Return a number of another library, a path or a text as Python's own; any other object as it is."""
+    """Return a number of another library, a path or a text as Python's own; any other object as it
+    is.
+    """
     if isinstance(value, os.PathLike):
         return os.fspath(value)
     if hasattr(value, "magnitude") and hasattr(value, "units"):  # pint
@@ -130,7 +148,8 @@ def _scalar(value: Any) -> Any:
 
 
 def rows_of(frame: Any, field: str) -> list[dict[Any, Any]]:
-    """Return the rows of a data frame, each as a mapping from the heads of its columns and of an index with a name.
+    """Return the rows of a data frame, each as a mapping from the heads of its columns and of an
+    index with a name.
 
     Raises
     ------
@@ -143,24 +162,35 @@ def rows_of(frame: Any, field: str) -> list[dict[Any, Any]]:
     several = next((head for head in heads if isinstance(head, tuple)), None)
     if several:
         allowed = "heads of columns that are texts"
-        raise InputError(field, str(several), allowed, "Write frame.columns = [...] with one text a column.")
+        raise InputError(
+            field, str(several), allowed, "Write frame.columns = [...] with one text a column."
+        )
     doubled = next((head for head in heads if heads.count(head) > 1), None)
     if doubled:
-        raise InputError(field, str(doubled), "each column once; it stands twice", "Rename or drop one of the two.")
+        raise InputError(
+            field,
+            str(doubled),
+            "each column once; it stands twice",
+            "Rename or drop one of the two.",
+        )
     if hasattr(frame, "to_dicts"):
         return frame.to_dicts()
     return frame.to_dict("records")
 
 
 def _row(value: Any) -> Any:
-    """Return a column of pandas whose labels are texts, such as a row of a data frame, as a dict."""
+    """Return a column of pandas whose labels are texts, such as a row of a data frame, as a
+    dict.
+    """
     column = hasattr(value, "to_dict") and hasattr(value, "index") and not hasattr(value, "columns")
     named = column and len(value) and all(isinstance(label, str) for label in value.index)
     return value.to_dict() if named else value
 
 
 def mapping_of(value: Any) -> Any:
-    """Return a mapping of plain values; a row of a data frame is one, too. Any other object is returned as it is."""
+    """Return a mapping of plain values; a row of a data frame is one, too. Any other object is
+    returned as it is.
+    """
     value = _row(value)
     if isinstance(value, Mapping):
         return plain(value, "")
@@ -168,7 +198,9 @@ def mapping_of(value: Any) -> Any:
 
 
 def how_to_write(value: Any) -> str:
-    """Return the call with which a value becomes one that is taken; an empty text if none is known."""
+    """Return the call with which a value becomes one that is taken; an empty text if none is
+    known.
+    """
     if isinstance(value, Set) and not isinstance(value, (KeysView, ValuesView)):
         return "Write sorted(...) around it: a set has no order."
     if isinstance(value, Mapping):

@@ -14,7 +14,9 @@ class Rows:
     """Row selection for data classes whose fields are arrays along one axis."""
 
     def take(self, index) -> Any:
-        """Return the entries `index` (integer or boolean array) of every field; a field that is None stays None."""
+        """Return the entries `index` (integer or boolean array) of every field; a field that is
+        None stays None.
+        """
         names = _names(type(self))  # type: ignore[arg-type]
         return type(self)(*[_part(getattr(self, name), index) for name in names])
 
@@ -33,7 +35,8 @@ def _part(value: Any, index: Any) -> Any:
 
 
 def distinct(objects: Iterable[Any]) -> tuple[list[Any], np.ndarray]:
-    """Return the different objects of a column of n, and the place of each row's object among them, (n,).
+    """Return the different objects of a column of n, and the place of each row's object among them,
+    (n,).
 
     Objects differ by identity: the same few fill a column of millions.
     """

@@ -1,4 +1,6 @@
-"""Cubic splines through fields of values at the centres of elements, and between any of their points."""
+"""Cubic splines through fields of values at the centres of elements, and between any of their
+points.
+"""
 
 from __future__ import annotations
 
@@ -14,9 +16,10 @@ from trackroller.numerics.compiled import assign, fast
 class Spline(NamedTuple):
     """Cubic spline through values at the centres of n elements, evaluated at m points.
 
-    `bands` (n, 5) are the factors L U of the matrix that turns coefficients of B-splines into values, from two places
-    before the diagonal to two behind it; the diagonal is inverted. At a point four B-splines are not 0: `first` (m,) is
-    the number of the first one, and `weights` (m, 4) are their values.
+    `bands` (n, 5) are the factors L U of the matrix that turns coefficients of B-splines into
+    values, from two places before the diagonal to two behind it; the diagonal is inverted. At a
+    point four B-splines are not 0: `first` (m,) is the number of the first one, and `weights` (m,
+    4) are their values.
     """
 
     bands: np.ndarray
@@ -26,11 +29,13 @@ class Spline(NamedTuple):
 
 @lru_cache(maxsize=64)
 def _through(n: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return the powers of the four B-splines between knots, (4, n - 3, 4), highest first, and the `bands` of a spline.
+    """Return the powers of the four B-splines between knots, (4, n - 3, 4), highest first, and the
+    `bands` of a spline.
 
     The knots are the centres but the second and the last but one (not-a-knot).
     """
-    from scipy.interpolate import BSpline, make_interp_spline  # at the top it would double the start-up
+    # at the top it would double the start-up
+    from scipy.interpolate import BSpline, make_interp_spline
 
     knots = make_interp_spline(np.arange(n), np.zeros(n), k=3).t
     every, four = BSpline(knots, np.eye(n), 3), np.arange(n - 3)[:, None] + np.arange(4)
@@ -50,7 +55,9 @@ def _through(n: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _weights(powers: np.ndarray, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the number of the first B-spline that is not 0 at points (m,), and the values of four, (m, 4)."""
+    """Return the number of the first B-spline that is not 0 at points (m,), and the values of four,
+    (m, 4).
+    """
     first = np.clip(np.floor(points).astype(np.int64) - 1, 0, powers.shape[1] - 1)
     past = (points - np.where(first > 0, first + 1, 0))[:, None]  # the last knot before the point
     cubic, square, linear, constant = powers[:, first]
@@ -58,7 +65,9 @@ def _weights(powers: np.ndarray, points: np.ndarray) -> tuple[np.ndarray, np.nda
 
 
 def spline_at(n: int, points: np.ndarray) -> Spline:
-    """Return the spline at `points` (m,), counted from the first centre on; it is constant beyond the outer centres."""
+    """Return the spline at `points` (m,), counted from the first centre on; it is constant beyond
+    the outer centres.
+    """
     powers, bands = _through(n)
     return Spline(bands, *_weights(powers, np.clip(points, 0.0, n - 1.0)))
 
@@ -70,7 +79,9 @@ def _spline(n: int, parts: float) -> Spline:
 
 
 def interpolated(field: np.ndarray, across: float, along: float) -> np.ndarray:
-    """Interpolate a field (..., ny, nx) by cubic splines, with `across` and `along` points a side of each element."""
+    """Interpolate a field (..., ny, nx) by cubic splines, with `across` and `along` points a side
+    of each element.
+    """
     ny, nx = field.shape[-2:]
     return by_splines(field, _spline(ny, along), _spline(nx, across))
 
@@ -78,7 +89,12 @@ def interpolated(field: np.ndarray, across: float, along: float) -> np.ndarray:
 def by_splines(field: np.ndarray, y: Spline, x: Spline) -> np.ndarray:
     """Interpolate a field (..., ny, nx) at the points of splines along both axes."""
     out = np.empty((*field.shape[:-2], y.first.size, x.first.size))
-    _interpolate(np.ascontiguousarray(field).reshape(-1, *field.shape[-2:]), y, x, out.reshape(-1, *out.shape[-2:]))
+    _interpolate(
+        np.ascontiguousarray(field).reshape(-1, *field.shape[-2:]),
+        y,
+        x,
+        out.reshape(-1, *out.shape[-2:]),
+    )
     return out
 
 
@@ -99,13 +115,18 @@ def _interpolate(fields, y, x, out):
         for i in range(out.shape[1]):
             t, w = y.first[i], y.weights[i]
             for j in range(out.shape[2]):
-                near, far = w[0] * wide[t, j] + w[1] * wide[t + 1, j], w[2] * wide[t + 2, j] + w[3] * wide[t + 3, j]
+                near, far = (
+                    w[0] * wide[t, j] + w[1] * wide[t + 1, j],
+                    w[2] * wide[t + 2, j] + w[3] * wide[t + 3, j],
+                )
                 out[k, i, j] = near + far
 
 
 @fast
 def _to_coefficients(values, bands):
-    """Turn the values (n, m) of m splines into coefficients of B-splines, in place; `bands` are those of `Spline`."""
+    """Turn the values (n, m) of m splines into coefficients of B-splines, in place; `bands` are
+    those of `Spline`.
+    """
     n, m = values.shape
     for i in range(n):
         for d in range(max(i - 2, 0), i):

@@ -1,8 +1,9 @@
-"""Read the cells of a table as a person reads them: minus, decimal and thousands signs, and the unit of a column.
+"""Read the cells of a table as a person reads them: minus, decimal and thousands signs, and the
+unit of a column.
 
-The cell `1.200` holds 1.2 where the decimal sign is a point, and 1200 where it is a comma. The other numbers of the
-file decide: `decimal_signs` collects the signs that certainly stand before decimals, and `plain` reads a cell with
-them. A cell that stays ambiguous is refused.
+The cell `1.200` holds 1.2 where the decimal sign is a point, and 1200 where it is a comma. The
+other numbers of the file decide: `decimal_signs` collects the signs that certainly stand before
+decimals, and `plain` reads a cell with them. A cell that stays ambiguous is refused.
 
 Examples
 --------
@@ -20,7 +21,8 @@ from typing import NamedTuple
 
 from trackroller.numerics.units import split_quantity
 
-DASHES = "\u2010\u2011\u2012\u2013\u2212\ufe63\uff0d"  # hyphens, dashes, minus signs of word processors
+# hyphens, dashes, minus signs of word processors
+DASHES = "\u2010\u2011\u2012\u2013\u2212\ufe63\uff0d"
 SEPARATORS = ";\t|,"  # between the cells of a line
 _MINUS = re.compile(f"(^|[eE])[{DASHES}]")
 _STATED = re.compile(r'"?sep=(.)"?[;,\t|]*', re.IGNORECASE)
@@ -43,7 +45,9 @@ class Stored(str):
 
 
 class Refused(str):
-    """The text of a cell that the program would read otherwise than a person, with what is allowed and a remedy."""
+    """The text of a cell that the program would read otherwise than a person, with what is allowed
+    and a remedy.
+    """
 
     def __new__(cls, text: str, allowed: str, remedy: str) -> Refused:
         """Return the cell with its message."""
@@ -55,7 +59,9 @@ class Refused(str):
 
 
 class AmbiguousNumber(ValueError):
-    """A number that two readers understand differently; the text says why, `remedy` what to write."""
+    """A number that two readers understand differently; the text says why, `remedy` what to
+    write.
+    """
 
     def __init__(self, why: str, remedy: str) -> None:
         super().__init__(why)
@@ -63,18 +69,22 @@ class AmbiguousNumber(ValueError):
 
 
 class _Parts(NamedTuple):
-    """The parts of a cell with a number: digits of the whole part, decimals, and what stands before and behind."""
+    """The parts of a cell with a number: digits of the whole part, decimals, and what stands before
+    and behind.
+    """
 
     sign: str
     whole: str
     decimals: str
     mark: str  # the sign before the decimals, or the only sign if it may also separate thousands
     certain: bool
-    rest: str  # exponent and unit
+    tail: str  # exponent and unit
 
 
 def stated_separator(line: str) -> str:
-    """Return the separator that a line such as `sep=;` states, which Excel understands; '' for another line."""
+    """Return the separator that a line such as `sep=;` states, which Excel understands; '' for
+    another line.
+    """
     stated = None
     if "=" in line:
         stated = _STATED.fullmatch(line)
@@ -108,7 +118,8 @@ def _shows(cell: str, sign: str) -> bool:
 
 
 def plain_cell(cell: str, signs: Collection[str]) -> str:
-    """Return a cell as the program writes numbers; a cell that holds no number is returned as it is.
+    """Return a cell as the program writes numbers; a cell that holds no number is returned as it
+    is.
 
     Parameters
     ----------
@@ -135,30 +146,34 @@ def plain_cell(cell: str, signs: Collection[str]) -> str:
     parts = _parts(text)
     if parts is None:
         return cell
-    sign, whole, decimals, mark, certain, rest = parts
-    if rest and split_quantity(f"1{rest}") is None and not re.fullmatch(r"e[-+]?\d+", rest):
+    sign, whole, decimals, mark, certain, tail = parts
+    if tail and split_quantity(f"1{tail}") is None and not re.fullmatch(r"e[-+]?\d+", tail):
         return cell
     if not certain:
         if len(signs) != 1:
             both = f"{whole}.{decimals} or {whole}{decimals}"
             why = f"a number that is clear: other cells do not tell whether this is {both}"
             clear = f"{sign}{whole}{mark}{decimals}0"
-            remedy = f"Write {sign}{whole}{decimals} or {clear}; one number such as {clear} decides for the whole file."
+            remedy = (
+                f"Write {sign}{whole}{decimals} or {clear}; one number such as {clear} "
+                "decides for the whole file."
+            )
             raise AmbiguousNumber(why, remedy)
         if mark not in signs:
             whole = whole + decimals
             decimals = ""
     number = f"{whole}.{decimals}" if decimals else whole
-    return f"{sign.strip('+')}{number}{rest}"
+    return f"{sign.strip('+')}{number}{tail}"
 
 
 def plain_quantity(text: str) -> str:
-    """Return a number with its unit as the program writes it; '' for a text that is none, or that is so already.
+    """Return a number with its unit as the program writes it; '' for a text that is none, or that
+    is so already.
 
     Examples
     --------
-    >>> plain_quantity("0,1"), plain_quantity("-1 200,5 N"), plain_quantity("−1.200,5"), plain_quantity("0.1")
-    ('0.1', '-1200.5 N', '-1200.5', '')
+    >>> [plain_quantity(text) for text in ("0,1", "-1 200,5 N", "−1.200,5", "0.1")]
+    ['0.1', '-1200.5 N', '-1200.5', '']
     """
     try:
         plain = plain_cell(text, decimal_signs([text]))
@@ -170,7 +185,8 @@ def plain_quantity(text: str) -> str:
 
 
 def plain_column(cells: Sequence[str], signs: Collection[str]) -> Sequence[str]:
-    """Return the cells of a column of numbers as `plain` does, but fast where all are plain numbers already.
+    """Return the cells of a column of numbers as `plain` does, but fast where all are plain numbers
+    already.
 
     Ambiguous cells become `Refused`.
     """
@@ -185,7 +201,9 @@ def plain_column(cells: Sequence[str], signs: Collection[str]) -> Sequence[str]:
 
 
 def _with_points(cells: Sequence[str]) -> Sequence[str]:
-    """Return numbers with decimal commas as numbers with points; () if some cells are not that plain."""
+    """Return numbers with decimal commas as numbers with points; () if some cells are not that
+    plain.
+    """
     text = "\n".join(cells)
     if "." in text or re.search(r",(?!\d)", text):
         return ()
@@ -196,7 +214,9 @@ def _with_points(cells: Sequence[str]) -> Sequence[str]:
 
 
 def _are_plain(cells: Sequence[str], signs: Collection[str]) -> bool:
-    """Return whether the numbers of a column are plain, which is seen at once; words are no numbers."""
+    """Return whether the numbers of a column are plain, which is seen at once; words are no
+    numbers.
+    """
     text = "\n".join(cells)
     points = "." not in text or set(signs) == {"."}
     return points and not _NO_NUMBERS.search(text) and not re.search(r"\.\d*\.", text)
@@ -217,11 +237,12 @@ def is_number(cell: str) -> bool:
         parts = None
     else:
         parts = _parts(_tidy(cell))
-    return parts is not None and re.fullmatch(r"(?:e[-+]?\d+)?", parts.rest) is not None
+    return parts is not None and re.fullmatch(r"(?:e[-+]?\d+)?", parts.tail) is not None
 
 
 def plain_labels(cells: Sequence[str], signs: Collection[str]) -> Sequence[str]:
-    """Return a column that may hold labels: as `Stored` numbers if each cell is written as its number is.
+    """Return a column that may hold labels: as `Stored` numbers if each cell is written as its
+    number is.
 
     Other columns are returned as they are: `00123`, `3E5`, `1.10` and ambiguous numbers are labels.
     """
@@ -245,7 +266,9 @@ def plain_labels(cells: Sequence[str], signs: Collection[str]) -> Sequence[str]:
 
 def _is_written_as(cell: str, number: str) -> bool:
     """Return whether a cell is written as its number is, but for the decimal sign."""
-    return not isinstance(number, Refused) and number == cell.replace(",", ".") and _reads_back(number)
+    return (
+        not isinstance(number, Refused) and number == cell.replace(",", ".") and _reads_back(number)
+    )
 
 
 def _reads_back(text: str) -> bool:
@@ -271,12 +294,15 @@ def split_head(head: str) -> tuple[str, str]:
     Returns
     -------
     tuple of str
-        What stands behind the name may be something else than a unit; whoever knows the column decides.
+        What stands behind the name may be something else than a unit; whoever knows the column
+        decides.
 
     Examples
     --------
-    >>> split_head("radial_force (kN)"), split_head("velocity / (m/min)"), split_head("friction_coefficient [-]")
-    (('radial_force', 'kN'), ('velocity', 'm/min'), ('friction_coefficient', '-'))
+    >>> split_head("radial_force (kN)"), split_head("velocity / (m/min)")
+    (('radial_force', 'kN'), ('velocity', 'm/min'))
+    >>> split_head("friction_coefficient [-]")
+    ('friction_coefficient', '-')
     """
     for pattern in _HEADS:
         parts = pattern.fullmatch(head.strip())
@@ -306,18 +332,19 @@ def _parts(text: str) -> _Parts | None:
         return None
     sign = parts[1]
     mantissa = parts[2].rstrip(" ")
-    rest = parts[3]
+    tail = parts[3]
     blank = " " if len(parts[2]) > len(mantissa) else ""
-    exponent = None if blank else _EXPONENT.match(rest)
-    if not exponent and not blank and ("." in mantissa or "," in mantissa):  # Fortran's 1.5D3; 5d3 is no number
-        exponent = re.match(r"[dD](\d+)()", rest, re.ASCII)
+    exponent = None if blank else _EXPONENT.match(tail)
+    # Fortran's 1.5D3; 5d3 is no number
+    if not exponent and not blank and ("." in mantissa or "," in mantissa):
+        exponent = re.match(r"[dD](\d+)()", tail, re.ASCII)
     if exponent:
-        rest = f"e{exponent[1] or exponent[2]}{rest[exponent.end() :]}"
-    elif re.match(r"[eE]?[-+]?\d|[-+.,'’]", rest):
+        tail = f"e{exponent[1] or exponent[2]}{tail[exponent.end() :]}"
+    elif re.match(r"[eE]?[-+]?\d|[-+.,'’]", tail):
         return None
-    rest = blank + rest
+    tail = blank + tail
     if mantissa.isdigit():
-        return _Parts(sign, mantissa, "", "", True, rest)
+        return _Parts(sign, mantissa, "", "", True, tail)
     grouped = _GROUPED.fullmatch(mantissa)
     if grouped:
         mark = grouped[1]
@@ -328,10 +355,10 @@ def _parts(text: str) -> _Parts | None:
             digits = mantissa[: grouped.start(2)]
         if mark in ".," and not decimal and digits.count(mark) == 1:  # thousands or three decimals
             whole, _, end = digits.partition(mark)
-            return _Parts(sign, whole, end, mark, bool(exponent), rest)
+            return _Parts(sign, whole, end, mark, bool(exponent), tail)
         other = {".": ",", ",": "."}.get(mark, "")
-        return _Parts(sign, digits.replace(mark, ""), decimals or "", decimal or other, True, rest)
+        return _Parts(sign, digits.replace(mark, ""), decimals or "", decimal or other, True, tail)
     single = _SINGLE.fullmatch(mantissa)
     if single is None or (single[2] == "," and not single[3]):
         return None
-    return _Parts(sign, single[1] or "0", single[3], single[2], True, rest)
+    return _Parts(sign, single[1] or "0", single[3], single[2], True, tail)

@@ -1,7 +1,8 @@
 """Share a compiled loop over rows among threads.
 
-Compiled functions release the interpreter lock, so plain threads use all cores. Compared with numba's parallel loops,
-this compiles several times faster, and it keeps all cores busy when rows differ in cost.
+Compiled functions release the interpreter lock, so plain threads use all cores. Compared with
+numba's parallel loops, this compiles several times faster, and it keeps all cores busy when rows
+differ in cost.
 """
 
 from __future__ import annotations
@@ -28,18 +29,29 @@ def limited_to(threads: int | None) -> Iterator[None]:
 
 
 def check_threads() -> None:
-    """Refuse a value of NUMBA_NUM_THREADS that is no whole number above 0; numba would end with a traceback."""
+    """Refuse a value of NUMBA_NUM_THREADS that is no whole number above 0; numba would end with a
+    traceback.
+    """
     given = os.environ.get("NUMBA_NUM_THREADS", "1")
     if not given.isdecimal() or int(given) < 1:
-        raise InputError("NUMBA_NUM_THREADS", given, "a whole number above 0", "Correct the environment variable.")
+        raise InputError(
+            "NUMBA_NUM_THREADS",
+            given,
+            "a whole number above 0",
+            "Correct the environment variable.",
+        )
 
 
 def thread_count() -> int:
-    """Return the number of threads: that of `limited_to`, NUMBA_NUM_THREADS if set, or the cores of the machine."""
+    """Return the number of threads: that of `limited_to`, NUMBA_NUM_THREADS if set, or the cores of
+    the machine.
+    """
     return _limit.get() or int(os.environ.get("NUMBA_NUM_THREADS", 0)) or os.cpu_count() or 1
 
 
-def share_rows(work: Callable[[int, int], object], rows: int, smallest: int, largest: int | None = None) -> None:
+def share_rows(
+    work: Callable[[int, int], object], rows: int, smallest: int, largest: int | None = None
+) -> None:
     """Call a function for pieces of all rows, on all threads.
 
     Parameters

@@ -1,4 +1,6 @@
-"""Convert a quantity that a user wrote with its unit, such as '70 GPa', to the unit of a parameter, with pint."""
+"""Convert a quantity that a user wrote with its unit, such as '70 GPa', to the unit of a parameter,
+with pint.
+"""
 
 from __future__ import annotations
 
@@ -11,31 +13,41 @@ from trackroller.errors import InputError
 
 _NUMBER = r"[-+]?(?:(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?|\.?inf)"
 _FACTOR = r"[A-Za-z°µμ%]{1,20}(?:\^?-?\d|[²³])?"
-_UNIT = rf"(?:1/)?{_FACTOR}(?:[ *·/()]{{1,3}}{_FACTOR}){{0,5}}\)?"  # no powers of numbers, which could fill the memory
+# no powers of numbers, which could fill the memory
+_UNIT = rf"(?:1/)?{_FACTOR}(?:[ *·/()]{{1,3}}{_FACTOR}){{0,5}}\)?"
 _QUANTITY = re.compile(rf"\s*({_NUMBER})\s*(?![eE][-+]?\d)({_UNIT})\s*", re.ASCII)
 
 PLAIN = ("-", "1", "")  # ways to write that a number has no unit
 _COMPARED = re.compile(
-    rf"([A-Za-z_]\w*)(\s*[<>=!]=?\s*)({_NUMBER})\s*(?![eE][-+]?\d)({_UNIT})(?=\s*(?:\)|\bor\b|\band\b|$))", re.ASCII
+    rf"([A-Za-z_]\w*)(\s*[<>=!]=?\s*)({_NUMBER})\s*(?![eE][-+]?\d)({_UNIT})(?=\s*(?:\)|\bor\b|\band\b|$))",
+    re.ASCII,
 )
 
 
 def split_quantity(value: Any) -> tuple[str, str] | None:
     """Return the number and the unit of a text such as '70 GPa', or None for anything else."""
-    value = re.sub(rf"^(\s*{_NUMBER})\s*/", r"\1 1/", value, flags=re.ASCII) if isinstance(value, str) else ""  # 10/min
+    # 10/min
+    value = (
+        re.sub(rf"^(\s*{_NUMBER})\s*/", r"\1 1/", value, flags=re.ASCII)
+        if isinstance(value, str)
+        else ""
+    )
     parts = _QUANTITY.fullmatch(value)
     return (parts[1], parts[2]) if parts else None
 
 
 def stated_unit(attributes: Mapping[Any, Any]) -> str:
-    """Return the unit that attributes of an array state as `units` or `unit`, in any case; '' for none."""
+    """Return the unit that attributes of an array state as `units` or `unit`, in any case; '' for
+    none.
+    """
     stated = {str(key).lower(): str(value).strip() for key, value in attributes.items()}
     unit = stated.get("units") or stated.get("unit", "")
     return "" if unit in PLAIN else unit
 
 
 def without_units(text: str, unit_of: Callable[[str], str | None], field: str) -> str:
-    """Return comparisons of names with quantities as comparisons with numbers in the units of the names.
+    """Return comparisons of names with quantities as comparisons with numbers in the units of the
+    names.
 
     Parameters
     ----------
@@ -59,7 +71,8 @@ def without_units(text: str, unit_of: Callable[[str], str | None], field: str) -
 
     def plain(comparison: re.Match[str]) -> str:
         name, sign, number, unit = comparison.groups()
-        closes = unit.endswith(")") and "(" not in unit  # the bracket is one of the comparison, not of the unit
+        # the bracket is one of the comparison, not of the unit
+        closes = unit.endswith(")") and "(" not in unit
         end = ")" if closes else ""
         unit = unit.removesuffix(end)
         target = unit_of(name)
@@ -74,9 +87,13 @@ def without_units(text: str, unit_of: Callable[[str], str | None], field: str) -
 
 
 def check_hours(given: Any, unit: str, target: str, field: str) -> None:
-    """Refuse hours of travel that are given in another unit of time: a year of a duty has fewer of them than a year."""
+    """Refuse hours of travel that are given in another unit of time: a year of a duty has fewer of
+    them than a year.
+    """
     if target == "h" and unit.strip() not in ("h", "hour", "hours", ""):
-        raise InputError(field, given, "hours of travel, h", "Multiply years by the hours of a year of the duty.")
+        raise InputError(
+            field, given, "hours of travel, h", "Multiply years by the hours of a year of the duty."
+        )
 
 
 def in_unit(number: float, unit: str, target: str, field: str, difference: bool = False) -> float:
@@ -91,7 +108,8 @@ def in_unit(number: float, unit: str, target: str, field: str, difference: bool 
     field : str
         Name of the field, for messages.
     difference : bool
-        Whether the number is the difference of two values, such as a standard deviation; it matters to temperatures.
+        Whether the number is the difference of two values, such as a standard deviation; it matters
+        to temperatures.
 
     Returns
     -------
@@ -134,13 +152,18 @@ def _factor_and_offset(unit: str, target: str, field: str) -> tuple[float, float
         if not re.fullmatch(_UNIT, unit.strip(), re.ASCII):
             raise ValueError(unit)
         spelt = _spelt(unit)
-        if spelt == "g" and _registry().Unit(_spelt(target)).dimensionality == _registry().Unit("m/s^2").dimensionality:
+        if (
+            spelt == "g"
+            and _registry().Unit(_spelt(target)).dimensionality
+            == _registry().Unit("m/s^2").dimensionality
+        ):
             spelt = "standard_gravity"  # of an acceleration; a mass keeps its gram
         zero, one = (_registry().Quantity(number, spelt) for number in (0.0, 1.0))
     except Exception:  # pint's parser raises a dozen kinds, also AssertionError
         raise InputError(field, unit, "a unit that is known", remedy) from None
     unit_of_target = _registry().Unit(_spelt(target))
-    # radians are no dimension to pint, but an angle is no friction coefficient and 600 rpm are not 600/min
+    # radians are no dimension to pint, but an angle is no friction coefficient and 600 rpm are not
+    # 600/min
     if one.to_base_units().units != _registry().Quantity(1.0, unit_of_target).to_base_units().units:
         kind = "no unit, because the value is a plain number"
         if target:

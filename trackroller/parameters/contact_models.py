@@ -1,9 +1,11 @@
-"""Declare the contact models: what each one can do, what it costs, and where its measured errors stand.
+"""Declare the contact models: what each one can do, what it costs, and where its measured errors
+stand.
 
-The option `contact_model` of `solve`, of study files and of the command line, the checks of other options, the expected
-cost of a study and the promised accuracy follow from these declarations. Those of the built-in models stand here,
-because help texts and plans need them without the classes, which load numba. A model from outside the package carries
-its declaration in its class, see `trackroller.contact.models.register`.
+The option `contact_model` of `solve`, of study files and of the command line, the checks of other
+options, the expected cost of a study and the promised accuracy follow from these declarations.
+Those of the built-in models stand here, because help texts and plans need them without the classes,
+which load numba. A model from outside the package carries its declaration in its class, see
+`trackroller.contact.models.register`.
 """
 
 from __future__ import annotations
@@ -20,14 +22,15 @@ from trackroller.errors import InputError
 
 LEVELS = ("preview", "standard", "reference")
 FILE = Path(__file__).with_name("costs.json")
-# Seconds of one core of a complete case in sliding at standard, on a quiet machine of two cores. The measured costs are
-# ratios to this case.
+# Seconds of one core of a complete case in sliding at standard, on a quiet machine of two cores.
+# The measured costs are ratios to this case.
 YARDSTICK = 1.9e-3
 
 
 @cache
 def _ratios() -> Any:
-    """Return the measured costs of forces and of peaks, by friction law, contact model and rung, and shares of rungs.
+    """Return the measured costs of forces and of peaks, by friction law, contact model and rung,
+    and shares of rungs.
 
     Each cost is a ratio to `YARDSTICK`.
     """
@@ -45,8 +48,8 @@ class Cost:
     peaks : tuple of float
         For the search of the peak stresses, in addition.
     shares : mapping
-        Measured shares of the cases that a tolerance solves on each rung: by quantity, `forces` or `peak`, and by
-        tolerance. Without them every case counts on every rung.
+        Measured shares of the cases that a tolerance solves on each rung: by quantity, `forces` or
+        `peak`, and by tolerance. Without them every case counts on every rung.
     """
 
     forces: tuple[float, float, float] = (1e-2, 1e-2, 1e-2)
@@ -68,27 +71,37 @@ class Cost:
     def at(self, accuracy: str | Mapping[str, float]) -> tuple[float, float]:
         """Return the seconds for forces and peaks on a rung, or within tolerances by quantity."""
         shares = self.shares_of(accuracy)
-        forces, peaks = (sum(map(math.prod, zip(shares, own, strict=True))) for own in (self.forces, self.peaks))
+        forces, peaks = (
+            sum(map(math.prod, zip(shares, own, strict=True))) for own in (self.forces, self.peaks)
+        )
         return forces, peaks
 
     def shares_of(self, accuracy: str | Mapping[str, float]) -> tuple[float, float, float]:
         """Return the expected shares of the cases that are solved on each rung.
 
-        A case is solved at `preview` if that may keep all of its tolerances, and on a finer rung if one tolerance needs
-        it.
+        A case is solved at `preview` if that may keep all of its tolerances, and on a finer rung if
+        one tolerance needs it.
         """
         if isinstance(accuracy, str):
             at = [float(level == accuracy) for level in LEVELS]
             return at[0], at[1], at[2]
-        known = [self._between(self.shares[name], number) for name, number in accuracy.items() if self.shares.get(name)]
+        known = [
+            self._between(self.shares[name], number)
+            for name, number in accuracy.items()
+            if self.shares.get(name)
+        ]
         if not known:
             return 1.0, 1.0, 1.0
         columns = [[own[k] for own in known] for k in range(len(LEVELS))]
         return min(columns[0]), max(columns[1]), max(columns[2])
 
     @staticmethod
-    def _between(shares: Mapping[float, tuple[float, float, float]], tolerance: float) -> list[float]:
-        """Return the shares at a tolerance, linear in its logarithm between the measured tolerances."""
+    def _between(
+        shares: Mapping[float, tuple[float, float, float]], tolerance: float
+    ) -> list[float]:
+        """Return the shares at a tolerance, linear in its logarithm between the measured
+        tolerances.
+        """
         known = sorted(shares)
         tolerance = min(max(tolerance, known[0]), known[-1])
         high = next(i for i, own in enumerate(known) if tolerance <= own)
@@ -96,7 +109,9 @@ class Cost:
         part = 1.0
         if high > low:
             part = math.log(tolerance / known[low]) / math.log(known[high] / known[low])
-        return [a + part * (b - a) for a, b in zip(shares[known[low]], shares[known[high]], strict=True)]
+        return [
+            a + part * (b - a) for a, b in zip(shares[known[low]], shares[known[high]], strict=True)
+        ]
 
 
 @dataclass(frozen=True)
@@ -110,8 +125,8 @@ class ModelDeclaration:
     meaning : str
         Explanation for documentation, schema and help.
     converged_up_to : float
-        Largest residual of a converged row: of the balance of the roller and, where elements solve for the balance, of
-        the friction law over mu p_max. Every accuracy has the same limit.
+        Largest residual of a converged row: of the balance of the roller and, where elements solve
+        for the balance, of the friction law over mu p_max. Every accuracy has the same limit.
     rank : int
         Place among the models by exactness; the largest is the reference of comparisons.
     options : tuple of str
@@ -127,11 +142,12 @@ class ModelDeclaration:
     remedy : str
         What to do where a word is refused.
     known_errors : bool
-        Whether the errors of the forces are known, so that a tolerance can be asked for: estimated case by case, stated
-        by the method `errors` of the class, or measured (`roller/expected_errors.json`).
+        Whether the errors of the forces are known, so that a tolerance can be asked for: estimated
+        case by case, stated by the method `errors` of the class, or measured
+        (`roller/expected_errors.json`).
     rough_peaks : bool
-        Whether the errors of the forces outweigh those of the search for the peak stress, so that a rung takes the
-        search and its elements from the next coarser rung.
+        Whether the errors of the forces outweigh those of the search for the peak stress, so that a
+        rung takes the search and its elements from the next coarser rung.
     cheaper : str
         Model that stands in for this one at accuracy preview.
     cost : Cost
@@ -139,7 +155,8 @@ class ModelDeclaration:
     falling : Cost, optional
         Measured cost where friction depends on the slip speed; by default `cost`.
     source : str
-        Digest of the source of a model from outside, which `register` adds for the identity of its cases.
+        Digest of the source of a model from outside, which `register` adds for the identity of its
+        cases.
     """
 
     name: str
@@ -167,21 +184,25 @@ class ModelDeclaration:
             allowed = self.slip_terms
         if value not in allowed:
             words = ", ".join(allowed) or "no word"
-            raise InputError(option, value, f"{words} only, with contact_model: {self.name}", self.remedy)
+            raise InputError(
+                option, value, f"{words} only, with contact_model: {self.name}", self.remedy
+            )
 
 
 # The costs of the built-in models are measured on random designs, see `validation.tradeoff`.
 _BUILT_IN = (
     ModelDeclaration(
         "sliding",
-        "Coulomb friction at every point against the local creepage, as published; no adhesion area",
+        "Coulomb friction at every point against the local creepage, as published; no adhesion "
+        "area",
         converged_up_to=1e-10,
         rank=1,
         options=("spin_model",),
         normals=("hertz", "halfspace"),
         slip_terms=("profile",),
         friction_laws=True,
-        remedy="Take contact_model: kalker, or leave 'curve' out: in full sliding it changes no force, it only "
+        remedy="Take contact_model: kalker, or leave 'curve' out: in full sliding it changes no "
+        "force, it only "
         "lengthens slip and friction work.",
         known_errors=True,
         cost=Cost.measured("sliding"),
@@ -204,7 +225,8 @@ _BUILT_IN = (
     ),
     ModelDeclaration(
         "kalker_table",
-        "table of solutions of the exact theory; the exact theory outside its range and beside a nearly lifted contact",
+        "table of solutions of the exact theory; the exact theory outside its range and beside a "
+        "nearly lifted contact",
         converged_up_to=1e-4,
         rank=2,
         options=("slip_terms",),
@@ -224,7 +246,9 @@ EXACTNESS: list[str] = []  # the most exact model first
 
 
 def declare(model: ModelDeclaration) -> None:
-    """Add a contact model to the option `contact_model`; its number in results is the next free one."""
+    """Add a contact model to the option `contact_model`; its number in results is the next free
+    one.
+    """
     if model.name in DECLARED:
         raise InputError("contact_model", model.name, "a name that no other contact model has")
     DECLARED[model.name] = model

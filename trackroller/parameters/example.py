@@ -20,7 +20,8 @@ class DefaultName(str):
 EXAMPLE: dict[str, Any] = {
     name: Default(p.default) for name, p in PARAMETERS.items() if not math.isnan(p.default)
 } | dict.fromkeys(("roller_material", "guide_material"), DefaultName("1.7225-normalised"))
-# A free roller that lives long, with which the live page and the README begin; the paper's lives for hours.
+# A free roller that lives long, with which the live page and the README begin; the paper's lives
+# for hours.
 LASTING: dict[str, Any] = {
     "motor_force": 0.0,
     "friction_coefficient": 0.1,
@@ -32,7 +33,8 @@ _PAIR = ("material_pair", "roller_material", "guide_material")
 
 
 def not_given(named: Iterable[str]) -> dict[str, Any]:
-    """Return the values that are used for the parameters that a file does not name, as plain numbers and names.
+    """Return the values that are used for the parameters that a file does not name, as plain
+    numbers and names.
 
     Parameters
     ----------
@@ -54,7 +56,8 @@ def not_given(named: Iterable[str]) -> dict[str, Any]:
 
 
 def used_of(values: Mapping[str, Any], names: Iterable[str]) -> dict[str, Any]:
-    """Return the values of parameters that were not given, without the radius that a drawn profile replaces.
+    """Return the values of parameters that were not given, without the radius that a drawn profile
+    replaces.
 
     Parameters
     ----------
@@ -87,9 +90,18 @@ def with_unit(name: str, value: Any) -> str:
 
 
 def not_given_text(values: Mapping[str, Any]) -> str:
-    """Return what was not given as one sentence, '' if every parameter was given; see `not_given`."""
+    """Return what was not given as one sentence, '' if every parameter was given; see
+    `not_given`.
+    """
     parts = [
-        (head, ", ".join(with_unit(name, value) for name, value in values.items() if (name in OF_LIMITS) is other))
+        (
+            head,
+            ", ".join(
+                with_unit(name, value)
+                for name, value in values.items()
+                if (name in OF_LIMITS) is other
+            ),
+        )
         for head, other in (("taken from the paper's example", False), ("default", True))
     ]
     notes = "; ".join(f"{head}: {text}" for head, text in parts if text)
@@ -97,7 +109,8 @@ def not_given_text(values: Mapping[str, Any]) -> str:
 
 
 def drive_question(values: Mapping[str, Any], named: Iterable[str]) -> str:
-    """Return a question about the drive for a file that names other parameters but no drive, otherwise ''.
+    """Return a question about the drive for a file that names other parameters but no drive,
+    otherwise ''.
 
     Parameters
     ----------
@@ -109,6 +122,8 @@ def drive_question(values: Mapping[str, Any], named: Iterable[str]) -> str:
     if "motor_force" not in values or not set(named):
         return ""
     return (
-        f"Is the roller driven? motor_force is not given, so {values['motor_force']:g} N is used, as in the paper's "
-        "example: write motor_force: 0 for a free roller, a number < 0 for a driven one and > 0 for a braked one."
+        f"Is the roller driven? motor_force is not given, so {values['motor_force']:g} N is used, "
+        "as in the paper's "
+        "example: write motor_force: 0 for a free roller, a number < 0 for a driven one and > 0 "
+        "for a braked one."
     )

@@ -1,13 +1,14 @@
 """Arithmetic and comparisons over named columns, evaluated without `eval`.
 
-Study files use these texts for derived factors (``-ratio * guide_profile_radius``), for the constraints of a
-Pareto set (``max_pressure[1] < 1500 and regime != full_slip``) and for `stop_if` (``peak_stress > R_m``).
-Python parses the text to a syntax tree. Only the nodes listed here are evaluated, on whole columns at once.
-An `InputError` names any other node with its position.
+Study files use these texts for derived factors (``-ratio * guide_profile_radius``), for the
+constraints of a Pareto set (``max_pressure[1] < 1500 and regime != full_slip``) and for `stop_if`
+(``peak_stress > R_m``). Python parses the text to a syntax tree. Only the nodes listed here are
+evaluated, on whole columns at once. An `InputError` names any other node with its position.
 
-NaN stands for a value that is not known, and whatever needs it is not known either: a function or an operation on
-NaN gives NaN, a comparison with NaN is undecided, and so are `and`, `or` and `not` of something undecided. As a number
-an undecided comparison is NaN; ``where`` of it is NaN; as a condition it does not hold.
+NaN stands for a value that is not known, and whatever needs it is not known either: a function or
+an operation on NaN gives NaN, a comparison with NaN is undecided, and so are `and`, `or` and `not`
+of something undecided. As a number an undecided comparison is NaN; ``where`` of it is NaN; as a
+condition it does not hold.
 """
 
 from __future__ import annotations
@@ -60,7 +61,11 @@ _COMPARE: dict[type, tuple[str, Any]] = {
     ast.Eq: ("==", np.equal),
     ast.NotEq: ("!=", np.not_equal),
 }
-_REMEDY = "Use numbers, names, + - * / % **, comparisons, and, or, not and the functions " + ", ".join(FUNCTIONS) + "."
+_REMEDY = (
+    "Use numbers, names, + - * / % **, comparisons, and, or, not and the functions "
+    + ", ".join(FUNCTIONS)
+    + "."
+)
 
 
 @dataclass(frozen=True)
@@ -72,7 +77,9 @@ class _Truth:
 
     @property
     def number(self) -> np.ndarray:
-        """Return 1 where the comparison holds, 0 where it does not, and NaN where it is undecided."""
+        """Return 1 where the comparison holds, 0 where it does not, and NaN where it is
+        undecided.
+        """
         return np.where(self.known, self.holds, np.nan)
 
 
@@ -138,7 +145,8 @@ def evaluate(text: str, values: Mapping[str, Any], field: str = "expression") ->
     Returns
     -------
     numpy.ndarray of float, shape (n,) or ()
-        Value of the expression; a single number if all values are numbers. NaN where a value that it needs is NaN.
+        Value of the expression; a single number if all values are numbers. NaN where a value that
+        it needs is NaN.
 
     Raises
     ------
@@ -173,7 +181,8 @@ def condition(text: str, values: Mapping[str, Any], field: str = "constraints") 
     Returns
     -------
     numpy.ndarray of bool
-        True where the condition holds; False where a value that it compares is NaN, also for ``!=`` and `not`.
+        True where the condition holds; False where a value that it compares is NaN, also for ``!=``
+        and `not`.
 
     Raises
     ------
@@ -213,27 +222,40 @@ def comparisons(text: str, field: str) -> tuple[Comparison, ...]:
         parts = [tree]
     compared = []
     for part in parts:
-        if not isinstance(part, ast.Compare) or len(part.ops) != 1 or type(part.ops[0]) not in _COMPARE:
+        if (
+            not isinstance(part, ast.Compare)
+            or len(part.ops) != 1
+            or type(part.ops[0]) not in _COMPARE
+        ):
             allowed = "comparisons (> >= < <= == !=) joined by 'or'"
-            raise InputError(field, text, allowed, "For example: slip > 0.1 or max_pressure > 1500.")
+            raise InputError(
+                field, text, allowed, "For example: slip > 0.1 or max_pressure > 1500."
+            )
         value = ast.unparse(part.left)
-        compared.append(Comparison(value, _COMPARE[type(part.ops[0])][0], ast.unparse(part.comparators[0])))
+        compared.append(
+            Comparison(value, _COMPARE[type(part.ops[0])][0], ast.unparse(part.comparators[0]))
+        )
     return tuple(compared)
 
 
 def _parse(text: str, field: str) -> ast.expr:
     if not isinstance(text, str) or not text.strip():
-        raise InputError(field, text, "a text with an expression or a comparison", "For example: 2 * slip > 0.1.")
+        raise InputError(
+            field, text, "a text with an expression or a comparison", "For example: 2 * slip > 0.1."
+        )
     return _tree(text, field)
 
 
 @lru_cache(maxsize=256)
 def _tree(text: str, field: str) -> ast.expr:
     if len(text) > MAX_LENGTH:
-        raise InputError(field, text[:40] + "...", f"an expression of at most {MAX_LENGTH} characters")
+        raise InputError(
+            field, text[:40] + "...", f"an expression of at most {MAX_LENGTH} characters"
+        )
     try:
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore", SyntaxWarning)  # about nodes that are refused anyway, such as 2(x)
+            # about nodes that are refused anyway, such as 2(x)
+            warnings.simplefilter("ignore", SyntaxWarning)
             tree = ast.parse(text.strip(), mode="eval").body
         check_tree(tree, text, field)
         return tree
@@ -247,7 +269,9 @@ def _tree(text: str, field: str) -> ast.expr:
         wrong = f"has a syntax error at character {max(exc.offset or 1, 1)}"
         raise InputError(field, text, "", syntax_remedy(text) or _REMEDY, wrong) from None
     except (RecursionError, MemoryError, ValueError):
-        raise InputError(field, text, "", _REMEDY, "has too deep brackets, or is not a text") from None
+        raise InputError(
+            field, text, "", _REMEDY, "has too deep brackets, or is not a text"
+        ) from None
 
 
 def _names(node: ast.AST) -> set[str]:
@@ -265,7 +289,9 @@ def _number(value: Any) -> np.ndarray | None:
     if isinstance(value, _Truth):
         return value.number
     array = np.asarray(value)
-    if array.dtype.kind in "SU" or (array.dtype.kind == "O" and any(isinstance(one, str) for one in array.flat)):
+    if array.dtype.kind in "SU" or (
+        array.dtype.kind == "O" and any(isinstance(one, str) for one in array.flat)
+    ):
         return None
     try:
         return array.astype(float)  # None in a column stands for a value that is not given
@@ -292,7 +318,9 @@ def _truth(value: Any) -> _Truth | None:
 
 @dataclass(frozen=True)
 class _Evaluation:
-    """Values of the nodes of one expression: numbers, texts, columns of them, and comparisons as `_Truth`."""
+    """Values of the nodes of one expression: numbers, texts, columns of them, and comparisons as
+    `_Truth`.
+    """
 
     text: str
     field: str
@@ -336,7 +364,9 @@ class _Evaluation:
         written = ast.get_source_segment(self.text.strip(), node) or ""
         if math.isinf(number) or (number == 0 and re.search("[1-9]", re.split("[eE]", written)[0])):
             if number:
-                raise self.refused(node, "a number too large for the computer", "Write inf for infinity.")
+                raise self.refused(
+                    node, "a number too large for the computer", "Write inf for infinity."
+                )
             raise self.refused(node, "a number too small for the computer", "")
         return number
 
@@ -350,9 +380,13 @@ class _Evaluation:
                 if isinstance(op, ast.And):
                     join = np.logical_and
                 return self.joined(join, [self.truth(part) for part in parts])
-            case ast.Compare(left=left, ops=ops, comparators=further) if all(type(op) in _COMPARE for op in ops):
+            case ast.Compare(left=left, ops=ops, comparators=further) if all(
+                type(op) in _COMPARE for op in ops
+            ):
                 sides = [self.value(part) for part in (left, *further)]
-                truths = [self.compared(*part, node) for part in zip(ops, sides, sides[1:], strict=False)]
+                truths = [
+                    self.compared(*part, node) for part in zip(ops, sides, sides[1:], strict=False)
+                ]
                 return self.joined(np.logical_and, truths)  # a part of constants has another shape
             case ast.Call():
                 error = unknown_function(node, FUNCTIONS, self.field)
@@ -369,7 +403,9 @@ class _Evaluation:
         for known in (self.values, CONSTANTS):
             if node.id in known:
                 return known[node.id]
-        raise unknown_name(f"{self.field} (character {node.col_offset + 1})", node.id, list(self.values))
+        raise unknown_name(
+            f"{self.field} (character {node.col_offset + 1})", node.id, list(self.values)
+        )
 
     def applied(self, function: Any, parts: list[ast.expr], node: ast.AST) -> np.ndarray:
         """Return a function of numbers, NaN wherever an argument is NaN, as in nan ** 0."""
@@ -382,7 +418,9 @@ class _Evaluation:
         return np.where(reduce(np.logical_or, [np.isnan(one) for one in numbers]), np.nan, result)
 
     def chosen(self, parts: list[ast.expr], node: ast.AST) -> np.ndarray:
-        """Return ``where(condition, one, other)``: numbers, NaN where the condition is undecided, or texts."""
+        """Return ``where(condition, one, other)``: numbers, NaN where the condition is undecided,
+        or texts.
+        """
         decider, *both = (self.value(part) for part in parts)
         truth = _truth(decider)
         numbers, texts = _parted(both)
@@ -413,7 +451,9 @@ class _Evaluation:
             known = ~np.isnan(one) & ~np.isnan(other)
         else:
             one, other = (np.asarray(text, dtype=object) for text in texts)
-            known = np.asarray(one != np.array(None), dtype=bool) & np.asarray(other != np.array(None), dtype=bool)
+            known = np.asarray(one != np.array(None), dtype=bool) & np.asarray(
+                other != np.array(None), dtype=bool
+            )
         return _Truth(np.asarray(compare(one, other), dtype=bool), np.asarray(known))
 
     def truth(self, node: ast.AST) -> _Truth:
@@ -424,12 +464,17 @@ class _Evaluation:
 
     def with_text(self, node: ast.AST, value: Any) -> InputError:
         """Return the error for arithmetic with a text; it names the text."""
-        word = next((one for one in np.asarray(value, dtype=object).flat if isinstance(one, str)), None)
+        word = next(
+            (one for one in np.asarray(value, dtype=object).flat if isinstance(one, str)), None
+        )
         if word is None:
             return self.refused(node, "arithmetic with a text")
         remedy = ""
         if split_quantity(word):
-            remedy = "Only parameters take units: write the numbers of a factor of your own without them."
+            remedy = (
+                "Only parameters take units: write the numbers of a factor of your own "
+                "without them."
+            )
         return self.refused(node, f"arithmetic with a text ('{word}')", remedy)
 
     def refused(self, node: ast.AST, element: str, remedy: str = "") -> InputError:

@@ -1,4 +1,6 @@
-"""Declare the numbers that describe a case, in the units that a user writes: degrees, m/min and hours."""
+"""Declare the numbers that describe a case, in the units that a user writes: degrees, m/min and
+hours.
+"""
 
 from __future__ import annotations
 
@@ -9,14 +11,24 @@ from trackroller.damage import LIMITS, verdict, with_limits
 from trackroller.numerics.parameter import Parameter
 
 POSITIVE: dict[str, Any] = {"lower": 0.0, "open_lower": True}
-# Bounds far outside of what is built. Beyond them the digits of a double do not carry the balance of forces.
+# Bounds far outside of what is built. Beyond them the digits of a double do not carry the balance
+# of forces.
 _LENGTH: dict[str, Any] = {"lower": 1e-6, "upper": 1e8}
 _RATE: dict[str, Any] = {"lower": 1e-9, "upper": 1e9}
 _FORCE: dict[str, Any] = {"lower": -1e12, "upper": 1e12}
 _USE: dict[str, Any] = {"role": "condition"}
 _ALL = (
-    Parameter("axis_distance", "A_T", "mm", 21.75, "roller axis to the centre of the guide contour", **_LENGTH),
-    Parameter("guide_profile_radius", "r_C,G", "mm", 6.0, "radius of the convex guide contour", **_LENGTH),
+    Parameter(
+        "axis_distance",
+        "A_T",
+        "mm",
+        21.75,
+        "roller axis to the centre of the guide contour",
+        **_LENGTH,
+    ),
+    Parameter(
+        "guide_profile_radius", "r_C,G", "mm", 6.0, "radius of the convex guide contour", **_LENGTH
+    ),
     Parameter(
         "roller_profile_radius",
         "r_C,TR",
@@ -31,7 +43,8 @@ _ALL = (
         "r_Curve",
         "mm",
         220.0,
-        "curvature of the track: inf straight, > 0 convex towards the roller (outer wheel), < 0 concave (inner wheel)",
+        "curvature of the track: inf straight, > 0 convex towards the roller (outer wheel), < 0 "
+        "concave (inner wheel)",
         allow_infinite=True,
         nonzero=True,
         **_USE,
@@ -58,13 +71,22 @@ _ALL = (
         **_USE,
     ),
     Parameter("axial_force", "F_ax", "N", 30.0, "along +x_R", **_FORCE, **_USE),
-    Parameter("motor_force", "F_Motor", "N", -30.0, "< 0 driving, 0 free rolling, > 0 braking", **_FORCE, **_USE),
+    Parameter(
+        "motor_force",
+        "F_Motor",
+        "N",
+        -30.0,
+        "< 0 driving, 0 free rolling, > 0 braking",
+        **_FORCE,
+        **_USE,
+    ),
     Parameter(
         "friction_coefficient",
         "mu",
         "-",
         0.3,
-        "Coulomb coefficient of both contacts, at rest; null: from the friction database; left out beside a "
+        "Coulomb coefficient of both contacts, at rest; null: from the friction database; left "
+        "out beside a "
         "friction_law of kind table: the first of the table",
         0.0,
         2.0,
@@ -110,6 +132,9 @@ _ALL = (
 
 # They change lives and utilisations; forces and stresses do not depend on them.
 OF_LIMITS: dict[str, Parameter] = {
-    own.name: own for own in (*(own for limit in LIMITS.values() for own in limit.parameters), verdict.POSITION)
+    own.name: own
+    for own in (*(own for limit in LIMITS.values() for own in limit.parameters), verdict.POSITION)
 }
-PARAMETERS: dict[str, Parameter] = with_limits({p.name: p for p in _ALL}, OF_LIMITS.values(), "a parameter")
+PARAMETERS: dict[str, Parameter] = with_limits(
+    {p.name: p for p in _ALL}, OF_LIMITS.values(), "a parameter"
+)

@@ -29,18 +29,22 @@ class Option:
     values : dict of str
         Allowed words with their meanings; empty for numbers, conditions and switches.
     kind : str
-        "word" (one of `values`), "words" (several of them), "number" (within `bounds`), "accuracy" (a word, such a
-        number, or numbers by quantity), "condition" (see `trackroller.roller.stop`) or "switch" (true or false).
+        "word" (one of `values`), "words" (several of them), "number" (within `bounds`), "accuracy"
+        (a word, such a number, or numbers by quantity), "condition" (see `trackroller.roller.stop`)
+        or "switch" (true or false).
     bounds : tuple of float
         Numbers between which a number must lie; the bounds themselves are not allowed.
     by_model : bool
-        Whether only those contact models take the option that declare it, see `contact_models.ModelDeclaration`.
+        Whether only those contact models take the option that declare it, see
+        `contact_models.ModelDeclaration`.
     required : bool
         Whether at least one word has to be given (kind "words").
     factor : bool
-        Whether a study file may give a list of values, which makes the option a factor of the study.
+        Whether a study file may give a list of values, which makes the option a factor of the
+        study.
     identity : bool
-        Whether the option is part of a case's identity, where it applies. False if it cannot change a number.
+        Whether the option is part of a case's identity, where it applies. False if it cannot change
+        a number.
     recorded : bool
         Whether a result names the option among its attributes.
     files : tuple of str
@@ -63,7 +67,9 @@ class Option:
     @property
     def models(self) -> tuple[str, ...]:
         """Return the contact models to which the option applies; empty for all of them."""
-        return tuple(name for name, model in DECLARED.items() if self.by_model and self.name in model.options)
+        return tuple(
+            name for name, model in DECLARED.items() if self.by_model and self.name in model.options
+        )
 
     def applies(self, contact_model: str) -> bool:
         """Return whether the option has a meaning for a contact model."""
@@ -75,8 +81,10 @@ class Option:
         number = f"in ({self.bounds[0]:g}, {self.bounds[1]:g})"
         return {
             "word": f"one of {words}",
-            "words": f"a list of {words}" + (", at least one" if self.required else ", which may be empty"),
-            "accuracy": f"one of {words} or a relative tolerance {number}, also by quantity: {', '.join(QUANTITIES)}",
+            "words": f"a list of {words}"
+            + (", at least one" if self.required else ", which may be empty"),
+            "accuracy": f"one of {words} or a relative tolerance {number}, also by quantity: "
+            f"{', '.join(QUANTITIES)}",
             "number": f"a number {number}",
             "condition": "a condition such as peak_stress > R_m",
             "switch": "true or false",
@@ -100,7 +108,11 @@ class Option:
         where = where or self.name
         if self.kind == "words":
             return self._words(value, where)
-        if self.kind in ("accuracy", "number") and isinstance(value, str) and value not in self.values:
+        if (
+            self.kind in ("accuracy", "number")
+            and isinstance(value, str)
+            and value not in self.values
+        ):
             from trackroller.numerics.numbers import number_or_nan  # noqa: PLC0415 - numpy, which --help does not need
 
             number = number_or_nan(value, "-", where)  # a text such as 10 %
@@ -119,8 +131,12 @@ class Option:
         return value
 
     def _words(self, value: Any, where: str) -> tuple[str, ...]:
-        """Return a list of words; those of an option that may be empty are put in the order of its declaration."""
-        if not isinstance(value, (str, list, tuple, set, frozenset)) or (self.required and not value):
+        """Return a list of words; those of an option that may be empty are put in the order of its
+        declaration.
+        """
+        if not isinstance(value, (str, list, tuple, set, frozenset)) or (
+            self.required and not value
+        ):
             raise InputError(where, value, self.allowed())
         listed = value
         if isinstance(value, str):
@@ -148,8 +164,12 @@ class Option:
             if name not in QUANTITIES:
                 raise unknown_name(f"{where}.{name}", str(name), QUANTITIES)
             if isinstance(number, (str, Mapping)):
-                raise InputError(f"{where}.{name}", number, "a number in ({:g}, {:g})".format(*self.bounds))
-        return {name: self.check(value[name], f"{where}.{name}") for name in QUANTITIES if name in value}
+                raise InputError(
+                    f"{where}.{name}", number, "a number in ({:g}, {:g})".format(*self.bounds)
+                )
+        return {
+            name: self.check(value[name], f"{where}.{name}") for name in QUANTITIES if name in value
+        }
 
     def _word(self, value: Any, where: str) -> str:
         if not isinstance(value, str) or value not in self.values:
@@ -165,7 +185,9 @@ class Option:
         return value
 
     def attribute(self, value: Any, contact_model: str) -> Any:
-        """Return the value as an attribute of a result, or None where there is nothing to record."""
+        """Return the value as an attribute of a result, or None where there is nothing to
+        record.
+        """
         if not self.recorded:
             return None
         if self.kind == "words":
@@ -225,7 +247,8 @@ _OPTIONS = (
     Option(
         "accuracy",
         "standard",
-        "discretisation: one of three rungs, or a relative tolerance, met case by case on the first rung that keeps it",
+        "discretisation: one of three rungs, or a relative tolerance, met case by case on the "
+        "first rung that keeps it",
         {
             "preview": "for a first look",
             "standard": "for studies",
@@ -243,14 +266,18 @@ _OPTIONS = (
         "stress_bodies",
         "both",
         "bodies whose stresses are computed",
-        {"both": "each body with its own Poisson's ratio", "published": "one body with the mean Poisson's ratio"},
+        {
+            "both": "each body with its own Poisson's ratio",
+            "published": "one body with the mean Poisson's ratio",
+        },
     ),
     Option(
         "life_rule",
         "elementary",
         "S-N curve below the fatigue limit",
         {
-            "elementary": "the curve runs on (Miner elementary), with its second exponent if the material gives one",
+            "elementary": "the curve runs on (Miner elementary), with its second exponent if the "
+            "material gives one",
             "haibach": "slope 2k - 1 (Haibach), or the second exponent if the material gives one",
             "unlimited": "no failure (Miner original)",
         },
@@ -262,7 +289,8 @@ _OPTIONS = (
         {
             "von_mises_peak": "the largest von Mises stress (as published)",
             "von_mises_amplitude": "half the longest chord of the path in the deviatoric space",
-            "goodman": "von Mises amplitude of the path, corrected for its mean by Goodman's line to R_m",
+            "goodman": "von Mises amplitude of the path, corrected for its mean by Goodman's line "
+            "to R_m",
             "findley": "Findley's stress, as a share of its limit",
             "dang_van": "Dang Van's stress, as a share of its limit",
         },
@@ -279,7 +307,8 @@ _OPTIONS = (
         "how friction wears a surface",
         {
             "archard": "depth by pressure times slip (wear_coefficient of the pair)",
-            "energy": "loss of mass by frictional work (wear_table of the case, density of the material)",
+            "energy": "loss of mass by frictional work (wear_table of the case, density of the "
+            "material)",
         },
     ),
     Option(
@@ -299,7 +328,10 @@ _OPTIONS = (
         "normal",
         "hertz",
         "how patch and pressure are found",
-        {"hertz": "Hertzian", "halfspace": "non-Hertzian, by boundary elements; needed for drawn profiles"},
+        {
+            "hertz": "Hertzian",
+            "halfspace": "non-Hertzian, by boundary elements; needed for drawn profiles",
+        },
         factor=True,
     ),
     Option(
@@ -343,7 +375,11 @@ def options_text() -> str:
     """Return the options with their values and defaults, for the help of a command."""
     entries = []
     for option in OPTIONS.values():
-        kinds = {"number": "{:g}..{:g}".format(*option.bounds), "condition": "CONDITION", "switch": "true|false"}
+        kinds = {
+            "number": "{:g}..{:g}".format(*option.bounds),
+            "condition": "CONDITION",
+            "switch": "true|false",
+        }
         values = " | ".join(option.values) or kinds[option.kind]
         if isinstance(option.default, tuple):
             default = ",".join(option.default) or "none"

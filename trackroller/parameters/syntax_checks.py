@@ -40,7 +40,10 @@ _NODES: dict[type[ast.AST], tuple[str, str]] = {
     ast.Invert: ("the sign ~", "Write not."),
     ast.Tuple: ("a comma outside a function", _COMMA),
     ast.IfExp: ("if and else", "Write where(condition, one, other)."),
-    ast.Attribute: ("names joined by a point", "Write sqrt(x) and pi without np. or math. before them."),
+    ast.Attribute: (
+        "names joined by a point",
+        "Write sqrt(x) and pi without np. or math. before them.",
+    ),
     ast.Call: ("named arguments", "Write the arguments of a function without names."),
     ast.Is: ("the word is", "Write ==."),
     ast.IsNot: ("the words is not", "Write !=."),
@@ -89,7 +92,9 @@ def syntax_remedy(text: str) -> str:
 
 
 def not_allowed(node: ast.AST) -> tuple[str, str]:
-    """Return in words what is not allowed at a node, and what to write instead, '' if nothing is known."""
+    """Return in words what is not allowed at a node, and what to write instead, '' if nothing is
+    known.
+    """
     if isinstance(node, ast.Call) and not isinstance(node.func, ast.Name):
         return "no function before a bracket", _MULTIPLY
     parts = [node, getattr(node, "op", None), *getattr(node, "ops", ())]
@@ -100,7 +105,9 @@ def not_allowed(node: ast.AST) -> tuple[str, str]:
 def unknown_function(node: ast.Call, functions: Collection[str], field: str) -> InputError | None:
     """Return the error for a function that is not known, None for another call."""
     name = ast.unparse(node.func).rpartition(".")[2]
-    if (name in functions and isinstance(node.func, ast.Name)) or not isinstance(node.func, (ast.Name, ast.Attribute)):
+    if (name in functions and isinstance(node.func, ast.Name)) or not isinstance(
+        node.func, (ast.Name, ast.Attribute)
+    ):
         return None
     error = unknown_name(f"{field} (character {node.col_offset + 1})", name, functions)
     instead = ""
@@ -118,7 +125,8 @@ def unknown_function(node: ast.Call, functions: Collection[str], field: str) -> 
 
 
 def check_tree(tree: ast.expr, text: str, field: str) -> None:
-    """Refuse an expression that nests too deeply, or that takes the sine, cosine or tangent of an angle in degrees.
+    """Refuse an expression that nests too deeply, or that takes the sine, cosine or tangent of an
+    angle in degrees.
 
     Parameters
     ----------
@@ -130,15 +138,22 @@ def check_tree(tree: ast.expr, text: str, field: str) -> None:
     Raises
     ------
     InputError
-        If the tree has more than `MAX_DEPTH` levels, or `radians` does not convert an angle in degrees.
+        If the tree has more than `MAX_DEPTH` levels, or `radians` does not convert an angle in
+        degrees.
     """
     level: list[ast.AST] = [tree]
     for _ in range(MAX_DEPTH):
         level = [child for node in level for child in ast.iter_child_nodes(node)]
     if level:
-        raise InputError(field, text[:40] + "...", f"an expression of at most {MAX_DEPTH} levels", "Shorten it.")
+        raise InputError(
+            field, text[:40] + "...", f"an expression of at most {MAX_DEPTH} levels", "Shorten it."
+        )
     for call in ast.walk(tree):
-        if isinstance(call, ast.Call) and isinstance(call.func, ast.Name) and call.func.id in TRIGONOMETRIC:
+        if (
+            isinstance(call, ast.Call)
+            and isinstance(call.func, ast.Name)
+            and call.func.id in TRIGONOMETRIC
+        ):
             degrees = None
             if call.args:
                 degrees = _unconverted(call.args[0])
@@ -153,4 +168,6 @@ def _unconverted(node: ast.AST) -> str | None:
         return None
     if isinstance(node, ast.Name) and node.id in DEGREES:
         return node.id
-    return next((name for child in ast.iter_child_nodes(node) if (name := _unconverted(child))), None)
+    return next(
+        (name for child in ast.iter_child_nodes(node) if (name := _unconverted(child))), None
+    )

@@ -63,13 +63,18 @@ class Block:
 
 
 def join(parts: Sequence[Block]) -> Block:
-    """Return blocks joined along the case; NaN fills missing values and the ends of shorter grids."""
+    """Return blocks joined along the case; NaN fills missing values and the ends of shorter
+    grids.
+    """
     if len(parts) == 1:
         return parts[0]
     names = dict.fromkeys(name for part in parts for name in part.values)
     none: np.ndarray = np.empty(0)
     values = {
-        name: _joined([part.values.get(name, none) for part in parts], [len(part) for part in parts]) for name in names
+        name: _joined(
+            [part.values.get(name, none) for part in parts], [len(part) for part in parts]
+        )
+        for name in names
     }
     plain = {name: np.concatenate([getattr(part, name) for part in parts]) for name in _PLAIN}
     flags = [part.bodies for part in parts if part.bodies is not None]

@@ -40,9 +40,15 @@ __all__ = ["FIELDS", "Case", "CaseTable", "MaterialArrays", "geometry_problem", 
 
 _Numbers: Any = make_dataclass(
     "_Numbers",
-    [(name, Any, field(default=EXAMPLE.get(name), kw_only=name in OF_LIMITS)) for name in PARAMETERS]
+    [
+        (name, Any, field(default=EXAMPLE.get(name), kw_only=name in OF_LIMITS))
+        for name in PARAMETERS
+    ]
     + [(name, Any, field(default=EXAMPLE[name])) for name in MATERIAL_FIELDS]
-    + [(name, Any, field(default=None, kw_only=name not in MECHANICAL_MAPPINGS)) for name in MAPPING_FIELDS],
+    + [
+        (name, Any, field(default=None, kw_only=name not in MECHANICAL_MAPPINGS))
+        for name in MAPPING_FIELDS
+    ],
     frozen=True,
 )
 
@@ -51,9 +57,9 @@ _Numbers: Any = make_dataclass(
 class Case(_Numbers):
     """One locating-bearing track roller on its guideway.
 
-    The defaults are the driven example of the publication. A plain mapping with the same keys is accepted wherever a
-    `Case` is. Instead of `friction_coefficient` a case also takes `mu`, and instead of `axis_distance` both
-    `outer_radius` and `groove_depth` of the roller [mm].
+    The defaults are the driven example of the publication. A plain mapping with the same keys is
+    accepted wherever a `Case` is. Instead of `friction_coefficient` a case also takes `mu`, and
+    instead of `axis_distance` both `outer_radius` and `groove_depth` of the roller [mm].
 
     Parameters
     ----------
@@ -62,9 +68,11 @@ class Case(_Numbers):
     guide_profile_radius : float
         r_C,G, radius of the convex guide contour, > 0 [mm].
     roller_profile_radius : float
-        r_C,TR, radius of the roller's contour [mm]: < 0 for a concave groove, > 0 for a convex roller, inf if straight.
+        r_C,TR, radius of the roller's contour [mm]: < 0 for a concave groove, > 0 for a convex
+        roller, inf if straight.
     guide_curve_radius : float
-        r_Curve, curve of the track [mm]: > 0 convex towards the roller, < 0 concave, inf if straight.
+        r_Curve, curve of the track [mm]: > 0 convex towards the roller, < 0 concave, inf if
+        straight.
     contact_angle : float
         alpha, inclination of the contact normals, between 0 and 90 [deg].
     radial_force : float
@@ -74,15 +82,19 @@ class Case(_Numbers):
     motor_force : float
         F_Motor [N]: < 0 driving, 0 free rolling, > 0 braking.
     friction_coefficient : float, str or None
-        Coulomb coefficient of both contacts at rest, 0 to 2 [1]. None or "typical" takes the typical value of the pair
-        of materials from the friction database, "upper" and "lower" its bounds, "dry" and "lubricated" the values of
-        tables. If it is not given, it is 0.3, or the first value of a `friction_law` given as a table.
+        Coulomb coefficient of both contacts at rest, 0 to 2 [1]. None or "typical" takes the
+        typical value of the pair of materials from the friction database, "upper" and "lower" its
+        bounds, "dry" and "lubricated" the values of tables. If it is not given, it is 0.3, or the
+        first value of a `friction_law` given as a table.
     layer_flexibility : float
-        h/G_3, thickness over shear modulus of a film between the bodies, >= 0 [mm^3/N], for contact model 'kalker'.
+        h/G_3, thickness over shear modulus of a film between the bodies, >= 0 [mm^3/N], for contact
+        model 'kalker'.
     velocity : float
-        v, mean travel speed, > 0 [m/min]. It matters to friction power, to life in hours and to friction laws.
+        v, mean travel speed, > 0 [m/min]. It matters to friction power, to life in hours and to
+        friction laws.
     guide_overrollings_per_hour : float or None
-        n_G, overrollings of a point of the guide, > 0 [1/h]. Without it, the guide's life in hours is NaN.
+        n_G, overrollings of a point of the guide, > 0 [1/h]. Without it, the guide's life in hours
+        is NaN.
     roller_material, guide_material : str, mapping or Material
         Name in the material database, or the values of a material.
     friction_law : mapping or None
@@ -93,34 +105,36 @@ class Case(_Numbers):
     permissible_radial_force : float or None
         Permissible radial force of ring or stud, > 0 [N], for the limit `bearing`.
     heat_transfer_coefficient, cooled_area, ambient_temperature : float or None
-        Heat transfer of the roller [W/(m2 K)], the surface that loses heat [mm2] and the temperature of the air [degC],
-        for the limit `heat`.
+        Heat transfer of the roller [W/(m2 K)], the surface that loses heat [mm2] and the
+        temperature of the air [degC], for the limit `heat`.
     permissible_wear_depth : float or None
         Wear depth that ends the life [mm], for the limit `wear`.
     travel : float
-        Travel after which the case is solved with the profiles worn until then, >= 0 [km]; needs normal="halfspace".
+        Travel after which the case is solved with the profiles worn until then, >= 0 [km]; needs
+        normal="halfspace".
     required_travel, wear_coefficient_factor : float or None
-        Travel that the limit `wear` has to allow [km], and a factor on the wear coefficients [1], which replaces the
-        ranges of their placeholders.
+        Travel that the limit `wear` has to allow [km], and a factor on the wear coefficients [1],
+        which replaces the ranges of their placeholders.
     placeholder_position : float or None
-        Place of the placeholders of materials in their ranges: -1 the worse end, 0 the value, 1 the better end [1].
-        Without it, lives have the range between the ends.
+        Place of the placeholders of materials in their ranges: -1 the worse end, 0 the value, 1 the
+        better end [1]. Without it, lives have the range between the ends.
     bearing, catalogue, wear_table : mapping or None
-        Bearing inside the roller, limits of a maker's catalogue, and table of the energy law of wear; see "Parameters,
-        options and results".
+        Bearing inside the roller, limits of a maker's catalogue, and table of the energy law of
+        wear; see "Parameters, options and results".
 
     Attributes
     ----------
     not_given : tuple of str
         Parameters that were not given, whose values are those of the paper's example.
     radii : dict of str to float
-        Outer radius and groove depth [mm] if they gave the axis distance; a copy with other values has none.
+        Outer radius and groove depth [mm] if they gave the axis distance; a copy with other values
+        has none.
 
     Raises
     ------
     InputError
-        If a value lies outside its range, or if the surfaces conform or interlock. The message names the field, its
-        value, what is allowed and what to do.
+        If a value lies outside its range, or if the surfaces conform or interlock. The message
+        names the field, its value, what is allowed and what to do.
 
     Examples
     --------
@@ -129,8 +143,8 @@ class Case(_Numbers):
     >>> case.contact_angle
     30.0
     >>> tr.Case(contact_angle=95)
-    Traceback (most recent call last):
-    trackroller.errors.InputError: contact_angle = 95 is not usable. Allowed: a number for the contact \
+    Traceback (most recent call last): trackroller.errors.InputError: contact_angle = 95 is not
+    usable. Allowed: a number for the contact \
 angle [deg], >= 1e-06 deg, < 90 deg, finite. \
 Write a number that is allowed, such as 30.
     """
@@ -141,7 +155,12 @@ Write a number that is allowed, such as 30.
     def __init__(self, *values: Any, **named: Any) -> None:
         if values and isinstance(values[0], (Mapping, Case)):
             given = type(values[0]).__name__
-            raise InputError("case", given, "values by name, such as friction_coefficient=0.2", "Write Case(**values).")
+            raise InputError(
+                "case",
+                given,
+                "values by name, such as friction_coefficient=0.2",
+                "Write Case(**values).",
+            )
         super().__init__(*values, **_by_field(named))
         self._check()
         if RADII[0] in named:  # checked with the axis distance, which follows from them
@@ -159,7 +178,9 @@ Write a number that is allowed, such as 30.
         if isinstance(self.friction_coefficient, Default):
             with suppress(InputError):  # a wrong law is refused below
                 object.__setattr__(self, "friction_coefficient", own_friction(self.friction_law))
-        missing = tuple(name for name, value in vars(self).items() if isinstance(value, (Default, DefaultName)))
+        missing = tuple(
+            name for name, value in vars(self).items() if isinstance(value, (Default, DefaultName))
+        )
         object.__setattr__(self, "not_given", missing)
         for name in PARAMETERS:
             with wrong.part():
@@ -173,7 +194,9 @@ Write a number that is allowed, such as 30.
             raise problem
 
     def _checked_number(self, name: str) -> float:
-        """Return a number of this case, which then stands as a float or None in its field; NaN if it is not given."""
+        """Return a number of this case, which then stands as a float or None in its field; NaN if
+        it is not given.
+        """
         value = getattr(self, name)
         parameter = PARAMETERS[name]
         if isinstance(value, list):
@@ -199,7 +222,8 @@ Write a number that is allowed, such as 30.
         Raises
         ------
         InputError
-            For an unknown key, with the most similar known key, and for every value that `Case` refuses.
+            For an unknown key, with the most similar known key, and for every value that `Case`
+            refuses.
         """
         values = mapping_of(values)
         if not isinstance(values, Mapping):
@@ -207,7 +231,9 @@ Write a number that is allowed, such as 30.
             remedy = ""
             if several:
                 remedy = "Give each of them alone; tr.solve takes several cases."
-            raise InputError("case", type(values).__name__, "one case: parameter names and their values", remedy)
+            raise InputError(
+                "case", type(values).__name__, "one case: parameter names and their values", remedy
+            )
         return cls(**{str(name): value for name, value in values.items()})
 
     def as_dict(self) -> dict[str, Any]:
@@ -219,7 +245,9 @@ Case.__signature__ = inspect.signature(_Numbers)  # type: ignore[attr-defined]
 
 
 def _by_field(values: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the values of one case by the names of its fields; `InputError` names every other name."""
+    """Return the values of one case by the names of its fields; `InputError` names every other
+    name.
+    """
     wrong = Collector()
     known = {name: value for name, value in values.items() if name not in ALIASES}
     with wrong.part():
@@ -253,17 +281,28 @@ def is_single(cases: Any) -> bool:
 
 
 def _listed(cases: Any) -> list[Case]:
-    """Return cases of any form but a data set as a list; the first wrong case is refused with its number."""
+    """Return cases of any form but a data set as a list; the first wrong case is refused with its
+    number.
+    """
     allowed = "a Case, a mapping, a list or data frame of cases, or an xarray.Dataset"
     if is_single(cases):
         return [_case(cases)]
     if hasattr(cases, "columns"):
         cases = rows_of(cases, "cases")
     elif hasattr(cases, "dims"):
-        raise InputError("cases", type(cases).__name__, allowed, "Write .to_dataset(), with a parameter as its name.")
+        raise InputError(
+            "cases",
+            type(cases).__name__,
+            allowed,
+            "Write .to_dataset(), with a parameter as its name.",
+        )
     elif isinstance(cases, Set):
         raise InputError("cases", type(cases).__name__, allowed, how_to_write(cases))
-    elif not isinstance(cases, Iterable) or isinstance(cases, (str, bytes)) or getattr(cases, "ndim", 1) != 1:
+    elif (
+        not isinstance(cases, Iterable)
+        or isinstance(cases, (str, bytes))
+        or getattr(cases, "ndim", 1) != 1
+    ):
         remedy = "Write a list of mappings, such as [{'axial_force': 30}, {'axial_force': 60}]."
         shown: object = type(cases).__name__
         if np.isscalar(cases):
@@ -275,7 +314,10 @@ def _listed(cases: Any) -> list[Case]:
             rows.append(_case(case))
         except InputError as error:
             place = f"(case {len(rows)})"
-            raise_all(InputError(f"{one.field} {place}", one.value, one.allowed, one.remedy) for one in error.errors)
+            raise_all(
+                InputError(f"{one.field} {place}", one.value, one.allowed, one.remedy)
+                for one in error.errors
+            )
     return rows
 
 
@@ -287,7 +329,9 @@ def _case(values: Case | Mapping[str, Any]) -> Case:
 
 
 def _of_cases(cases: Any) -> tuple[dict[str, np.ndarray], dict[str, np.ndarray]]:
-    """Return the raw values of cases, object arrays (n,), and their numbers, (n,), which each `Case` has checked."""
+    """Return the raw values of cases, object arrays (n,), and their numbers, (n,), which each
+    `Case` has checked.
+    """
     columns = {}
     numbers = {}
     rows = _listed(cases)
@@ -295,7 +339,8 @@ def _of_cases(cases: Any) -> tuple[dict[str, np.ndarray], dict[str, np.ndarray]]
         values = [getattr(row, name) for row in rows]
         if name in PARAMETERS:
             column = np.array(values, dtype=object)
-            column[[isinstance(value, str) for value in values]] = math.nan  # a word is a friction of the database
+            # a word is a friction of the database
+            column[[isinstance(value, str) for value in values]] = math.nan
             numbers[name] = column.astype(float)  # None becomes NaN
         if name not in numbers or name == "friction_coefficient":
             columns[name] = np.empty(len(rows), dtype=object)
@@ -304,7 +349,9 @@ def _of_cases(cases: Any) -> tuple[dict[str, np.ndarray], dict[str, np.ndarray]]
 
 
 def _of_dataset(design: Any) -> tuple[dict[str, np.ndarray], dict[str, np.ndarray]]:
-    """Return the raw values of a design, object or float arrays (n,), and its checked numbers, (n,)."""
+    """Return the raw values of a design, object or float arrays (n,), and its checked numbers,
+    (n,).
+    """
     n = design.sizes.get("case", 1)
     design = _named(design)
     columns = {}
@@ -331,8 +378,9 @@ def _of_dataset(design: Any) -> tuple[dict[str, np.ndarray], dict[str, np.ndarra
 def _named(design: Any) -> Any:
     """Return a data set of cases with the names of parameters in place of aliases.
 
-    Every variable, coordinate and attribute that says something about the cases is a parameter along `case`, or an
-    option as a coordinate, or it is refused by name. A study's design has further coordinates of its own.
+    Every variable, coordinate and attribute that says something about the cases is a parameter
+    along `case`, or an option as a coordinate, or it is refused by name. A study's design has
+    further coordinates of its own.
     """
     wrong = Collector()
     of_study = STUDY in design.attrs
@@ -340,18 +388,27 @@ def _named(design: Any) -> Any:
     with wrong.part():
         renamed(dict.fromkeys(design.variables, "a variable"))
         design = design.rename({name: ALIASES[name] for name in short})
-    design = design.drop_vars([name for name in short if name in design.variables])  # it is refused above
+    # it is refused above
+    design = design.drop_vars([name for name in short if name in design.variables])
     known = {*FIELDS}
     attributes = design.attrs
     if of_study:
         known |= {*design.coords}
         attributes = {}
-    along = {"case", *(dim for name in FIELDS if name in design.variables for dim in design[name].dims)}
+    along = {
+        "case",
+        *(dim for name in FIELDS if name in design.variables for dim in design[name].dims),
+    }
     for name in map(str, design.variables):
         with wrong.part():
             if name in OPTIONS and name not in design.coords:
                 remedy = f"Write ds.set_coords('{name}'), or give {name} to tr.solve."
-                raise InputError(name, "a variable", "an option of each case is a coordinate along 'case'", remedy)
+                raise InputError(
+                    name,
+                    "a variable",
+                    "an option of each case is a coordinate along 'case'",
+                    remedy,
+                )
             if name not in known and name not in OPTIONS and name not in along:
                 raise _unknown(name, design.coords)
             if name in FIELDS and set(design[name].dims) - {"case"}:
@@ -360,9 +417,14 @@ def _named(design: Any) -> Any:
         with wrong.part():
             if name in (*FIELDS, *ALIASES, *RADII, "material_pair"):
                 remedy = f"Write ds.assign({name}={design.attrs[name]!r})."
-                raise InputError(name, "an attribute", "a parameter is a variable of the data set", remedy)
+                raise InputError(
+                    name, "an attribute", "a parameter is a variable of the data set", remedy
+                )
             if name in OPTIONS:
-                remedy = f"Give it to the call: tr.solve(ds, {name}={design.attrs[name]!r}), and remove the attribute."
+                remedy = (
+                    f"Give it to the call: tr.solve(ds, {name}={design.attrs[name]!r}), and "
+                    "remove the attribute."
+                )
                 raise InputError(name, "an attribute", "an argument of tr.solve", remedy)
     wrong.check()
     return design
@@ -377,7 +439,12 @@ def _unknown(name: str, coordinates: Container[Hashable]) -> InputError:
         remedy = "Give axis_distance, or solve ds.to_dataframe(), whose rows may have both radii."
         return InputError(name, f"a {kind}", "the axis distance in a data set", remedy)
     if name == "material_pair":
-        return InputError(name, f"a {kind}", "the variables roller_material and guide_material", "Give both of them.")
+        return InputError(
+            name,
+            f"a {kind}",
+            "the variables roller_material and guide_material",
+            "Give both of them.",
+        )
     error = unknown_name(f"design {kind}", name, (*FIELDS, *ALIASES))
     drop = f"Remove a {kind} that is no parameter with ds.drop_vars('{name}')."
     return InputError(error.field, name, error.allowed, f"{error.remedy} {drop}")
@@ -396,7 +463,9 @@ def _along_case(dims: tuple[Any, ...]) -> tuple[str, str]:
 
 
 def _in_own_unit(name: str, variable: Any) -> np.ndarray:
-    """Return the values of a parameter in its unit; the attribute `units` or `unit` may name another one."""
+    """Return the values of a parameter in its unit; the attribute `units` or `unit` may name
+    another one.
+    """
     values = np.asarray(variable.values)
     unit = stated_unit(variable.attrs)
     own = PARAMETERS.get(name)
@@ -406,9 +475,9 @@ def _in_own_unit(name: str, variable: Any) -> np.ndarray:
     if values.dtype.kind == "O":
         kind = values.dtype
     converted = np.array(values, dtype=kind)
-    for place, value in np.ndenumerate(values):
+    for index, value in np.ndenumerate(values):
         if _is_number(value):
-            converted[place] = in_unit(float(value), unit, own.unit, name)
+            converted[index] = in_unit(float(value), unit, own.unit, name)
     return converted
 
 
@@ -448,8 +517,9 @@ def to_table(cases: Any, database: MaterialDatabase | None = None) -> CaseTable:
     Parameters
     ----------
     cases : Case, mapping, list or data frame of them, or xarray.Dataset
-        A data set has one variable or coordinate for each parameter along the dimension `case`, in the unit of its
-        attribute `units` or `unit` if it has one. Parameters that it does not name take their default.
+        A data set has one variable or coordinate for each parameter along the dimension `case`, in
+        the unit of its attribute `units` or `unit` if it has one. Parameters that it does not name
+        take their default.
     database : MaterialDatabase, optional
         The materials; by default the built-in ones with the user's own over them.
 
@@ -466,7 +536,9 @@ def to_table(cases: Any, database: MaterialDatabase | None = None) -> CaseTable:
     if database is None:
         database = load_database()
     if not isinstance(database, MaterialDatabase):
-        raise InputError("database", database, "a MaterialDatabase", "`tr.load_database(path)` reads one.")
+        raise InputError(
+            "database", database, "a MaterialDatabase", "`tr.load_database(path)` reads one."
+        )
     if hasattr(cases, "data_vars"):
         columns, numbers = _of_dataset(cases)
     else:
@@ -481,21 +553,28 @@ def to_table(cases: Any, database: MaterialDatabase | None = None) -> CaseTable:
     numbers["friction_coefficient"] = friction
     positions = numbers["placeholder_position"].tolist()
     places = [None if math.isnan(position) else position for position in positions]  # NaN is no key
-    factors = ~np.isnan(numbers["wear_coefficient_factor"])  # each replaces the range of the wear coefficients
+    # each replaces the range of the wear coefficients
+    factors = ~np.isnan(numbers["wear_coefficient_factor"])
     keys = list(zip(map(id, roller), map(id, guide), places, factors.tolist(), strict=True))
     pairs = dict(zip(keys, zip(roller, guide, strict=True), strict=True))  # each combination once
     bodies = {
-        key: [database.on(*way).moved(key[2] or 0.0, ("wear_coefficient",) * key[3]) for way in (pair, pair[::-1])]
+        key: [
+            database.on(*way).moved(key[2] or 0.0, ("wear_coefficient",) * key[3])
+            for way in (pair, pair[::-1])
+        ]
         for key, pair in pairs.items()
     }
     roller, guide = ([bodies[key][i] for key in keys] for i in (0, 1))
     texts = {name: _texts(name, columns[name]) for name in MAPPING_FIELDS}
-    return CaseTable(**numbers, **texts, roller=MaterialArrays.of(roller), guide=MaterialArrays.of(guide))
+    return CaseTable(
+        **numbers, **texts, roller=MaterialArrays.of(roller), guide=MaterialArrays.of(guide)
+    )
 
 
 def _texts(name: str, column: np.ndarray) -> np.ndarray:
     """Return the canonical texts of a column of mappings; each distinct mapping is checked once."""
-    if np.all(column == ""):  # most studies have no mapping, and a loop over a million cases takes seconds
+    # most studies have no mapping, and a loop over a million cases takes seconds
+    if np.all(column == ""):
         return column
     out = np.empty(column.size, dtype=object)
     out[:] = once_each(functools.partial(mapping_text, name), column)

@@ -18,7 +18,10 @@ _OptionalValues = make_dataclass(
     "_OptionalValues", [(name, np.ndarray) for name in OPTIONAL_VALUES], bases=(Rows,), frozen=True
 )
 _Fields: Any = make_dataclass(
-    "_Fields", [(name, np.ndarray) for name in (*PARAMETERS, *MAPPING_FIELDS)], bases=(Rows,), frozen=True
+    "_Fields",
+    [(name, np.ndarray) for name in (*PARAMETERS, *MAPPING_FIELDS)],
+    bases=(Rows,),
+    frozen=True,
 )
 
 
@@ -28,12 +31,14 @@ TEXTS = ("name", "guesses", "ends", "temperature_dependence", "sn_points")
 
 @dataclass(frozen=True)
 class MaterialArrays(_OptionalValues):  # type: ignore[misc, valid-type]
-    """Values of one body's material, arrays of shape (n,): name, E [MPa], nu [1], R_m, sigma_D [MPa], N_Rm, N_k [1].
+    """Values of one body's material, arrays of shape (n,): name, E [MPa], nu [1], R_m, sigma_D
+    [MPa], N_Rm, N_k [1].
 
-    The base class adds the optional values of a material, NaN where they are not given. `guesses` holds the values of
-    limits that are placeholders, a mapping of names to `Value` for each material, and `ends` the ends of their ranges
-    over the values. `temperature_dependence` holds the tables over temperature as JSON, "" for none, and
-    `sn_points` the points of S-N curves as JSON, "" for none.
+    The base class adds the optional values of a material, NaN where they are not given. `guesses`
+    holds the values of limits that are placeholders, a mapping of names to `Value` for each
+    material, and `ends` the ends of their ranges over the values. `temperature_dependence` holds
+    the tables over temperature as JSON, "" for none, and `sn_points` the points of S-N curves as
+    JSON, "" for none.
     """
 
     name: np.ndarray
@@ -50,7 +55,9 @@ class MaterialArrays(_OptionalValues):  # type: ignore[misc, valid-type]
 
     @classmethod
     def of(cls, materials: list[Material]) -> MaterialArrays:
-        """Return the arrays of a list of n materials; the same few objects fill a list of millions."""
+        """Return the arrays of a list of n materials; the same few objects fill a list of
+        millions.
+        """
         different, index = distinct(materials)
 
         def values(attribute: str) -> np.ndarray:
@@ -76,10 +83,12 @@ class MaterialArrays(_OptionalValues):  # type: ignore[misc, valid-type]
 
 @dataclass(frozen=True)
 class CaseTable(_Fields):
-    """Checked cases as arrays of shape (n,), with the units of `PARAMETERS` and the friction coefficient resolved.
+    """Checked cases as arrays of shape (n,), with the units of `PARAMETERS` and the friction
+    coefficient resolved.
 
-    The base class has an array for each of `PARAMETERS` and `MAPPING_FIELDS`. The mappings of a case (friction law,
-    drawn profiles) stand as canonical JSON in arrays of str objects, "" for none.
+    The base class has an array for each of `PARAMETERS` and `MAPPING_FIELDS`. The mappings of a
+    case (friction law, drawn profiles) stand as canonical JSON in arrays of str objects, "" for
+    none.
     """
 
     roller: MaterialArrays

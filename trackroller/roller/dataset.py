@@ -1,4 +1,6 @@
-"""Label results as xarray data sets with units, and declare every result variable once (`VARIABLES`)."""
+"""Label results as xarray data sets with units, and declare every result variable once
+(`VARIABLES`).
+"""
 
 from __future__ import annotations
 
@@ -21,7 +23,8 @@ if TYPE_CHECKING:
 
 
 def file_attributes(title: str, action: str) -> dict[str, str]:
-    """Return the global attributes that every netCDF file has, for its title and what the program did.
+    """Return the global attributes that every netCDF file has, for its title and what the program
+    did.
 
     The history has no time, so that equal results are equal files.
     """
@@ -33,7 +36,8 @@ def file_attributes(title: str, action: str) -> dict[str, str]:
     }
 
 
-NOTES = "limits_notes"  # attribute: what limits lack, and the placeholders that they rest on, a sentence a line
+# attribute: what limits lack, and the placeholders that they rest on, a sentence a line
+NOTES = "limits_notes"
 _ODD = {"odd": True}  # the value changes its sign in the mirror image of a roller
 _SHOWN = {"shown": True}  # the value stands on the sheet, in the table of cases and in the explorer
 _C = ("contact",)
@@ -48,8 +52,22 @@ _GROUPS = {
         ("lateral_force", _C, "N", "F_T", "lateral friction force on the roller", _SHOWN | _ODD),
         ("driving_force", _C, "N", "F_A", "longitudinal friction force on the roller", _SHOWN),
         ("spin_moment", _C, "N mm", "M_R", "spin moment about the contact normal", _SHOWN | _ODD),
-        ("force_error_estimate", _C, "1", "delta(F)/(mu F_N)", "estimated error of F_T and F_A over mu F_N", ESTIMATE),
-        ("normal_force_error_estimate", _C, "1", "delta(F_N)/F_N", "estimated relative error of F_N", ESTIMATE),
+        (
+            "force_error_estimate",
+            _C,
+            "1",
+            "delta(F)/(mu F_N)",
+            "estimated error of F_T and F_A over mu F_N",
+            ESTIMATE,
+        ),
+        (
+            "normal_force_error_estimate",
+            _C,
+            "1",
+            "delta(F_N)/F_N",
+            "estimated relative error of F_N",
+            ESTIMATE,
+        ),
         (
             "error_over_tolerance",
             (),
@@ -58,10 +76,31 @@ _GROUPS = {
             "largest estimated error over its tolerance, if accuracy is a tolerance",
             ESTIMATE,
         ),
-        ("slip", (), "1", "xi", "longitudinal creepage, > 0 braking", _SHOWN | {"label": "longitudinal creepage"}),
+        (
+            "slip",
+            (),
+            "1",
+            "xi",
+            "longitudinal creepage, > 0 braking",
+            _SHOWN | {"label": "longitudinal creepage"},
+        ),
         ("rolling_radius_shift", (), "mm", "r_Delta0", "deviation of the rolling radius", _SHOWN),
-        ("transmitted_force", (), "N", "F_A1 + F_A2", "force transmitted to the roller along the track", _SHOWN),
-        ("drive_torque", (), "N mm", "M_xR", "drive torque about the roller's axis, > 0 driving, eq. (10)", _SHOWN),
+        (
+            "transmitted_force",
+            (),
+            "N",
+            "F_A1 + F_A2",
+            "force transmitted to the roller along the track",
+            _SHOWN,
+        ),
+        (
+            "drive_torque",
+            (),
+            "N mm",
+            "M_xR",
+            "drive torque about the roller's axis, > 0 driving, eq. (10)",
+            _SHOWN,
+        ),
         (
             "drilling_torque",
             (),
@@ -70,18 +109,60 @@ _GROUPS = {
             "drilling torque, the share of the spin moments in the drive torque",
             _SHOWN | {"label": "drilling torque"},
         ),
-        ("tilting_moment", (), "N mm", "M_yR", "tilting moment about the rolling direction, eq. (11)", _SHOWN | _ODD),
-        ("yaw_moment", (), "N mm", "M_zR", "yaw moment about the radial direction, eq. (12)", _SHOWN | _ODD),
+        (
+            "tilting_moment",
+            (),
+            "N mm",
+            "M_yR",
+            "tilting moment about the rolling direction, eq. (11)",
+            _SHOWN | _ODD,
+        ),
+        (
+            "yaw_moment",
+            (),
+            "N mm",
+            "M_zR",
+            "yaw moment about the radial direction, eq. (12)",
+            _SHOWN | _ODD,
+        ),
     ),
     "contact": (
         ("max_pressure", _C, "MPa", "p_max", "largest contact pressure", _SHOWN | LARGEST),
         ("max_shear", _C, "MPa", "tau_max", "largest surface shear traction", _SHOWN | LARGEST),
         ("semi_axis_lateral", _C, "mm", "a", "lateral semi-axis, or half width of a patch", _SHOWN),
-        ("semi_axis_rolling", _C, "mm", "b", "semi-axis in the rolling direction, or half length", _SHOWN),
+        (
+            "semi_axis_rolling",
+            _C,
+            "mm",
+            "b",
+            "semi-axis in the rolling direction, or half length",
+            _SHOWN,
+        ),
         ("patch_area", _C, "mm2", "A", "area of the contact patch"),
-        ("conformity", _C, "1", "a/R", "lateral semi-axis over the smaller lateral radius of both bodies", LARGEST),
-        ("pressure_model_error", _C, "1", "", "relative error of Hertz's largest pressure in a close fit", ESTIMATE),
-        ("semi_axis_model_error", _C, "1", "", "relative error of Hertz's lateral semi-axis in a close fit", ESTIMATE),
+        (
+            "conformity",
+            _C,
+            "1",
+            "a/R",
+            "lateral semi-axis over the smaller lateral radius of both bodies",
+            LARGEST,
+        ),
+        (
+            "pressure_model_error",
+            _C,
+            "1",
+            "",
+            "relative error of Hertz's largest pressure in a close fit",
+            ESTIMATE,
+        ),
+        (
+            "semi_axis_model_error",
+            _C,
+            "1",
+            "",
+            "relative error of Hertz's lateral semi-axis in a close fit",
+            ESTIMATE,
+        ),
         (
             "semi_axis_rolling_model_error",
             _C,
@@ -90,10 +171,30 @@ _GROUPS = {
             "relative error of Hertz's semi-axis in the rolling direction in a close fit",
             ESTIMATE,
         ),
-        ("pressure_centre", _C, "mm", "x_p", "lateral position of the resultant of the pressure", _ODD),
+        (
+            "pressure_centre",
+            _C,
+            "mm",
+            "x_p",
+            "lateral position of the resultant of the pressure",
+            _ODD,
+        ),
         ("spin_pole_lateral", _C, "mm", "x_spin", "lateral position of the spin pole", _ODD),
-        ("spin_pole_rolling", _C, "mm", "y_spin", "position of the spin pole in the rolling direction"),
-        ("stick_area_fraction", _C, "1", "A_stick/A", "adhesion (stick) area over the area of the patch", _SHOWN),
+        (
+            "spin_pole_rolling",
+            _C,
+            "mm",
+            "y_spin",
+            "position of the spin pole in the rolling direction",
+        ),
+        (
+            "stick_area_fraction",
+            _C,
+            "1",
+            "A_stick/A",
+            "adhesion (stick) area over the area of the patch",
+            _SHOWN,
+        ),
     ),
     "friction_work": (
         (
@@ -104,7 +205,14 @@ _GROUPS = {
             "friction power at the travel speed",
             _SHOWN | SUM | {"label": "friction power"},
         ),
-        ("friction_energy_per_distance", _C, "J m-1", "W_f", "friction energy per distance", _SHOWN | SUM),
+        (
+            "friction_energy_per_distance",
+            _C,
+            "J m-1",
+            "W_f",
+            "friction energy per distance",
+            _SHOWN | SUM,
+        ),
         (
             "friction_energy_balance",
             _C,
@@ -129,7 +237,13 @@ _GROUPS = {
             "relative error of the friction power of Hertz's patch in a close fit",
             ESTIMATE,
         ),
-        ("energy_residual", (), "1", "", "relative difference of friction energy and work of the drive"),
+        (
+            "energy_residual",
+            (),
+            "1",
+            "",
+            "relative difference of friction energy and work of the drive",
+        ),
     ),
     "peak_stress": (
         (
@@ -154,11 +268,24 @@ _GROUPS = {
     ),
     "tractions": (
         ("patch_x", ("contact", "x"), "mm", "x_C", "lateral position in the patch", _ODD),
-        ("patch_y", ("contact", "y"), "mm", "y_C", "position in the patch in the rolling direction"),
+        (
+            "patch_y",
+            ("contact", "y"),
+            "mm",
+            "y_C",
+            "position in the patch in the rolling direction",
+        ),
         ("pressure", _PATCH, "MPa", "p", "contact pressure"),
         ("shear_lateral", _PATCH, "MPa", "tau_x", "lateral shear on the roller", _ODD),
         ("shear_rolling", _PATCH, "MPa", "tau_y", "shear on the roller in the rolling direction"),
-        ("slip_lateral", _PATCH, "1", "v_x/v", "lateral creepage at a point: slip speed over travel speed", _ODD),
+        (
+            "slip_lateral",
+            _PATCH,
+            "1",
+            "v_x/v",
+            "lateral creepage at a point: slip speed over travel speed",
+            _ODD,
+        ),
         ("slip_rolling", _PATCH, "1", "v_y/v", "creepage at a point in the rolling direction"),
         (
             "friction_energy_density",
@@ -192,7 +319,9 @@ VARIABLES = with_limits(
 
 
 def shown(*dims: str) -> tuple[str, ...]:
-    """Return the results that the sheet, the table of cases and the explorer show, of these dimensions after `case`."""
+    """Return the results that the sheet, the table of cases and the explorer show, of these
+    dimensions after `case`.
+    """
     return tuple(name for name, v in VARIABLES.items() if v.shown and v.dims == dims)
 
 
@@ -202,9 +331,11 @@ def validity_bit(name: str) -> int:
 
 
 def solved_by(ds: xr.Dataset) -> np.ndarray:
-    """Return the name of the contact model that solved each case, object array in the shape of `contact_model_used`.
+    """Return the name of the contact model that solved each case, object array in the shape of
+    `contact_model_used`.
 
-    The numbers have the meanings that the data set states, because a model of a user takes the next free number.
+    The numbers have the meanings that the data set states, because a model of a user takes the next
+    free number.
     """
     used = ds.variables["contact_model_used"]
     names = np.array(str(used.attrs["flag_meanings"]).split(), dtype=object)
@@ -212,14 +343,19 @@ def solved_by(ds: xr.Dataset) -> np.ndarray:
 
 
 COMMENTS = {
-    "pair_life_hours": "shorter life of roller and guide; the life of the roller where guide_overrollings_per_hour is "
+    "pair_life_hours": "shorter life of roller and guide; the life of the roller where "
+    "guide_overrollings_per_hour is "
     "not given and the guide's hours are unknown (first_to_fail is unknown there)",
-    "first_to_fail": "none: both lives are unlimited; unknown: the life of the roller or of the guide is not known",
+    "first_to_fail": "none: both lives are unlimited; unknown: the life of the roller or of the "
+    "guide is not known",
 }
 
 FLAGS: dict[str, tuple[str, Sequence[str]]] = {
     "regime": ("regime of the case", REGIMES),
-    "converged": ("the residual is within its limit (attribute converged_up_to of residual)", ("no", "yes")),
+    "converged": (
+        "the residual is within its limit (attribute converged_up_to of residual)",
+        ("no", "yes"),
+    ),
     "contact_model_used": ("contact model that solved the case", CONTACT_MODELS),
     "accuracy_used": ("accuracy whose result the case has, if a tolerance was asked for", RUNGS),
     "first_to_fail": ("body that fails first, in hours", FIRST_TO_FAIL),
@@ -239,10 +375,18 @@ def _attributes(name: str) -> dict[str, Any]:
         comment = {"comment": COMMENTS[name]}
     if name in VARIABLES:
         v = VARIABLES[name]
-        return {"units": v.units, "long_name": v.long_name} | ({"symbol": v.symbol} if v.symbol else {}) | comment
+        return (
+            {"units": v.units, "long_name": v.long_name}
+            | ({"symbol": v.symbol} if v.symbol else {})
+            | comment
+        )
     if name in FLAGS:
         meaning, words = FLAGS[name]
-        attrs = {"long_name": meaning, "units": "1", "flag_values": np.arange(len(words), dtype=np.int8)}
+        attrs = {
+            "long_name": meaning,
+            "units": "1",
+            "flag_values": np.arange(len(words), dtype=np.int8),
+        }
         return attrs | comment | {"flag_meanings": " ".join(words)}
     return {
         "long_name": "validity flags: where an assumption of the model does not hold"
@@ -272,7 +416,10 @@ def _sides() -> xr.Coordinates:
 
 
 def build(
-    values: Mapping[str, np.ndarray], flags: Mapping[str, np.ndarray], attrs: Mapping[str, Any], single: bool
+    values: Mapping[str, np.ndarray],
+    flags: Mapping[str, np.ndarray],
+    attrs: Mapping[str, Any],
+    single: bool,
 ) -> xr.Dataset:
     """Return a labelled data set.
 
@@ -301,10 +448,14 @@ def build(
             data[name] = array.astype(np.int32)
     if not single:
         return _labelled(data, attrs)
-    # xarray aligns and merges all variables anew for each data set, which takes longer than a simple solution. A result
-    # with the same variables and shapes is therefore copied with the new numbers.
+    # xarray aligns and merges all variables anew for each data set, which takes longer than a
+    # simple solution. A result with the same variables and shapes is therefore copied with the new
+    # numbers.
     one = {name: array[0] for name, array in data.items()}
-    key = tuple((name, values.shape, values.dtype) for name, values in one.items()), str(attrs.get("limits"))
+    key = (
+        tuple((name, values.shape, values.dtype) for name, values in one.items()),
+        str(attrs.get("limits")),
+    )
     if key not in _LIKE:
         if len(_LIKE) >= MOST_LIKE:
             _LIKE.clear()
@@ -342,7 +493,9 @@ def _labelled(data: Mapping[str, np.ndarray], attrs: Mapping[str, Any]) -> xr.Da
 
 
 def united(parts: Sequence[Mapping[str, Any]], context: Any = None) -> dict[str, Any]:
-    """Return the attributes of the first of several results, with the notes on limits of all of them."""
+    """Return the attributes of the first of several results, with the notes on limits of all of
+    them.
+    """
     notes = [line for part in parts for line in str(part.get(NOTES, "")).split("\n") if line]
     own = dict(next(iter(parts), {}))
     return own | {NOTES: "\n".join(sorted(set(notes)))} if notes else own  # in no order of files
@@ -354,11 +507,20 @@ def joined(blocks: Iterable[xr.Dataset]) -> xr.Dataset:
     A missing result is NaN, or 0 if it is a whole number; NaN also fills the ends of shorter grids.
     """
     blocks = sorted(blocks, key=lambda block: -len(block.variables))
-    whole = {name: 0 for block in blocks for name, values in block.variables.items() if values.dtype.kind in "iu"}
+    whole = {
+        name: 0
+        for block in blocks
+        for name, values in block.variables.items()
+        if values.dtype.kind in "iu"
+    }
     dims = {dim for block in blocks for dim in block.dims} - {"case"}
     sizes = {dim: max(block.sizes.get(dim, 0) for block in blocks) for dim in dims}
     for i, block in enumerate(blocks):
-        short = {dim: (0, n - block.sizes[dim]) for dim, n in sizes.items() if block.sizes.get(dim, n) < n}
+        short = {
+            dim: (0, n - block.sizes[dim])
+            for dim, n in sizes.items()
+            if block.sizes.get(dim, n) < n
+        }
         if short:
             blocks[i] = block.pad(short)
     import xarray as xr  # heavy, and modules that only read `VARIABLES` do not need it

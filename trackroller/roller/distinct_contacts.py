@@ -1,4 +1,5 @@
-"""Find cases with the same mechanics and mirror-symmetric rollers, so that each contact is solved only once.
+"""Find cases with the same mechanics and mirror-symmetric rollers, so that each contact is solved
+only once.
 
 These shortcuts change no number beyond rounding; `solve(..., shortcuts=False)` switches them off.
 Mirror images of whole rollers are the subject of `reflection`.
@@ -26,7 +27,10 @@ def is_mirror_symmetric(table: CaseTable) -> np.ndarray:
 
     They have no axial force and the same cross-section on both sides.
     """
-    alike = [list(map(treats_sides_alike, texts)) for texts in (table.guide_profile, table.roller_profile)]
+    alike = [
+        list(map(treats_sides_alike, texts))
+        for texts in (table.guide_profile, table.roller_profile)
+    ]
     return (table.axial_force == 0.0) & np.logical_and.reduce(np.array(alike, bool).reshape(2, -1))
 
 
@@ -38,7 +42,8 @@ def is_frictionless(table: CaseTable) -> np.ndarray:
 def distinct_mechanics(table: CaseTable) -> tuple[np.ndarray, np.ndarray]:
     """Group cases whose forces, tractions and stresses are equal.
 
-    Travel speed (under constant friction), overrollings per hour and strength do not change forces and stresses.
+    Travel speed (under constant friction), overrollings per hour and strength do not change forces
+    and stresses.
 
     Returns
     -------
@@ -47,12 +52,15 @@ def distinct_mechanics(table: CaseTable) -> tuple[np.ndarray, np.ndarray]:
     number : numpy.ndarray of int, shape (n,)
         Number of the group of each case.
     """
-    mechanical = [name for name, own in PARAMETERS.items() if not (own.afterwards or name in OF_LIMITS)]
+    mechanical = [
+        name for name, own in PARAMETERS.items() if not (own.afterwards or name in OF_LIMITS)
+    ]
     columns = [getattr(table, name) for name in mechanical]
     columns += [m.youngs_modulus for m in (table.roller, table.guide)]
     columns += [m.poisson_ratio for m in (table.roller, table.guide)]
     columns.append(np.where(table.friction_law != "", table.velocity, 0.0))
-    for name in (*MECHANICAL_MAPPINGS, "wear_table"):  # the wear of a patch by the energy law is computed once, too
+    # the wear of a patch by the energy law is computed once, too
+    for name in (*MECHANICAL_MAPPINGS, "wear_table"):
         texts = getattr(table, name)
         known = {text: i for i, text in enumerate(dict.fromkeys(texts.tolist()))}
         columns.append(np.array([known[text] for text in texts.tolist()], dtype=float))
@@ -69,7 +77,8 @@ def distinct_rows(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     number : numpy.ndarray of int, shape (n,)
         Number of the group of each row.
     """
-    rows = np.ascontiguousarray(values + 0.0)  # turns -0.0 into 0.0, because the rows are compared by their bytes
+    # turns -0.0 into 0.0, because the rows are compared by their bytes
+    rows = np.ascontiguousarray(values + 0.0)
     keys = rows.view(np.dtype((np.void, rows.shape[1] * rows.itemsize))).reshape(-1)
     _, first, number = np.unique(keys, return_index=True, return_inverse=True)
     order = np.argsort(first)
@@ -81,8 +90,8 @@ def distinct_rows(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 def normalised_patches(patches: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Scale patches with one traction direction, or without friction, to the semi-axis a = 1.
 
-    Their stresses over p_max depend on b/a, mu and the direction only. The ratio b/a is rounded, so that patches under
-    different loads become equal. The other patches stay unchanged.
+    Their stresses over p_max depend on b/a, mu and the direction only. The ratio b/a is rounded, so
+    that patches under different loads become equal. The other patches stay unchanged.
 
     Parameters
     ----------
@@ -126,7 +135,9 @@ class Mirror:
     symmetric: np.ndarray
 
     def law(self, law: ContactLaw) -> ContactLaw:
-        """Return a contact law that solves contact 1 of symmetric rollers and copies it to contact 2."""
+        """Return a contact law that solves contact 1 of symmetric rollers and copies it to contact
+        2.
+        """
         if not self.symmetric.any():
             return law
 
@@ -134,7 +145,9 @@ class Mirror:
             half = len(rows) // 2
             twin = self.symmetric[rows[half:]]
             solved = np.concatenate([np.ones(half, bool), ~twin])
-            resultants = law(ellipse.take(solved), slip.take(solved), friction[solved], rows[solved], fine)
+            resultants = law(
+                ellipse.take(solved), slip.take(solved), friction[solved], rows[solved], fine
+            )
             full = np.empty((len(rows), 3))
             full[solved] = resultants.columns
             full[half:][twin] = full[:half][twin] * (-1.0, 1.0, -1.0)
@@ -147,12 +160,18 @@ class Mirror:
         return good & ~np.concatenate([np.zeros_like(self.symmetric), self.symmetric])
 
     def source(self, flat: np.ndarray) -> np.ndarray:
-        """Return the patches (m,) that are solved for the patches `flat` (m,) of 2 n: contact 1 for a mirror image."""
+        """Return the patches (m,) that are solved for the patches `flat` (m,) of 2 n: contact 1 for
+        a mirror image.
+        """
         n = self.symmetric.size
         return np.where((flat >= n) & self.symmetric[flat % n], flat % n, flat)
 
-    def _copies(self, good: np.ndarray, values: np.ndarray, patches: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return the values (2 n, ...) with contact 1 copied to contact 2 of symmetric rollers, and mark the copies."""
+    def _copies(
+        self, good: np.ndarray, values: np.ndarray, patches: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Return the values (2 n, ...) with contact 1 copied to contact 2 of symmetric rollers, and
+        mark the copies.
+        """
         kind = values.dtype
         if values.dtype.kind == "b":
             kind = np.dtype(float)
@@ -174,7 +193,9 @@ class Mirror:
         return full[good]
 
     def spread_surface(self, good: np.ndarray, tractions: SurfaceTractions) -> SurfaceTractions:
-        """Copy the tractions of the solved patches `to_solve(good)` to all patches `good`; x rises in each patch."""
+        """Copy the tractions of the solved patches `to_solve(good)` to all patches `good`; x rises
+        in each patch.
+        """
         if not self.symmetric.any():
             return tractions
         out = {}

@@ -1,8 +1,9 @@
 """The duty of a roller, hours a day and days a year, which turns lives in hours into years.
 
-A duty may state strokes in place of hours: {strokes_per_day: 400, stroke: 0.8 m, days_per_year: 365}. A stroke is one
-way. Hours, travel and the overrollings of the busiest point of the guide follow from them. Each roller on the rail
-passes a point in the middle of its stroke once per stroke, so that n rollers whose strokes overlap pass it n times.
+A duty may state strokes in place of hours: {strokes_per_day: 400, stroke: 0.8 m, days_per_year:
+365}. A stroke is one way. Hours, travel and the overrollings of the busiest point of the guide
+follow from them. Each roller on the rail passes a point in the middle of its stroke once per
+stroke, so that n rollers whose strokes overlap pass it n times.
 """
 
 from __future__ import annotations
@@ -23,22 +24,49 @@ FIELD = MappingField(
     "duty",
     "hours a day and days a year of travel",
     numbers=(
-        Parameter("hours_per_day", "", "h", math.nan, "hours of travel a day", 0.0, 24.0, open_lower=True),
-        Parameter("days_per_year", "", "day", math.nan, "days of travel a year", 0.0, 366.0, open_lower=True),
+        Parameter(
+            "hours_per_day", "", "h", math.nan, "hours of travel a day", 0.0, 24.0, open_lower=True
+        ),
+        Parameter(
+            "days_per_year",
+            "",
+            "day",
+            math.nan,
+            "days of travel a year",
+            0.0,
+            366.0,
+            open_lower=True,
+        ),
     ),
 )
 OF_STROKES = MappingField(
     "duty",
     "strokes a day, each one way, the length of a stroke, and days a year of travel",
     numbers=(
-        Parameter("strokes_per_day", "", "-", math.nan, "strokes a day, each one way", 0.0, open_lower=True),
+        Parameter(
+            "strokes_per_day",
+            "",
+            "-",
+            math.nan,
+            "strokes a day, each one way",
+            0.0,
+            open_lower=True,
+        ),
         Parameter("stroke", "", "m", math.nan, "length of a stroke", 0.0, open_lower=True),
         FIELD.numbers[1],
-        Parameter("rollers_on_rail", "", "-", 1.0, "rollers that pass a point of the middle in a stroke", 1.0),
+        Parameter(
+            "rollers_on_rail",
+            "",
+            "-",
+            1.0,
+            "rollers that pass a point of the middle in a stroke",
+            1.0,
+        ),
     ),
     may_miss=("rollers_on_rail",),
 )
-STROKES = ("strokes_per_day", "stroke", "rollers_on_rail")  # keys that a duty in hours does not have
+# keys that a duty in hours does not have
+STROKES = ("strokes_per_day", "stroke", "rollers_on_rail")
 OVERROLLINGS = "guide_overrollings_per_hour"
 EXAMPLE = "Write duty: {hours_per_day: 16, days_per_year: 250}."
 ATTRIBUTE = "duty"  # of the result of one case: JSON
@@ -65,7 +93,12 @@ def checked_duty(value: Any) -> dict[str, float]:
         raise InputError("duty.hours_per_day", value["hours_per_day"], allowed, remedy, wrong)
     duty = OF_STROKES.canonical(every_day)
     if not duty.get("rollers_on_rail", 1.0).is_integer():
-        raise InputError("duty.rollers_on_rail", value["rollers_on_rail"], "a whole number of rollers", "Count them.")
+        raise InputError(
+            "duty.rollers_on_rail",
+            value["rollers_on_rail"],
+            "a whole number of rollers",
+            "Count them.",
+        )
     return duty
 
 
@@ -134,13 +167,20 @@ def in_hours(duty: Mapping[str, float], hours_per_km: float) -> dict[str, float]
     """
     hours = duty["strokes_per_day"] * duty["stroke"] * hours_per_km / 1000.0
     if hours > 24.0:
-        allowed = f"at most {math.floor(24.0 * duty['strokes_per_day'] / hours):,} strokes, which take 24 hours"
-        raise InputError("duty.strokes_per_day", duty["strokes_per_day"], allowed, "Correct strokes or velocity.")
+        allowed = (
+            f"at most {math.floor(24.0 * duty['strokes_per_day'] / hours):,} strokes, which "
+            "take 24 hours"
+        )
+        raise InputError(
+            "duty.strokes_per_day", duty["strokes_per_day"], allowed, "Correct strokes or velocity."
+        )
     return {"hours_per_day": hours, "days_per_year": duty["days_per_year"]}
 
 
 def passes_per_km(duty: Mapping[str, float]) -> float:
-    """Return how often rollers pass a point in the middle of the guide for a km of travel [1/km]."""
+    """Return how often rollers pass a point in the middle of the guide for a km of travel
+    [1/km].
+    """
     return duty.get("rollers_on_rail", 1.0) * 1000.0 / duty["stroke"]
 
 
@@ -189,7 +229,9 @@ def of_roller(
 def refuse_overrollings(given: Any, field: str) -> None:
     """Refuse overrollings of the guide beside strokes, from which they follow."""
     if given is not None:
-        remedy = f"Remove {field.rpartition('.')[2]}, or write hours_per_day in place of the strokes."
+        remedy = (
+            f"Remove {field.rpartition('.')[2]}, or write hours_per_day in place of the strokes."
+        )
         wrong = "stands beside the strokes of the duty, which give it"
         raise InputError(field, given, "either overrollings or strokes", remedy, wrong)
 
@@ -215,7 +257,8 @@ def years(hours: Any, duty: Mapping[str, float]) -> Any:
 def with_duty(
     ds: xr.Dataset, duty: Mapping[str, float] | None, strokes: Mapping[str, float] | None = None
 ) -> xr.Dataset:
-    """Return the result of one case or spectrum with its duty as attributes; without a duty as it is.
+    """Return the result of one case or spectrum with its duty as attributes; without a duty as it
+    is.
 
     `strokes` are those of the duty as they were given, None for a duty in hours.
     """
@@ -227,7 +270,9 @@ def with_duty(
 
 
 def duty_of(ds: xr.Dataset) -> dict[str, float] | None:
-    """Return the duty that the result of one case or spectrum was solved with, None if it has none."""
+    """Return the duty that the result of one case or spectrum was solved with, None if it has
+    none.
+    """
     if ATTRIBUTE in ds.attrs:
         return json.loads(ds.attrs[ATTRIBUTE])
     return None

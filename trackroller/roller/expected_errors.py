@@ -42,12 +42,15 @@ _QUANTITY_OF = {
     "guide_life_hours": "life",
     "pair_life_hours": "life",
 }
-_RELATIVE_TO = {"friction_force": "mu F_N", "spin_moment": "mu F_N sqrt(a b)"}  # other quantities: to themselves
+# other quantities: to themselves
+_RELATIVE_TO = {"friction_force": "mu F_N", "spin_moment": "mu F_N sqrt(a b)"}
 
 
 @dataclass(frozen=True)
 class Levels:
-    """Measured relative errors over the sample of designs: percentiles, and `bound`, which 99 % of all cases keep."""
+    """Measured relative errors over the sample of designs: percentiles, and `bound`, which 99 % of
+    all cases keep.
+    """
 
     median: float
     p95: float
@@ -57,17 +60,22 @@ class Levels:
 
 @functools.cache
 def _measured() -> Any:
-    return json.loads(resources.files("trackroller.roller").joinpath(FILE).read_text(encoding="utf-8"))
+    return json.loads(
+        resources.files("trackroller.roller").joinpath(FILE).read_text(encoding="utf-8")
+    )
 
 
 def is_rung(options: Options) -> bool:
     """Return whether the settings of the options are those of a rung."""
     settings = options.settings
-    return settings.name in RUNGS and settings in (settings_of(settings.name, rough) for rough in (False, True))
+    return settings.name in RUNGS and settings in (
+        settings_of(settings.name, rough) for rough in (False, True)
+    )
 
 
 def told_weights(accuracy: str, contact_model: str) -> dict[str, float]:
-    """Return the factors on the estimated errors of a rung, see `told_errors`; nothing if they were not measured.
+    """Return the factors on the estimated errors of a rung, see `told_errors`; nothing if they were
+    not measured.
 
     Parameters
     ----------
@@ -79,9 +87,12 @@ def told_weights(accuracy: str, contact_model: str) -> dict[str, float]:
     Returns
     -------
     dict of str to float
-        By `friction_force`, `normal_force`, `friction_energy`, and for peaks `below_surface` and `at_surface` [1].
+        By `friction_force`, `normal_force`, `friction_energy`, and for peaks `below_surface` and
+        `at_surface` [1].
     """
-    found: dict[str, float] = _measured()["told"].get(contact_model, {}).get(accuracy, {}).get("weights", {})
+    found: dict[str, float] = (
+        _measured()["told"].get(contact_model, {}).get(accuracy, {}).get("weights", {})
+    )
     return found
 
 
@@ -104,35 +115,46 @@ def ratio_error(accuracy: str, contact_model: str, quantity: str = "life") -> fl
 
     Notes
     -----
-    Measured on pairs of ordinary designs that differ by the groove or by the contact angle, under the same load
-    (`validation.tradeoff.told`). Errors of such neighbours are alike, so that their ratio errs less than each of them.
+    Measured on pairs of ordinary designs that differ by the groove or by the contact angle, under
+    the same load (`validation.tradeoff.told`). Errors of such neighbours are alike, so that their
+    ratio errs less than each of them.
 
     Examples
     --------
     >>> ratio_error("reference", "kalker") < ratio_error("preview", "kalker")
     True
     """
-    found: float | None = _measured()["told"].get(contact_model, {}).get(accuracy, {}).get("ratio", {}).get(quantity)
+    found: float | None = (
+        _measured()["told"].get(contact_model, {}).get(accuracy, {}).get("ratio", {}).get(quantity)
+    )
     return found
 
 
 def expected_errors(options: Options, contact_model: str, plain: bool) -> dict[str, Levels]:
-    """Return the measured errors of discretisation by quantity; nothing where this combination was not measured.
+    """Return the measured errors of discretisation by quantity; nothing where this combination was
+    not measured.
 
-    The measurements hold for the rungs, ellipses, `plain` surfaces, which have constant friction and no film, and the
-    rigid slip that each model has by itself.
+    The measurements hold for the rungs, ellipses, `plain` surfaces, which have constant friction
+    and no film, and the rigid slip that each model has by itself.
     """
-    if options.normal != "hertz" or options.slip_terms or not plain or options.tolerance is not None:
+    if (
+        options.normal != "hertz"
+        or options.slip_terms
+        or not plain
+        or options.tolerance is not None
+    ):
         return {}
     errors = CLASSES[contact_model].errors()
     if not errors and is_rung(options):
         errors = _measured()["models"].get(contact_model, {}).get(options.settings.name, {})
-    published = options.life_criterion == OPTIONS["life_criterion"].default  # its life alone was measured
+    # its life alone was measured
+    published = options.life_criterion == OPTIONS["life_criterion"].default
     return {name: Levels(*levels) for name, levels in errors.items() if published or name != "life"}
 
 
 def least_errors(table: CaseTable, options: Options) -> tuple[np.ndarray, np.ndarray]:
-    """Return the least error of the forces and of the peaks that a rung can tell for each case, (n,) each.
+    """Return the least error of the forces and of the peaks that a rung can tell for each case,
+    (n,) each.
 
     They are the constant parts of the estimated errors, which contact models from a table have.
     """
@@ -162,8 +184,12 @@ def error_attributes(levels: Mapping[str, Levels]) -> dict[str, dict[str, Any]]:
 
 
 def tell_errors(ds: xr.Dataset, table: CaseTable, options: Options) -> None:
-    """Add as attributes the limit of the residual, and the errors of discretisation if they were measured."""
-    ds.variables["residual"].attrs["converged_up_to"] = converged_up_to(options.contact_model, options.normal)
+    """Add as attributes the limit of the residual, and the errors of discretisation if they were
+    measured.
+    """
+    ds.variables["residual"].attrs["converged_up_to"] = converged_up_to(
+        options.contact_model, options.normal
+    )
     constant = all(law_of(text).is_constant for text in set(table.friction_law.tolist()))
     plain = constant and not np.any(table.layer_flexibility)
     cheaper = DECLARED[options.contact_model].cheaper

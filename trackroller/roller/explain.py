@@ -1,4 +1,6 @@
-"""The plan of stages of a solution: which run, for how many cases or patches, which are skipped and why."""
+"""The plan of stages of a solution: which run, for how many cases or patches, which are skipped and
+why.
+"""
 
 from __future__ import annotations
 
@@ -33,7 +35,9 @@ def _model(options: Options) -> str:
     words = f"contact model {options.contact_model}"
     if options.tolerance is not None:
         shares = DECLARED[options.contact_model].cost.shares_of(options.tolerance.by_quantity)
-        expected = ", ".join(f"{name} {100 * share:.0f} %" for name, share in zip(RUNGS, shares, strict=True))
+        expected = ", ".join(
+            f"{name} {100 * share:.0f} %" for name, share in zip(RUNGS, shares, strict=True)
+        )
         words += f" on the rungs that each case needs, expected: {expected} of the cases"
     if not options.slip_terms:
         return words
@@ -59,7 +63,8 @@ def explain(table: CaseTable, options: Options) -> list[Stage]:
 
     Notes
     -----
-    The counts are those known before anything is solved. Cases that lift off or slip fully leave later stages.
+    The counts are those known before anything is solved. Cases that lift off or slip fully leave
+    later stages.
     """
     n = len(table)
     shortcuts = options.shortcuts
@@ -94,7 +99,9 @@ def explain(table: CaseTable, options: Options) -> list[Stage]:
         why = f"{options.stop_if}: where it holds no peak is searched for"
         stages.append(Stage("stop condition", True, m, n, "cases", why))
     elif options.stop_if is not None:
-        stages.append(Stage("stop condition", False, 0, n, "cases", "no stress is asked for: nothing to stop"))
+        stages.append(
+            Stage("stop condition", False, 0, n, "cases", "no stress is asked for: nothing to stop")
+        )
     if (peaks and options.contact_model != "sliding") or "tractions" not in outputs:
         stages.append(_tractions(options, bool(peaks), solved[0] - bare, 2 * n, frictionless))
     peak = "serves " + " and ".join(sorted(peaks)) + sides
@@ -105,14 +112,20 @@ def explain(table: CaseTable, options: Options) -> list[Stage]:
     return [
         *stages,
         _stage("peak stress", PEAK_OUTPUTS, outputs, solved, peak),
-        _stage("life", {"life"}, outputs, cases, "from peak stress, strength and speed of each case"),
+        _stage(
+            "life", {"life"}, outputs, cases, "from peak stress, strength and speed of each case"
+        ),
         _stage("tractions output", {"tractions"}, outputs, every, "asked for"),
         _stage("subsurface sections", {"subsurface"}, outputs, every, "asked for"),
     ]
 
 
-def _tractions(options: Options, has_peaks: bool, patches: int, total: int, frictionless: int) -> Stage:
-    """Return the stage of the tractions of `patches` with friction, from which stresses are computed."""
+def _tractions(
+    options: Options, has_peaks: bool, patches: int, total: int, frictionless: int
+) -> Stage:
+    """Return the stage of the tractions of `patches` with friction, from which stresses are
+    computed.
+    """
     name = "tractions on a grid"
     if options.contact_model == "sliding":
         why = "not asked for: full sliding tractions are known in closed form"
@@ -125,8 +138,14 @@ def _tractions(options: Options, has_peaks: bool, patches: int, total: int, fric
     return Stage(name, patches > 0, patches, total, "patches", why)
 
 
-def _stage(name: str, need: Set[str], outputs: set[str], size: tuple[int, int, str], why: str) -> Stage:
-    """Return a stage that runs if one of the outputs `need` is wanted; `size` has count, total and unit."""
+def _stage(
+    name: str, need: Set[str], outputs: set[str], size: tuple[int, int, str], why: str
+) -> Stage:
+    """Return a stage that runs if one of the outputs `need` is wanted; `size` has count, total and
+    unit.
+    """
     if need & outputs:
         return Stage(name, True, *size, why)
-    return Stage(name, False, 0, *size[1:], f"no output needs it (it serves {' or '.join(sorted(need))})")
+    return Stage(
+        name, False, 0, *size[1:], f"no output needs it (it serves {' or '.join(sorted(need))})"
+    )

@@ -44,7 +44,9 @@ def with_reasons(
     xarray.Dataset
         The same results; `reason` is "" for solved cases, and missing if all cases are solved.
     """
-    regime, converged = (np.atleast_1d(ds.variables[name].values) for name in ("regime", "converged"))
+    regime, converged = (
+        np.atleast_1d(ds.variables[name].values) for name in ("regime", "converged")
+    )
     failed = regime == FAILED
     loose = (regime == ROLLING) & (converged == 0)
     if not (failed | loose).any():
@@ -73,26 +75,32 @@ def _hints(case: CaseTable, options: Options, steep: bool) -> list[str]:
     if "curve" in options.slip_terms and _beyond_the_axis(case):
         return [
             "With slip_terms: curve the contacts must not lie beyond the axis of the inner curve, "
-            "where guide_curve_radius + guide_profile_radius cos(contact_angle) > 0: leave 'curve' out"
+            "where guide_curve_radius + guide_profile_radius cos(contact_angle) > 0: leave "
+            "'curve' out"
         ]
     hints = []
     if steep:
         hints.append(
-            "Friction falls faster with the slip speed than elastic surfaces follow (steep_friction): "
-            "the roller may not roll steadily; a friction_law that falls less steeply, or contact_model: "
+            "Friction falls faster with the slip speed than elastic surfaces follow "
+            "(steep_friction): "
+            "the roller may not roll steadily; a friction_law that falls less steeply, or "
+            "contact_model: "
             "sliding, has a solution more often"
         )
     rough = [name for name in PROFILES if _goes_through_points(str(getattr(case, name)[0]))]
     if rough and options.normal == "halfspace":
         hints.append(
-            f"The {' and the '.join(rough)} goes through every point, and measuring noise counts as shape: "
+            f"The {' and the '.join(rough)} goes through every point, and measuring noise counts "
+            "as shape: "
             "give smooth: auto"
         )
     return hints
 
 
 def _beyond_the_axis(case: CaseTable) -> bool:
-    """Return True if the contacts lie beyond the axis of a concave guide, where the turning is not defined."""
+    """Return True if the contacts lie beyond the axis of a concave guide, where the turning is not
+    defined.
+    """
     cosine = np.cos(contact_geometry(vars(case)).contact_angle)
     return bool(np.isnan(turning_of(case.guide_curve_radius, case.guide_profile_radius, cosine)[0]))
 

@@ -19,14 +19,19 @@ from trackroller.parameters.example import EXAMPLE
 from trackroller.roller.point_files import read_points
 
 FIELDS = (*PARAMETERS, *MATERIAL_FIELDS, *MAPPING_FIELDS)
-NAME, LONGEST_NAME = "name", 40  # key of a mapping by which tables and headlines call it, and its length
+# key of a mapping by which tables and headlines call it, and its length
+NAME, LONGEST_NAME = "name", 40
 _OF_LIMITS = {own.name: own for limit in LIMITS.values() for own in limit.mappings}
 
 
 def other_than_default(values: Mapping[str, Any]) -> dict[str, Any]:
     """Return those values of a case that are given, and are not the default of their parameter."""
     usual = {name: parameter.default for name, parameter in PARAMETERS.items()}
-    return {name: value for name, value in values.items() if value is not None and value != usual.get(name)}
+    return {
+        name: value
+        for name, value in values.items()
+        if value is not None and value != usual.get(name)
+    }
 
 
 def mapping_text(name: str, value: Any) -> str:
@@ -73,7 +78,9 @@ def mapping_text(name: str, value: Any) -> str:
 
 
 def _with_name(field: str, value: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the checked mapping of a limit, with the name by which tables call it where one is given."""
+    """Return the checked mapping of a limit, with the name by which tables call it where one is
+    given.
+    """
     mapping = _OF_LIMITS[field].canonical({key: own for key, own in value.items() if key != NAME})
     own = value.get(NAME)
     if own is None:
@@ -85,7 +92,8 @@ def _with_name(field: str, value: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def number(name: str, value: Any) -> float:
-    """Return a number of a case as a float; NaN if the user left it out and the parameter allows this.
+    """Return a number of a case as a float; NaN if the user left it out and the parameter allows
+    this.
 
     Parameters
     ----------
@@ -102,7 +110,8 @@ def number(name: str, value: Any) -> float:
     parameter = PARAMETERS[name]
     if value is None and parameter.allow_missing:
         return math.nan
-    if isinstance(value, float) and math.isnan(value):  # the caller checks whether the parameter may be left out
+    # the caller checks whether the parameter may be left out
+    if isinstance(value, float) and math.isnan(value):
         return math.nan
     given = number_or_nan(value, parameter.unit, name)
     if math.isnan(given):
@@ -111,7 +120,9 @@ def number(name: str, value: Any) -> float:
 
 
 def own_friction(law: Any) -> float:
-    """Return the friction at rest of a case without friction coefficient: that of its law's table, or the default."""
+    """Return the friction at rest of a case without friction coefficient: that of its law's table,
+    or the default.
+    """
     own = None
     if isinstance(law, (str, Mapping)) and law:
         own = friction_laws.at_rest(law)

@@ -1,4 +1,6 @@
-"""How far a parameter of a roller may go until a condition on its results is no longer met: `tr.find`."""
+"""How far a parameter of a roller may go until a condition on its results is no longer met:
+`tr.find`.
+"""
 
 from __future__ import annotations
 
@@ -49,14 +51,16 @@ class Found:
     start : float
         Value of the case.
     low, high : float
-        Ends of the range that holds the case's value, or that lies next to it if the case itself does not meet the
-        condition; NaN if no value meets it.
+        Ends of the range that holds the case's value, or that lies next to it if the case itself
+        does not meet the condition; NaN if no value meets it.
     tried : tuple of float
-        Smallest and largest value that was tried. An end of the range that equals one of these is no limit.
+        Smallest and largest value that was tried. An end of the range that equals one of these is
+        no limit.
     below, above : str
         What is the case just outside either end; an empty text where the search ended.
     notes : tuple of str
-        What the condition does not count: ends of the range of a life, and a guide whose hours are not known.
+        What the condition does not count: ends of the range of a life, and a guide whose hours are
+        not known.
     """
 
     name: str
@@ -72,7 +76,9 @@ class Found:
 
     @property
     def value(self) -> float:
-        """Return the end of the range that is a limit; the one nearer to the start of two, NaN if there is none."""
+        """Return the end of the range that is a limit; the one nearer to the start of two, NaN if
+        there is none.
+        """
         ends = [end for end, why in ((self.low, self.below), (self.high, self.above)) if why]
         return min(ends, key=lambda end: abs(end - self.start), default=math.nan)
 
@@ -82,10 +88,17 @@ class Found:
         return not math.isnan(self.low)
 
     def as_dict(self) -> dict[str, Any]:
-        """Return the attributes and the answer in words, as values of JSON; a number that is not known is None."""
+        """Return the attributes and the answer in words, as values of JSON; a number that is not
+        known is None.
+        """
         numbers = {key: getattr(self, key) for key in ("start", "low", "high", "value")}
-        known = dict.fromkeys(numbers) | {key: number for key, number in numbers.items() if math.isfinite(number)}
-        texts = {key: getattr(self, key) for key in ("name", "unit", "condition", "below", "above", "text")}
+        known = dict.fromkeys(numbers) | {
+            key: number for key, number in numbers.items() if math.isfinite(number)
+        }
+        texts = {
+            key: getattr(self, key)
+            for key in ("name", "unit", "condition", "below", "above", "text")
+        }
         return {**known, **texts, "tried": list(self.tried)}
 
     @property
@@ -97,13 +110,21 @@ class Found:
         words = PARAMETERS[self.name].long_name
         tried = f"{self.tried[0]:.4g} and {self.tried[1]:.4g}{unit}"
         if not self.met:
-            return " ".join([f"No {words} between {tried} meets '{self.condition}': {self.below}", *self.notes])
+            return " ".join(
+                [f"No {words} between {tried} meets '{self.condition}': {self.below}", *self.notes]
+            )
         now = f"now {self.start:g}{unit}"
         if not self.low <= self.start <= self.high:
             now += ", where it is not met"
-        sentences = [f"'{self.condition}' is met from {self.low:.6g} to {self.high:.6g}{unit} of {words} ({now})."]
+        sentences = [
+            f"'{self.condition}' is met from {self.low:.6g} to {self.high:.6g}{unit} of {words} "
+            f"({now})."
+        ]
         open_ends = []
-        for side, end, results in (("Below", self.low, self.below), ("Above", self.high, self.above)):
+        for side, end, results in (
+            ("Below", self.low, self.below),
+            ("Above", self.high, self.above),
+        ):
             if results:
                 sentences.append(f"{side} {end:.6g}{unit}: {results}")
             else:
@@ -131,12 +152,14 @@ def find(
     name : str
         The parameter that is changed, such as "axial_force".
     condition : str
-        Comparisons of results with one number a case, such as "pair_life_to_first_limit_hours >= 10500 h and slip <
-        0.01"; see `trackroller.roller.output_names` for the names. `regime` and parameters may be compared, too.
+        Comparisons of results with one number a case, such as "pair_life_to_first_limit_hours >=
+        10500 h and slip < 0.01"; see `trackroller.roller.output_names` for the names. `regime` and
+        parameters may be compared, too.
     between : tuple of float, optional
-        Values between which the parameter is tried, in its unit. Default: a sixteenth to sixteen times the value of the
-        case; for a parameter of either sign, four times the size of the larger of value and example both ways. Bounds
-        of the parameter cut both, and `between` is widened to the case's value; the notes tell both.
+        Values between which the parameter is tried, in its unit. Default: a sixteenth to sixteen
+        times the value of the case; for a parameter of either sign, four times the size of the
+        larger of value and example both ways. Bounds of the parameter cut both, and `between` is
+        widened to the case's value; the notes tell both.
     database : MaterialDatabase, optional
         Materials; the built-in ones and the user's own if not given.
     **options
@@ -150,19 +173,21 @@ def find(
     Raises
     ------
     InputError
-        If a name is unknown, the condition is no comparison, the parameter cannot be changed, or `between` is no pair
-        of different finite numbers or lies outside the bounds of the parameter.
+        If a name is unknown, the condition is no comparison, the parameter cannot be changed, or
+        `between` is no pair of different finite numbers or lies outside the bounds of the
+        parameter.
 
     Notes
     -----
-    The search tries 49 values, and then cuts the steps at both ends of the range into eight parts, five times. An
-    interval that lies between two tried values is not seen. Values that the program refuses do not meet the condition.
+    The search tries 49 values, and then cuts the steps at both ends of the range into eight parts,
+    five times. An interval that lies between two tried values is not seen. Values that the program
+    refuses do not meet the condition.
 
     Examples
     --------
     >>> import trackroller as tr
-    >>> found = tr.find({"friction_coefficient": 0, "motor_force": 0}, "axial_force", "regime == rolling",
-    ...                 contact_model="sliding")
+    >>> free = {"friction_coefficient": 0, "motor_force": 0}
+    >>> found = tr.find(free, "axial_force", "regime == rolling", contact_model="sliding")
     >>> round(found.high, 2)  # F_rad tan(alpha)
     115.47
     """
@@ -178,22 +203,30 @@ def find(
         raise unknown_name("find", name, PARAMETERS)
     start = getattr(given, name)
     if not isinstance(start, (int, float)) or not math.isfinite(start):
-        raise InputError("find", name, "a parameter with a number in the case", f"Give the case a finite {name}.")
+        raise InputError(
+            "find", name, "a parameter with a number in the case", f"Give the case a finite {name}."
+        )
     search = _Search(given, name, condition, database, options)
     notes: list[str] = []
     if between is not None:
         between, notes = _cut(PARAMETERS[name], float(start), between)
-    return search.range_around(float(start), _values(PARAMETERS[name], float(start), between), notes)
+    return search.range_around(
+        float(start), _values(PARAMETERS[name], float(start), between), notes
+    )
 
 
 def _cut(parameter: Parameter, start: float, between: Any) -> tuple[tuple[float, float], list[str]]:
-    """Return the range to search, within the bounds of a parameter and with the start in it, and what was changed."""
+    """Return the range to search, within the bounds of a parameter and with the start in it, and
+    what was changed.
+    """
     allowed = f"two different finite numbers [{parameter.unit}], each {parameter.allowed()}"
     remedy = f"Write between=(lowest, highest) in {parameter.unit}, or leave it out."
     if isinstance(between, (str, Mapping)) or not isinstance(between, Iterable):
         raise InputError("between", between, allowed, remedy)
     given = list(between)
-    finite = [number_in(end, "between", allowed, -LARGEST, LARGEST, parameter.unit) for end in given]
+    finite = [
+        number_in(end, "between", allowed, -LARGEST, LARGEST, parameter.unit) for end in given
+    ]
     if len(finite) != 2 or finite[0] == finite[1]:
         raise InputError("between", given, allowed, remedy)
     low = max(min(finite), parameter.lower)
@@ -206,7 +239,9 @@ def _cut(parameter: Parameter, start: float, between: Any) -> tuple[tuple[float,
         unit = f" {parameter.unit}"
     notes = []
     if (low, high) != (min(finite), max(finite)):
-        notes.append(f"The search was cut to {low:g} to {high:g}{unit}, the bounds of {parameter.long_name}.")
+        notes.append(
+            f"The search was cut to {low:g} to {high:g}{unit}, the bounds of {parameter.long_name}."
+        )
     if not low <= start <= high:
         notes.append(f"The search was widened to the value of the case, {start:g}{unit}.")
     return (min(low, start), max(high, start)), notes
@@ -215,8 +250,8 @@ def _cut(parameter: Parameter, start: float, between: Any) -> tuple[tuple[float,
 def _toward(start: float, end: float) -> np.ndarray:
     """Return the values from the start to an end of the search, without the start.
 
-    Even steps miss what lies near the start if the end is far away, so that the steps grow where the end is more than
-    `RATIO` times the start away.
+    Even steps miss what lies near the start if the end is far away, so that the steps grow where
+    the end is more than `RATIO` times the start away.
     """
     distance = abs(end - start)
     near = abs(start) or 1.0
@@ -232,7 +267,9 @@ def _values(parameter: Parameter, start: float, between: tuple[float, float] | N
     """Return the values to try first, rising, the start among them."""
     signed = parameter.lower < 0.0 < parameter.upper
     if between is not None:
-        values = np.concatenate([_toward(start, between[0])[::-1], [start], _toward(start, between[1])])
+        values = np.concatenate(
+            [_toward(start, between[0])[::-1], [start], _toward(start, between[1])]
+        )
     elif signed or start == 0.0:
         example = 0.0
         if math.isfinite(parameter.default):
@@ -246,7 +283,9 @@ def _values(parameter: Parameter, start: float, between: tuple[float, float] | N
 
 
 def _run_around(is_met: np.ndarray, distance: np.ndarray) -> tuple[int, int]:
-    """Return first and last place of the run of places that meet a condition, around the nearest of them."""
+    """Return first and last place of the run of places that meet a condition, around the nearest of
+    them.
+    """
     inside = int(np.flatnonzero(is_met)[np.argmin(distance[is_met])])
     first, last = inside, inside
     while first > 0 and is_met[first - 1]:
@@ -260,7 +299,12 @@ class _Search:
     """Solve a roller at values of one parameter, and compare its results."""
 
     def __init__(
-        self, case: Case, name: str, condition: str, database: MaterialDatabase | None, options: Mapping[str, Any]
+        self,
+        case: Case,
+        name: str,
+        condition: str,
+        database: MaterialDatabase | None,
+        options: Mapping[str, Any],
     ) -> None:
         self.case = case
         self.name = name
@@ -297,11 +341,15 @@ class _Search:
     def _solved(self, cases: list[Case]) -> list[tuple[bool, str]]:
         ds = solve(cases, database=self.database, **self.options)
         columns: dict[str, Any] = {
-            one: PARTS[one].values(ds).values for one in self.results if PARTS[one].variable.name in ds
+            one: PARTS[one].values(ds).values
+            for one in self.results
+            if PARTS[one].variable.name in ds
         }
         lacking = [one for one in self.results if one not in columns]
         if lacking:
-            raise InputError("find", self.condition, f"results of this roller; it has no {', '.join(lacking)}")
+            raise InputError(
+                "find", self.condition, f"results of this roller; it has no {', '.join(lacking)}"
+            )
         for result in self.results:
             low = PARTS.get(f"{result}_low")
             if low is None or low.variable.name not in ds:
@@ -310,12 +358,18 @@ class _Search:
                 self.ranged.add(result)
         regime = ds["regime"].values
         columns["regime"] = np.array(REGIMES, dtype=object)[regime]
-        columns |= {one: np.array([getattr(case, one) for case in cases], dtype=object) for one in self.parameters}
+        columns |= {
+            one: np.array([getattr(case, one) for case in cases], dtype=object)
+            for one in self.parameters
+        }
         words = {**columns, **{regime: regime for regime in REGIMES}}
         is_met = np.broadcast_to(meets(self.plain, words, "find"), (len(cases),))
         answers = []
         for i, good in enumerate(is_met.tolist()):
-            parts = [f"{name} {self._band(ds, name, i, float(columns[name][i]))}" for name in self.results]
+            parts = [
+                f"{name} {self._band(ds, name, i, float(columns[name][i]))}"
+                for name in self.results
+            ]
             if regime[i] != REGIMES.index("rolling") or not parts:
                 parts.insert(0, REGIMES[regime[i]].replace("_", " "))
             answers.append((bool(good), ", ".join(parts) + "."))
@@ -337,13 +391,18 @@ class _Search:
             f"{one} holds at the values of the placeholders; {one}_low is surely reached."
             for one in sorted(self.ranged)
         ]
-        alone = self.case.guide_overrollings_per_hour is None and self.name != "guide_overrollings_per_hour"
+        alone = (
+            self.case.guide_overrollings_per_hour is None
+            and self.name != "guide_overrollings_per_hour"
+        )
         if alone and any(one.startswith("pair_life") for one in self.results):
             sentences.append("The guide's hours are not known: give guide_overrollings_per_hour.")
         return tuple(sentences)
 
     def odd_at(self, value: float) -> list[str]:
-        """Return the doubts about the case with another value that the case itself does not have."""
+        """Return the doubts about the case with another value that the case itself does not
+        have.
+        """
         database = self.database
         if database is None:
             database = load_database()
@@ -367,9 +426,21 @@ class _Search:
             nearest = answers[int(np.argmin(np.abs(values - start)))][1]
             why = f"now {nearest}"
             none = math.nan
-            return Found(self.name, unit, self.condition, start, none, none, tried, why, "", (*self.notes(), *notes))
+            return Found(
+                self.name,
+                unit,
+                self.condition,
+                start,
+                none,
+                none,
+                tried,
+                why,
+                "",
+                (*self.notes(), *notes),
+            )
         first, last = _run_around(is_met, np.abs(values - start))
-        # of each end, the last value that meets the condition and the first one beyond; an open end has no bracket
+        # of each end, the last value that meets the condition and the first one beyond; an open end
+        # has no bracket
         brackets: dict[int, tuple[float, float]] = {}
         results: dict[float, str] = {}
         for side, last_inside, beyond in ((0, first, first - 1), (1, last, last + 1)):
@@ -391,4 +462,6 @@ class _Search:
         low, high = ends
         odd = dict.fromkeys(text for end in (low, high) for text in self.odd_at(end))
         notes = (*self.notes(), *notes, *(f"Doubtful: {text}" for text in odd))
-        return Found(self.name, unit, self.condition, start, low, high, tried, texts[0], texts[1], notes)
+        return Found(
+            self.name, unit, self.condition, start, low, high, tried, texts[0], texts[1], notes
+        )

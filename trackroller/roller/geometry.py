@@ -44,11 +44,13 @@ def curvatures(
     Returns
     -------
     tuple of numpy.ndarray
-        k_x = 1/r_C,TR + 1/r_C,G in the lateral plane and k_y = cos(alpha)/r_A + cos(alpha)/r_Curve in the rolling
-        plane [1/mm], shape (n,) each.
+        k_x = 1/r_C,TR + 1/r_C,G in the lateral plane and k_y = cos(alpha)/r_A + cos(alpha)/r_Curve
+        in the rolling plane [1/mm], shape (n,) each.
     """
     k_x = 1.0 / np.asarray(roller_profile_radius) + 1.0 / np.asarray(guide_profile_radius)
-    k_y = np.cos(contact_angle) * (1.0 / np.asarray(rolling_radius) + 1.0 / np.asarray(guide_curve_radius))
+    k_y = np.cos(contact_angle) * (
+        1.0 / np.asarray(rolling_radius) + 1.0 / np.asarray(guide_curve_radius)
+    )
     return k_x, k_y
 
 
@@ -71,7 +73,9 @@ def lever_arms(axis_distance, guide_profile_radius, contact_angle) -> tuple[np.n
 
 
 class ContactGeometry(NamedTuple):
-    """Contact angle [rad], r_A [mm], and the relative curvatures k_x and k_y [1/mm] of n rollers, each (n,)."""
+    """Contact angle [rad], r_A [mm], and the relative curvatures k_x and k_y [1/mm] of n rollers,
+    each (n,).
+    """
 
     contact_angle: np.ndarray
     rolling_radius: np.ndarray
@@ -85,8 +89,8 @@ def contact_geometry(columns: Mapping[str, np.ndarray]) -> ContactGeometry:
     Parameters
     ----------
     columns : mapping of str to numpy.ndarray
-        Radii and axis distance [mm] and the contact angle [deg] by parameter name, shape (n,); `vars(table)` of a
-        `CaseTable` is such a mapping.
+        Radii and axis distance [mm] and the contact angle [deg] by parameter name, shape (n,);
+        `vars(table)` of a `CaseTable` is such a mapping.
 
     Returns
     -------
@@ -102,7 +106,11 @@ def contact_geometry(columns: Mapping[str, np.ndarray]) -> ContactGeometry:
     """
     alpha = np.deg2rad(columns["contact_angle"])
     radius = rolling_radius(columns["axis_distance"], columns["guide_profile_radius"], alpha)
-    profiles = columns["roller_profile_radius"], columns["guide_profile_radius"], columns["guide_curve_radius"]
+    profiles = (
+        columns["roller_profile_radius"],
+        columns["guide_profile_radius"],
+        columns["guide_curve_radius"],
+    )
     return ContactGeometry(alpha, radius, *curvatures(*profiles, radius, alpha))
 
 
@@ -112,22 +120,33 @@ def geometry_problem(columns: Mapping[str, np.ndarray]) -> InputError | None:
     Parameters
     ----------
     columns : mapping of str to array_like
-        The radii, the axis distance [mm] and the contact angle [deg] of n cases by their names in `PARAMETERS`; shapes
-        that broadcast to (n,).
+        The radii, the axis distance [mm] and the contact angle [deg] of n cases by their names in
+        `PARAMETERS`; shapes that broadcast to (n,).
 
     Returns
     -------
     InputError or None
-        An error that names the field to change: if the rolling radius is not positive, or if a relative curvature is
-        not positive, so that the surfaces conform or interlock and there is no point contact.
+        An error that names the field to change: if the rolling radius is not positive, or if a
+        relative curvature is not positive, so that the surfaces conform or interlock and there is
+        no point contact.
     """
     return next((problem for _, problem in geometry_problems(columns)), None)
 
 
 def geometry_problems(columns: Mapping[str, np.ndarray]) -> Iterator[tuple[int, InputError]]:
-    """Yield the number of each case whose geometry contradicts itself, with the error; see `geometry_problem`."""
-    names = ("axis_distance", "guide_profile_radius", "roller_profile_radius", "guide_curve_radius", "contact_angle")
-    full = np.broadcast_arrays(*(np.atleast_1d(np.asarray(columns[name], dtype=float)) for name in names))
+    """Yield the number of each case whose geometry contradicts itself, with the error; see
+    `geometry_problem`.
+    """
+    names = (
+        "axis_distance",
+        "guide_profile_radius",
+        "roller_profile_radius",
+        "guide_curve_radius",
+        "contact_angle",
+    )
+    full = np.broadcast_arrays(
+        *(np.atleast_1d(np.asarray(columns[name], dtype=float)) for name in names)
+    )
     get = dict(zip(names, full, strict=True))
     with np.errstate(divide="ignore"):
         geometry = contact_geometry(get)
@@ -144,7 +163,12 @@ def geometry_problems(columns: Mapping[str, np.ndarray]) -> Iterator[tuple[int, 
             radius = geometry.rolling_radius[i]
             limit = groove * np.cos(geometry.contact_angle[i])
             words = {"value": value[i], "groove": -groove, "radius": -radius, "limit": limit}
-            yield i, InputError(name, float(get[name][i]), allowed.format(**words), remedy.format(**words))
+            yield (
+                i,
+                InputError(
+                    name, float(get[name][i]), allowed.format(**words), remedy.format(**words)
+                ),
+            )
 
 
 _AXIS = (
@@ -153,10 +177,13 @@ _AXIS = (
 )
 _GROOVE = (
     "the surfaces conform or interlock: 1/r_C,TR + 1/r_C,G = {value:.6g} 1/mm must be > 0",
-    "Use a groove wider than the guide (roller_profile_radius below {groove:.6g} mm) or a convex roller (> 0).",
+    "Use a groove wider than the guide (roller_profile_radius below {groove:.6g} mm) or a "
+    "convex roller (> 0).",
 )
 _CURVE = (
-    "the surfaces conform or interlock: cos(alpha)/r_A + cos(alpha)/r_Curve = {value:.6g} 1/mm must be > 0",
-    "Use an inner curve wider than the roller (guide_curve_radius below {radius:.6g} mm), a straight (inf) or an "
+    "the surfaces conform or interlock: cos(alpha)/r_A + cos(alpha)/r_Curve = {value:.6g} "
+    "1/mm must be > 0",
+    "Use an inner curve wider than the roller (guide_curve_radius below {radius:.6g} mm), a "
+    "straight (inf) or an "
     "outer curve (> 0).",
 )

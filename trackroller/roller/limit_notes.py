@@ -1,7 +1,9 @@
-"""Notes on the limits of a result: values that a limit lacks, and placeholders of materials that it rests on.
+"""Notes on the limits of a result: values that a limit lacks, and placeholders of materials that it
+rests on.
 
-A data set keeps the notes as sentences, a line each, which a user reads and which results of several cases unite. Each
-note writes its sentence and reads it back, so that no other file depends on the words.
+A data set keeps the notes as sentences, a line each, which a user reads and which results of
+several cases unite. Each note writes its sentence and reads it back, so that no other file depends
+on the words.
 """
 
 from __future__ import annotations
@@ -29,12 +31,16 @@ if TYPE_CHECKING:
     from trackroller.roller.options import Options
 
 _LACK = re.compile(
-    r"(?P<limit>\w+): (?:the case gives|material '(?P<material>.+?)' has) no (?P<name>\w+)\. (?P<remedy>.*)"
+    r"(?P<limit>\w+): (?:the case gives|material '(?P<material>.+?)' has) no (?P<name>\w+)\. "
+    r"(?P<remedy>.*)"
 )
-_PLACEHOLDERS = re.compile(r"(?P<limit>\w+): placeholders of material '(?P<material>.+?)': (?P<values>.*)\.")
+_PLACEHOLDERS = re.compile(
+    r"(?P<limit>\w+): placeholders of material '(?P<material>.+?)': (?P<values>.*)\."
+)
 _VALUE = re.compile(
     r"(?P<name>\w+) \((?:(?P<note>.+?), )??"
-    r"(?:expected from (?P<low>\S+) to (?P<high>[^\s)]+)(?: (?P<units>.+?))?|no range is given)\)(?=, \w+ \(|$)"
+    r"(?:expected from (?P<low>\S+) to (?P<high>[^\s)]+)(?: (?P<units>.+?))?|no range is "
+    r"given)\)(?=, \w+ \(|$)"
 )
 
 
@@ -97,11 +103,15 @@ class Placeholder:
     @classmethod
     def of(cls, limit: str, material: str, name: str, guess: Value) -> Placeholder:
         """Return the placeholder of a limit for a guess of a material."""
-        return cls(limit, material, name, guess.note, *(guess.range or (np.nan, np.nan)), units=guess.unit)
+        return cls(
+            limit, material, name, guess.note, *(guess.range or (np.nan, np.nan)), units=guess.unit
+        )
 
     @property
     def on(self) -> str:
-        """Return the material that it runs on if the value is that of a pair, otherwise an empty text."""
+        """Return the material that it runs on if the value is that of a pair, otherwise an empty
+        text.
+        """
         first = self.note.partition(", ")[0]
         if first.startswith("on "):
             return first.removeprefix("on ")
@@ -117,7 +127,9 @@ class Placeholder:
 
 
 def placeholder_line(placeholders: list[Placeholder]) -> str:
-    """Return the sentence in a data set on the placeholders of one material on which one limit rests."""
+    """Return the sentence in a data set on the placeholders of one material on which one limit
+    rests.
+    """
     first = placeholders[0]
     values = ", ".join(one.words for one in placeholders)
     return f"{first.limit}: placeholders of material '{first.material}': {values}."
@@ -144,13 +156,20 @@ def placeholders_of(ds: xr.Dataset) -> list[Placeholder]:
         for value in _VALUE.finditer(placeholders["values"]):
             low = float(value["low"] or np.nan)
             high = float(value["high"] or np.nan)
-            texts = placeholders["limit"], placeholders["material"], value["name"], value["note"] or ""
+            texts = (
+                placeholders["limit"],
+                placeholders["material"],
+                value["name"],
+                value["note"] or "",
+            )
             out.append(Placeholder(*texts, low, high, value["units"] or ""))
     return out
 
 
 def notes_on_limits(table: CaseTable, options: Options) -> list[str]:
-    """Return one sentence for each value that a limit asked for lacks, and for each that is a placeholder."""
+    """Return one sentence for each value that a limit asked for lacks, and for each that is a
+    placeholder.
+    """
     solved = solved_of(table, {}, options)
     bodies = {"roller": table.roller, "guide": table.guide}
     names = {body: own.name for body, own in bodies.items()}
@@ -168,9 +187,15 @@ def notes_on_limits(table: CaseTable, options: Options) -> list[str]:
             required = dict(limit.required_of(solved))
         for material, guessed in guesses:
             of = np.stack([own.name == material for own in bodies.values()], axis=1)
-            used = [(name, guess) for name, guess in guessed if name in required and np.any(required[name] & of)]
+            used = [
+                (name, guess)
+                for name, guess in guessed
+                if name in required and np.any(required[name] & of)
+            ]
             if used:
-                out.append(placeholder_line([Placeholder.of(limit.name, material, *one) for one in used]))
+                out.append(
+                    placeholder_line([Placeholder.of(limit.name, material, *one) for one in used])
+                )
     return list(dict.fromkeys(out))
 
 
@@ -202,11 +227,16 @@ def _lacks(limit: Limit, solved: SolvedRollers, names: Mapping[str, np.ndarray])
 
 
 def _remedy_of_field(name: str) -> str:
-    """Say how a field of a case is entered: its meaning with its unit, or with an example of a mapping."""
+    """Say how a field of a case is entered: its meaning with its unit, or with an example of a
+    mapping.
+    """
     if name in MAPPING_FIELDS:
         return f"Add it to the case, or with --set: {MAPPING_FIELDS[name]}."
     parameter = PARAMETERS[name]
-    return f"Add it to the case, or with --set {name}=NUMBER: {parameter.long_name} [{parameter.unit}]."
+    return (
+        f"Add it to the case, or with --set {name}=NUMBER: {parameter.long_name} "
+        f"[{parameter.unit}]."
+    )
 
 
 def _remedy_of_value(name: str, material: str) -> str:
@@ -232,8 +262,13 @@ def given_in_vain(values: Mapping[str, Any], idle: Iterable[str]) -> dict[str, l
     Returns
     -------
     dict of str to list of str
-        The limits that would use a value, by its name. Defaults are left out, and `travel`, which any study may have.
+        The limits that would use a value, by its name. Defaults are left out, and `travel`, which
+        any study may have.
     """
-    users = {name: [limit.name for limit in judged() if name in fields_of(limit)] for name in values}
-    unused = {name: own for name, own in users.items() if own and {*own} <= {*idle} and name != "travel"}
+    users = {
+        name: [limit.name for limit in judged() if name in fields_of(limit)] for name in values
+    }
+    unused = {
+        name: own for name, own in users.items() if own and {*own} <= {*idle} and name != "travel"
+    }
     return {name: own for name, own in unused.items() if not is_default(name, values[name])}

@@ -1,4 +1,6 @@
-"""Read what a user says of a measured log where its lines leave it open: the key `log` of a case file."""
+"""Read what a user says of a measured log where its lines leave it open: the key `log` of a case
+file.
+"""
 
 from __future__ import annotations
 
@@ -25,14 +27,17 @@ class LogAnswers:
     Parameters
     ----------
     hold : str, optional
-        How long a line holds: `last`, until the next line; `middle`, for half of the step before and half of the step
-        after; `step`, as `middle`, but a longer step is a gap and counts as a usual one.
+        How long a line holds: `last`, until the next line; `middle`, for half of the step before
+        and half of the step after; `step`, as `middle`, but a longer step is a gap and counts as a
+        usual one.
     missing : tuple of str, optional
-        Cells that stand for no value, such as '-9999' or 'NaN'; their lines are left out. () says that there are none.
+        Cells that stand for no value, such as '-9999' or 'NaN'; their lines are left out. () says
+        that there are none.
     spikes : str, optional
         `keep` or `leave out` the lines with a spike.
     travel : str, optional
-        The column that says how far the roller moves, `distance` or `velocity`, where a log has both.
+        The column that says how far the roller moves, `distance` or `velocity`, where a log has
+        both.
     """
 
     hold: str | None = None
@@ -66,14 +71,18 @@ def checked_log(value: Any) -> dict[str, Any]:
     {'hold': 'last', 'missing': ['-9999', 'NaN']}
     """
     if not isinstance(value, Mapping):
-        raise InputError("log", value, f"some of the keys {', '.join(KEYS)}", "Write log: {hold: last}.")
+        raise InputError(
+            "log", value, f"some of the keys {', '.join(KEYS)}", "Write log: {hold: last}."
+        )
     check_names("log: key", value, KEYS)
     given = {key: entry for key, entry in value.items() if entry is not None}
     wrong = Collector()
     for key, words in WORDS.items():
         with wrong.part():
             if given.get(key, words[0]) not in words:
-                raise InputError(f"log.{key}", given[key], ", ".join(words), f"Write log: {{{key}: {words[0]}}}.")
+                raise InputError(
+                    f"log.{key}", given[key], ", ".join(words), f"Write log: {{{key}: {words[0]}}}."
+                )
     with wrong.part():
         if "missing" in given:
             given["missing"] = _cells(given["missing"])
@@ -88,7 +97,12 @@ def _cells(value: Any) -> list[str]:
     else:
         cells = [value]
     if any(isinstance(cell, bool) or not isinstance(cell, (str, int, float)) for cell in cells):
-        raise InputError("log.missing", value, "a list of numbers and texts", "Write log: {missing: [-9999, NaN]}.")
+        raise InputError(
+            "log.missing",
+            value,
+            "a list of numbers and texts",
+            "Write log: {missing: [-9999, NaN]}.",
+        )
     return [str(cell).strip() for cell in cells]
 
 

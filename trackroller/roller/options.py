@@ -21,7 +21,9 @@ if TYPE_CHECKING:
     import xarray as xr
 
 _Fields = make_dataclass(
-    "_Fields", [(option.name, Any, field(default=option.default)) for option in OPTIONS.values()], frozen=True
+    "_Fields",
+    [(option.name, Any, field(default=option.default)) for option in OPTIONS.values()],
+    frozen=True,
 )
 
 
@@ -55,7 +57,9 @@ class Options(_Fields):  # type: ignore[misc, valid-type]
 
     @property
     def settings(self) -> Accuracy:
-        """Return the discretisation of each stage; stages outside the walk of a tolerance take that of the default."""
+        """Return the discretisation of each stage; stages outside the walk of a tolerance take that
+        of the default.
+        """
         if isinstance(self.accuracy, Accuracy):
             return self.accuracy
         if self.tolerance is not None:
@@ -66,7 +70,9 @@ class Options(_Fields):  # type: ignore[misc, valid-type]
 
     @property
     def tolerance(self) -> Tolerance | None:
-        """Return the tolerances that are met case by case, None if every case has the same settings."""
+        """Return the tolerances that are met case by case, None if every case has the same
+        settings.
+        """
         return tolerance_of(self.accuracy, self.outputs)
 
     def changed(self, **values: Any) -> Options:
@@ -77,18 +83,23 @@ class Options(_Fields):  # type: ignore[misc, valid-type]
 
     def attributes(self) -> dict[str, Any]:
         """Return the attributes of a result that record the options."""
-        values = {o.name: o.attribute(getattr(self, o.name), self.contact_model) for o in OPTIONS.values()}
+        values = {
+            o.name: o.attribute(getattr(self, o.name), self.contact_model) for o in OPTIONS.values()
+        }
         return {name: value for name, value in values.items() if value is not None}
 
 
-def options_of_cases(cases: xr.Dataset, given: Mapping[str, Any]) -> tuple[list[dict[str, Any]], np.ndarray]:
-    """Return the different options of a design's cases, and the index of each case's options, shape (n,).
+def options_of_cases(
+    cases: xr.Dataset, given: Mapping[str, Any]
+) -> tuple[list[dict[str, Any]], np.ndarray]:
+    """Return the different options of a design's cases, and the index of each case's options, shape
+    (n,).
 
     Parameters
     ----------
     cases : xarray.Dataset
-        Cases along `case`. The attribute `options` (JSON) holds what the study file says, and a coordinate that is
-        called like an option holds the option of each case.
+        Cases along `case`. The attribute `options` (JSON) holds what the study file says, and a
+        coordinate that is called like an option holds the option of each case.
     given : mapping
         Options of the call, which take precedence over the attribute.
 
@@ -103,20 +114,25 @@ def options_of_cases(cases: xr.Dataset, given: Mapping[str, Any]) -> tuple[list[
         if name in given:
             levels = ", ".join(dict.fromkeys(map(str, np.atleast_1d(cases[name].values))))
             remedy = f"Leave {name} out, or choose the cases with one value of it."
-            raise InputError(name, given[name], f"the option of the cases, which vary it ({levels})", remedy)
+            raise InputError(
+                name, given[name], f"the option of the cases, which vary it ({levels})", remedy
+            )
     if not varying:
         return [stated], np.zeros(cases.sizes.get("case", 1), dtype=int)
     keys = list(zip(*[np.atleast_1d(cases[name].values).tolist() for name in varying], strict=True))
     known = {key: i for i, key in enumerate(dict.fromkeys(keys))}
     different = [stated | dict(zip(varying, key, strict=True)) for key in known]
     for options in different:  # a grid also pairs a spin model with contact models that have none
-        if not OPTIONS["spin_model"].applies(options.get("contact_model", OPTIONS["contact_model"].default)):
+        if not OPTIONS["spin_model"].applies(
+            options.get("contact_model", OPTIONS["contact_model"].default)
+        ):
             options["spin_model"] = OPTIONS["spin_model"].default
     return different, np.array([known[key] for key in keys])
 
 
 def check_accuracy(accuracy: Any, contact_model: str, outputs: Collection[str]) -> None:
-    """Refuse a tolerance that is too small, of a quantity that is not computed, or of a model without known errors.
+    """Refuse a tolerance that is too small, of a quantity that is not computed, or of a model
+    without known errors.
 
     Parameters
     ----------
@@ -126,10 +142,14 @@ def check_accuracy(accuracy: Any, contact_model: str, outputs: Collection[str]) 
     Raises
     ------
     InputError
-        See `Tolerance.read`; and if the declaration of the contact model does not say that its errors are known.
+        See `Tolerance.read`; and if the declaration of the contact model does not say that its
+        errors are known.
     """
     if tolerance_of(accuracy, outputs) is not None and not DECLARED[contact_model].known_errors:
-        allowed = f"one of {', '.join(OPTIONS['accuracy'].values)}: the errors of {contact_model} were not measured"
+        allowed = (
+            f"one of {', '.join(OPTIONS['accuracy'].values)}: the errors of {contact_model} "
+            "were not measured"
+        )
         raise InputError("accuracy", accuracy, allowed)
 
 
@@ -144,12 +164,14 @@ def check_pairs(hertz: str, normal: str, slip_terms: Collection[str], contact_mo
     Raises
     ------
     InputError
-        If non-Hertzian patches meet the published table of Hertz's ellipse, or the contact model does not serve the
-        normal problem or a slip term.
+        If non-Hertzian patches meet the published table of Hertz's ellipse, or the contact model
+        does not serve the normal problem or a slip term.
     """
     if normal == "halfspace" and hertz != "exact":
         allowed = "exact with normal: halfspace, which solves patch and pressure itself"
-        raise InputError("hertz", hertz, allowed, "Leave hertz out, or take normal: hertz (with circles).")
+        raise InputError(
+            "hertz", hertz, allowed, "Leave hertz out, or take normal: hertz (with circles)."
+        )
     declared = DECLARED[contact_model]
     declared.check("normal", normal)
     for term in slip_terms:
@@ -167,14 +189,16 @@ def check_spin_model(spin_models: Sequence[str], contact_models: Sequence[str]) 
     Raises
     ------
     InputError
-        If a spin model other than the default is given without the contact model that it belongs to.
+        If a spin model other than the default is given without the contact model that it belongs
+        to.
     """
     option = OPTIONS["spin_model"]
     if set(spin_models) != {option.default} and not any(map(option.applies, contact_models)):
         raise InputError(
             "spin_model",
             ", ".join(spin_models),
-            f"only {option.default} with contact_model: {', '.join(contact_models)}, which finds the spin pole itself",
+            f"only {option.default} with contact_model: {', '.join(contact_models)}, which finds "
+            "the spin pole itself",
             f"Take contact_model: {option.models[0]}, or leave spin_model out.",
         )
 
@@ -198,8 +222,9 @@ def model_in_use(options: Options, friction_law: str, film: float = 0.0) -> str:
 
     Notes
     -----
-    A cheaper model stands in (`kalker_table` for `kalker`) at accuracy preview, if it serves the normal problem, the
-    slip, the friction and the film of the case. The result names it in `contact_model_used`.
+    A cheaper model stands in (`kalker_table` for `kalker`) at accuracy preview, if it serves the
+    normal problem, the slip, the friction and the film of the case. The result names it in
+    `contact_model_used`.
     """
     own = DECLARED[options.contact_model]
     if not own.cheaper or options.settings.name != "preview":

@@ -1,8 +1,9 @@
-"""Names of results with one number a case: the same in tables, study files, goals, targets, pages and the explorer.
+"""Names of results with one number a case: the same in tables, study files, goals, targets, pages
+and the explorer.
 
-A name is the variable, then body, contact and limit as far as the variable has them: `peak_stress_roller`,
-`peak_stress_roller_2`, `normal_force_1`, `utilisation_guide_heat`. Without a contact it means the worse contact, or the
-sum of both where the variable adds up.
+A name is the variable, then body, contact and limit as far as the variable has them:
+`peak_stress_roller`, `peak_stress_roller_2`, `normal_force_1`, `utilisation_guide_heat`. Without a
+contact it means the worse contact, or the sum of both where the variable adds up.
 """
 
 from __future__ import annotations
@@ -24,7 +25,8 @@ if TYPE_CHECKING:
     import xarray as xr
 
 CONTACTS = ("1", "2")
-PLACES = ("body", "contact", "limit")  # dimensions of a variable that a name can give, in the order of a name
+# dimensions of a variable that a name can give, in the order of a name
+PLACES = ("body", "contact", "limit")
 _JOIN: dict[str, Any] = {"max": np.fmax.reduce, "min": np.fmin.reduce, "sum": np.nansum}
 
 
@@ -68,7 +70,9 @@ class Part:
 
     @property
     def of(self) -> str:
-        """Return `roller`, `guide` or `pair`, whose value it is; an empty text if it is that of none of them."""
+        """Return `roller`, `guide` or `pair`, whose value it is; an empty text if it is that of
+        none of them.
+        """
         return self.at.get("body", self.variable.of)
 
     def values(self, ds: xr.Dataset) -> xr.DataArray:
@@ -89,7 +93,9 @@ class Part:
         return joined.where(part.notnull().any("contact"))
 
 
-def parts_of(variable: Variable, limits: Iterable[Limit] = tuple(LIMITS.values())) -> Iterator[Part]:
+def parts_of(
+    variable: Variable, limits: Iterable[Limit] = tuple(LIMITS.values())
+) -> Iterator[Part]:
     """Yield the parts of a variable that have one number a case, those without a contact first.
 
     Parameters

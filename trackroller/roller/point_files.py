@@ -1,7 +1,8 @@
 """Read the points of a cross-section from a text file beside the case or study that names the file.
 
-A file of points is a table as `tables.user_table` reads it, with the columns x and z. Beside the dialect of tables,
-blanks may separate the columns, the line of names may be missing, and text of Windows in western countries is read.
+A file of points is a table as `tables.user_table` reads it, with the columns x and z. Beside the
+dialect of tables, blanks may separate the columns, the line of names may be missing, and text of
+Windows in western countries is read.
 """
 
 from __future__ import annotations
@@ -25,7 +26,8 @@ from trackroller.tables.user_table import UserTable, read_user_table
 
 AXES = {"x": "mm", "y": "mm", "z": "mm"}
 CAPITALS = {"X": "x", "Y": "y", "Z": "z"}
-EVEN = 1e-3  # variation of a column over that of the others up to which it only says where the section lies
+# variation of a column over that of the others up to which it only says where the section lies
+EVEN = 1e-3
 TEXT = "a text file with two columns"
 
 _PACKED = {
@@ -38,7 +40,8 @@ _SCALE = re.compile(  # a scale in a comment
     r"\W+([-+\d.,eE]+(?:\s*[:/]\s*[\d.,]+)?)"
     r"|(?<![\d:.,])((?:[125]|25)0*\s*:\s*1|1\s*:\s*(?:[125]|25)0*)(?![\d:.,])"
     r"|(\d[\d.,]*)\s*-?\s*(?:fold|fach)\b"
-    r"|\b(?-i:V[vhxyz]?)\s*[:=]\s*(\d+)(?![\d.,])(?!\s*[^\W\dx_:])",  # V=1000, but no speed and no version
+    # V=1000, but no speed and no version
+    r"|\b(?-i:V[vhxyz]?)\s*[:=]\s*(\d+)(?![\d.,])(?!\s*[^\W\dx_:])",
     re.IGNORECASE,
 )
 
@@ -46,9 +49,9 @@ _SCALE = re.compile(  # a scale in a comment
 def read_points(name: Any, field: str) -> PointRows:
     """Read rows of two numbers from a text file.
 
-    The file lies beside the case or study file that names it, or below the working directory. Absolute paths and '..'
-    are refused, so that a study file from somebody else cannot read private files. Files of SIMPACK (`.prr`, `.prw`)
-    are read with their unit, shift and mirroring.
+    The file lies beside the case or study file that names it, or below the working directory.
+    Absolute paths and '..' are refused, so that a study file from somebody else cannot read private
+    files. Files of SIMPACK (`.prr`, `.prw`) are read with their unit, shift and mirroring.
 
     Parameters
     ----------
@@ -69,10 +72,14 @@ def read_points(name: Any, field: str) -> PointRows:
     """
     path = find_beside(name, field)
     text = _text(path, field)
-    lines = [(number, line) for number, line in enumerate(text.split("\n"), start=1) if line.strip()]
+    lines = [
+        (number, line) for number, line in enumerate(text.split("\n"), start=1) if line.strip()
+    ]
     if is_simpack([line for _, line in lines]):
         return simpack_points(lines, path, field)
-    kind = TableKind(field, "point", AXES, aliases=CAPITALS, names=("x", "z"), blanks=True, small=True)
+    kind = TableKind(
+        field, "point", AXES, aliases=CAPITALS, names=("x", "z"), blanks=True, small=True
+    )
     wrong = Collector()
     table = read_user_table(path, kind, wrong, content=text.encode())
     _check_scales(table, path, field)
@@ -83,7 +90,9 @@ def read_points(name: Any, field: str) -> PointRows:
 
 
 def _text(path: Path, field: str) -> str:
-    """Return the text of a file in UTF-8, UTF-16 or the encoding of Windows in western countries."""
+    """Return the text of a file in UTF-8, UTF-16 or the encoding of Windows in western
+    countries.
+    """
     content = read_bytes(path, field)
     for mark, wrong in _PACKED.items():
         if content.startswith(mark):
@@ -91,7 +100,9 @@ def _text(path: Path, field: str) -> str:
             raise InputError(field, str(path), TEXT, remedy, wrong)
     text = text_of(content, path, field, western=True)
     if _NO_TEXT.search(text):
-        raise InputError(field, str(path), TEXT, "Save the points as text.", "holds bytes that are no text")
+        raise InputError(
+            field, str(path), TEXT, "Save the points as text.", "holds bytes that are no text"
+        )
     return text.replace("\r\n", "\n").replace("\r", "\n")
 
 
@@ -103,7 +114,9 @@ def _check_scales(table: UserTable, path: Path, field: str) -> None:
             if _scale(stated) != 1.0:
                 wrong = f"states a scale of {stated}, which is not applied"
                 remedy = "Multiply the numbers, or remove this line."
-                raise InputError(field, remark, "points without a scale", remedy, wrong).at(path, number)
+                raise InputError(field, remark, "points without a scale", remedy, wrong).at(
+                    path, number
+                )
 
 
 def _scale(text: str) -> float:
@@ -132,12 +145,16 @@ def _places(table: UserTable, path: Path, field: str) -> tuple[int, int]:
     if len(named) != 2:
         wrong = "do not say which columns are the position across the profile and the height"
         remedy = "Name them x and z; of x, y and z one has to be constant."
-        error = InputError(field, ", ".join(table.names), "two of the names x, y and z", remedy, wrong)
+        error = InputError(
+            field, ", ".join(table.names), "two of the names x, y and z", remedy, wrong
+        )
         raise error.at(path, table.head)
     if any(stated) and not all(stated):
         wrong = f"gives a unit for one column only, '{''.join(stated)}'"
         remedy = "Write both, such as x [um]; z [um]."
-        error = InputError(field, ", ".join(table.names), "a unit for each of the two columns", remedy, wrong)
+        error = InputError(
+            field, ", ".join(table.names), "a unit for each of the two columns", remedy, wrong
+        )
         raise error.at(path, table.head)
     return places[0], places[1]
 
@@ -169,7 +186,8 @@ def _points(
     names = [table.names[place] for place in places]
     for number, line in table.lines.items():
         cells = [line[place] for place in places]
-        if any(isinstance(cell, Refused) or not cell for cell in cells):  # the reader has added their errors
+        # the reader has added their errors
+        if any(isinstance(cell, Refused) or not cell for cell in cells):
             continue
         try:
             points[number] = [_length(cell, name) for cell, name in zip(cells, names, strict=True)]
@@ -179,6 +197,8 @@ def _points(
         if not np.isfinite(points[number]).all():
             allowed = "two finite numbers x, z"
             remedy = "Leave out the lines of lost points."
-            lost = InputError(field, "; ".join(cells), allowed, remedy, "is a point that was not measured")
+            lost = InputError(
+                field, "; ".join(cells), allowed, remedy, "is a point that was not measured"
+            )
             wrong.errors.append(lost.at(path, number))
     return points

@@ -1,9 +1,9 @@
 """Solve rollers in one handed form, and reflect the results of their mirror images.
 
-The equations have a mirror: with the axial force of opposite sign, contacts 1 and 2 swap, and lateral quantities change
-their sign. Numerical solutions break this symmetry by their errors. Rollers are therefore solved with an axial force
->= 0, so that mirrored rollers have mirrored numbers, bit for bit, and designs with both signs of the axial force are
-solved once.
+The equations have a mirror: with the axial force of opposite sign, contacts 1 and 2 swap, and
+lateral quantities change their sign. Numerical solutions break this symmetry by their errors.
+Rollers are therefore solved with an axial force >= 0, so that mirrored rollers have mirrored
+numbers, bit for bit, and designs with both signs of the axial force are solved once.
 """
 
 from __future__ import annotations
@@ -22,7 +22,9 @@ ODD_COMPONENTS = [name in ("tau_xy", "tau_xz") for name in COMPONENTS]
 
 
 def handed(table: CaseTable) -> tuple[CaseTable, np.ndarray]:
-    """Return the cases with axial forces >= 0 where a mirror image exists, and mark the mirrored ones, (n,)."""
+    """Return the cases with axial forces >= 0 where a mirror image exists, and mark the mirrored
+    ones, (n,).
+    """
     mirrored = table.axial_force < 0.0
     for texts in (table.guide_profile, table.roller_profile):
         for text in dict.fromkeys(texts[mirrored].tolist()):
@@ -33,7 +35,9 @@ def handed(table: CaseTable) -> tuple[CaseTable, np.ndarray]:
 
 
 def reflect(values: dict[str, np.ndarray], rows: np.ndarray) -> None:
-    """Replace the results of the cases `rows` (n,), marked by True, by those of their mirror images, in place."""
+    """Replace the results of the cases `rows` (n,), marked by True, by those of their mirror
+    images, in place.
+    """
     if not rows.any():
         return
     for name in VARIABLES.keys() & values.keys():  # flags have no side
@@ -64,5 +68,9 @@ def _turned(values: np.ndarray, axis: int) -> np.ndarray:
     size = moved.shape[-1]
     length = np.where(known.any(axis=1), size - np.argmax(known[:, ::-1], axis=1), size)
     places = length[:, None] - 1 - np.arange(size)
-    places = np.where(places >= 0, places, np.arange(size)).reshape(len(moved), *(1,) * (moved.ndim - 2), size)
-    return np.moveaxis(np.take_along_axis(moved, np.broadcast_to(places, moved.shape), axis=-1), -1, axis)
+    places = np.where(places >= 0, places, np.arange(size)).reshape(
+        len(moved), *(1,) * (moved.ndim - 2), size
+    )
+    return np.moveaxis(
+        np.take_along_axis(moved, np.broadcast_to(places, moved.shape), axis=-1), -1, axis
+    )

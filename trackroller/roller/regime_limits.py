@@ -22,13 +22,14 @@ if TYPE_CHECKING:
 
     from trackroller.materials import MaterialDatabase
 
-# Parts into which the first round, and each further one, cuts the range of each search. Cases near lift-off are dear,
-# and many rounds of few cases need the least of them.
+# Parts into which the first round, and each further one, cuts the range of each search. Cases near
+# lift-off are dear, and many rounds of few cases need the least of them.
 FIRST = 8
 ROUNDS = (4,) * 8
 _LOCKED = validity_bit("jamming")
 _FRICTION = PARAMETERS["friction_coefficient"].upper
-_FIELD = {"locking": "friction_coefficient", "lifting": "friction_coefficient"}  # limits of one field
+# limits of one field
+_FIELD = {"locking": "friction_coefficient", "lifting": "friction_coefficient"}
 
 
 @dataclass(frozen=True)
@@ -40,13 +41,14 @@ class Limits:
     axial_force : tuple of float
         Lowest and highest axial force [N] at which both contacts carry load; NaN if none was found.
     motor_force : tuple of float
-        Motor forces [N] between which the roller does not skid, driving (< 0) and braking (> 0); NaN if it has lifted.
+        Motor forces [N] between which the roller does not skid, driving (< 0) and braking (> 0);
+        NaN if it has lifted.
     self_locking_friction : float
-        Friction coefficient [1] from which friction alone carries the lateral load of a contact; inf beyond 2, the
-        largest coefficient; NaN if the roller has lifted without being locked.
+        Friction coefficient [1] from which friction alone carries the lateral load of a contact;
+        inf beyond 2, the largest coefficient; NaN if the roller has lifted without being locked.
     lift_off_friction : float
-        Friction coefficient [1], above that of the case, from which a contact lifts off; inf beyond 2; NaN if a contact
-        has lifted.
+        Friction coefficient [1], above that of the case, from which a contact lifts off; inf beyond
+        2; NaN if a contact has lifted.
     """
 
     axial_force: tuple[float, float]
@@ -55,7 +57,9 @@ class Limits:
     lift_off_friction: float = math.nan
 
 
-def limits(case: Case, contact_model: str = "kalker", database: MaterialDatabase | None = None) -> Limits:
+def limits(
+    case: Case, contact_model: str = "kalker", database: MaterialDatabase | None = None
+) -> Limits:
     """Search the axial forces, motor forces and friction at which the regime of a roller ends.
 
     Parameters
@@ -74,10 +78,11 @@ def limits(case: Case, contact_model: str = "kalker", database: MaterialDatabase
 
     Notes
     -----
-    Equilibria are solved with `accuracy="preview"`, in batches, about 150 in all.
-    ASSUME: drawn and worn profiles are replaced by their nominal circles, for the equilibrium hardly depends on the
-    shape of the patch. ASSUME: friction that falls with the slip speed is searched with full sliding, which is a
-    thousand times cheaper and has the same complete friction. ASSUME: a film between the bodies is left out.
+    Equilibria are solved with `accuracy="preview"`, in batches, about 150 in all. ASSUME: drawn and
+    worn profiles are replaced by their nominal circles, for the equilibrium hardly depends on the
+    shape of the patch. ASSUME: friction that falls with the slip speed is searched with full
+    sliding, which is a thousand times cheaper and has the same complete friction. ASSUME: a film
+    between the bodies is left out.
 
     Examples
     --------
@@ -93,7 +98,9 @@ def limits(case: Case, contact_model: str = "kalker", database: MaterialDatabase
     span = 4.0 * (abs(case.radial_force) + abs(case.axial_force))
 
     def holds(cases: list[Case]) -> dict[str, np.ndarray]:
-        return _conditions(solve(cases, "forces", contact_model=model, accuracy="preview", database=database))
+        return _conditions(
+            solve(cases, "forces", contact_model=model, accuracy="preview", database=database)
+        )
 
     now = holds([nominal])
     free = holds([replace(nominal, **{"motor_force": 0.0})])
@@ -105,7 +112,11 @@ def limits(case: Case, contact_model: str = "kalker", database: MaterialDatabase
     friction = 0.0
     if isinstance(nominal.friction_coefficient, (int, float)):
         friction = float(nominal.friction_coefficient)
-    searches = [("axial_force", start, -span), ("axial_force", start, span), ("locking", 0.0, _FRICTION)]
+    searches = [
+        ("axial_force", start, -span),
+        ("axial_force", start, span),
+        ("locking", 0.0, _FRICTION),
+    ]
     searches.append(("lifting", friction, _FRICTION))
     if rolls and not lifted:
         searches += [("motor_force", 0.0, -span), ("motor_force", 0.0, span)]
@@ -127,25 +138,32 @@ def _conditions(ds: xr.Dataset) -> dict[str, np.ndarray]:
 
 
 def _edges(
-    holds: Callable[[list[Case]], dict[str, np.ndarray]], case: Case, searches: Sequence[tuple[str, float, float]]
+    holds: Callable[[list[Case]], dict[str, np.ndarray]],
+    case: Case,
+    searches: Sequence[tuple[str, float, float]],
 ) -> list[float]:
-    """Return for each search (limit, start, end) the last value from the start at which the condition holds.
+    """Return for each search (limit, start, end) the last value from the start at which the
+    condition holds.
 
-    NaN if it does not hold at the start, and infinity with the sign of the direction if it holds as far as the end. A
-    round solves the cases of all searches in one batch.
+    NaN if it does not hold at the start, and infinity with the sign of the direction if it holds as
+    far as the end. A round solves the cases of all searches in one batch.
     """
     names = [name for name, _, _ in searches]
 
     def near(places: Sequence[int], values: Sequence[float]) -> list[bool]:
         """Return whether the condition of each search `places` holds at a value."""
         fields = [_FIELD.get(names[place], names[place]) for place in places]
-        truths = holds([replace(case, **{field: value}) for field, value in zip(fields, values, strict=True)])
+        truths = holds(
+            [replace(case, **{field: value}) for field, value in zip(fields, values, strict=True)]
+        )
         return [bool(truths[names[place]][row]) for row, place in enumerate(places)]
 
     edges = [math.nan] * len(searches)
     going = {}
     lines = [np.linspace(start, end, FIRST + 1).tolist() for _, start, end in searches]
-    answers = iter(near([i for i, line in enumerate(lines) for _ in line], [v for line in lines for v in line]))
+    answers = iter(
+        near([i for i, line in enumerate(lines) for _ in line], [v for line in lines for v in line])
+    )
     for i, line in enumerate(lines):
         truths = [next(answers) for _ in line]
         if all(truths):
@@ -153,7 +171,9 @@ def _edges(
         elif truths[0]:
             going[i] = line[truths.index(False) - 1], line[truths.index(False)]
     places = list(going)
-    ends = narrowed(list(going.values()), ROUNDS, lambda numbers, v: near([places[n] for n in numbers], v))
+    ends = narrowed(
+        list(going.values()), ROUNDS, lambda numbers, v: near([places[n] for n in numbers], v)
+    )
     for i, (edge, _) in zip(places, ends, strict=True):
         edges[i] = edge
     return edges

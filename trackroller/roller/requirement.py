@@ -1,4 +1,5 @@
-"""What a user requires of an output: the key `requirement` of study files, of case files and of the live page.
+"""What a user requires of an output: the key `requirement` of study files, of case files and of the
+live page.
 
 requirement:
   pair_life_hours: {min: 3 years, probability: 0.95}
@@ -28,7 +29,8 @@ if TYPE_CHECKING:
 KEY = "requirement"
 WORDS = ("min", "max", "probability")
 DEFAULT = "pair_life_hours"  # of {min: 500} without the name of an output
-LIVES_OF_PAIR = ("pair_life_to_first_limit_hours", DEFAULT, "roller_life_hours")  # that a target in hours may name
+# that a target in hours may name
+LIVES_OF_PAIR = ("pair_life_to_first_limit_hours", DEFAULT, "roller_life_hours")
 YEARS = re.compile(r"\s*([0-9.eE+-]+)\s*(?:a|yr|yrs|year|years)\s*", re.ASCII)
 
 
@@ -38,7 +40,8 @@ class Requirement:
 
     Attributes
     ----------
-    least, most : smallest and largest value that is enough [unit of the output]; infinite without one
+    least, most : smallest and largest value that is enough [unit of the output]; infinite without
+        one
     probability : share of the conditions that have to meet it [1]; NaN without one
     years : `least` in years of the duty, where the user gave years; NaN otherwise
     written : the entry as a file states it again
@@ -88,7 +91,8 @@ def checked_requirement(value: Any, duty: Mapping[str, float] | None = None) -> 
 
     Examples
     --------
-    >>> own = checked_requirement({"min": "2 years"}, {"hours_per_day": 16, "days_per_year": 250})["pair_life_hours"]
+    >>> duty = {"hours_per_day": 16, "days_per_year": 250}
+    >>> own = checked_requirement({"min": "2 years"}, duty)["pair_life_hours"]
     >>> own.least, own.years
     (8000.0, 2.0)
     """
@@ -132,7 +136,9 @@ def _one(name: str, given: Any, duty: Mapping[str, float] | None) -> Requirement
 
 
 def _again(given: Any, number: float) -> Any:
-    """Return the end as a file states it: years as they were given, everything else in the unit of the output."""
+    """Return the end as a file states it: years as they were given, everything else in the unit of
+    the output.
+    """
     if _years(given) is None:
         return number
     return str(given).strip()
@@ -142,7 +148,9 @@ def _share(given: Any, where: str) -> float:
     """Return a probability above 0 and up to 1; '95 %' is 0.95."""
     number = number_or_nan(given, "-", where)
     if not 0.0 < number <= 1.0:
-        raise InputError(where, given, "a number above 0 and up to 1", "For example probability: 0.95.")
+        raise InputError(
+            where, given, "a number above 0 and up to 1", "For example probability: 0.95."
+        )
     return number
 
 
@@ -157,12 +165,16 @@ def _years(given: Any) -> float | None:
 
 
 def _end(name: str, given: Any, where: str, duty: Mapping[str, float] | None) -> float:
-    """Return a smallest or largest value in the unit of its output, a life in years by the duty in hours."""
+    """Return a smallest or largest value in the unit of its output, a life in years by the duty in
+    hours.
+    """
     unit = unit_of(name)
     in_years = _years(given)
     if in_years is not None and unit == "h":
         if duty is None:
-            raise InputError(where, given, "years beside a duty, or hours of travel", EXAMPLE, "needs a duty")
+            raise InputError(
+                where, given, "years beside a duty, or hours of travel", EXAMPLE, "needs a duty"
+            )
         number = in_years / float(years(1.0, duty))
     else:
         parts = split_quantity(given)
@@ -170,7 +182,12 @@ def _end(name: str, given: Any, where: str, duty: Mapping[str, float] | None) ->
             check_hours(given, parts[1], unit or "", where)
         number = number_or_nan(given, unit, where)
     if not math.isfinite(number):
-        raise InputError(where, given, "a number", f"It may have a unit that can be converted to {unit or 'its own'}.")
+        raise InputError(
+            where,
+            given,
+            "a number",
+            f"It may have a unit that can be converted to {unit or 'its own'}.",
+        )
     if is_life(name) and number <= 0:
         raise InputError(where, given, "a life above 0")
     return number
@@ -182,9 +199,13 @@ def written(required: Mapping[str, Requirement]) -> dict[str, dict[str, Any]]:
 
 
 def requirement_of(ds: xr.Dataset) -> dict[str, Requirement]:
-    """Return what the result of one case has to meet, from its attributes; {} without a requirement."""
+    """Return what the result of one case has to meet, from its attributes; {} without a
+    requirement.
+    """
     duty = None
     if "duty" in ds.attrs:
         duty = json.loads(ds.attrs["duty"])
-    requirement: dict[str, Requirement] = checked_requirement(json.loads(ds.attrs.get(KEY, "{}")), duty)
+    requirement: dict[str, Requirement] = checked_requirement(
+        json.loads(ds.attrs.get(KEY, "{}")), duty
+    )
     return requirement

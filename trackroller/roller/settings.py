@@ -1,4 +1,6 @@
-"""Sort the entries of a case file, of the command line and of the live page: case, options, and what goes with them."""
+"""Sort the entries of a case file, of the command line and of the live page: case, options, and
+what goes with them.
+"""
 
 from __future__ import annotations
 
@@ -21,8 +23,10 @@ from trackroller.roller.requirement import checked_requirement, written
 if TYPE_CHECKING:
     import xarray as xr
 
-SHEET_FIELDS = ("project", "part", "revision", "date", "author", "checker")  # texts at the head of a sheet
-BESIDE = ("duty", "sheet", "requirement", "log")  # entries that change no result, and that a result keeps as attributes
+# texts at the head of a sheet
+SHEET_FIELDS = ("project", "part", "revision", "date", "author", "checker")
+# entries that change no result, and that a result keeps as attributes
+BESIDE = ("duty", "sheet", "requirement", "log")
 LONGEST = 200  # signs of a text at the head of a sheet
 
 
@@ -47,7 +51,11 @@ def checked_sheet(value: Any) -> dict[str, str]:
     wrong = Collector()
     for name, text in given.items():
         with wrong.part():
-            if isinstance(text, bool) or not isinstance(text, (str, int, float)) or len(str(text)) > LONGEST:
+            if (
+                isinstance(text, bool)
+                or not isinstance(text, (str, int, float))
+                or len(str(text)) > LONGEST
+            ):
                 allowed = f"a text of at most {LONGEST} signs"
                 raise InputError(f"sheet.{name}", text, allowed, "Write a short text, in quotes.")
             checked_text(str(text), f"sheet.{name}")
@@ -79,11 +87,15 @@ def parts_for_spectrum(given: Mapping[str, Any]) -> tuple[dict[str, Any], dict[s
     Returns
     -------
     tuple of dict
-        The fields that describe the roller, without its loads, options and entries `BESIDE`; and the options that a
-        spectrum file takes.
+        The fields that describe the roller, without its loads, options and entries `BESIDE`; and
+        the options that a spectrum file takes.
     """
     fields = {key: value for key, value in given.items() if key not in (*OPTIONS, *BESIDE)}
-    options = {key: given[key] for key, option in OPTIONS.items() if key in given and "spectrum" in option.files}
+    options = {
+        key: given[key]
+        for key, option in OPTIONS.items()
+        if key in given and "spectrum" in option.files
+    }
     return {key: value for key, value in renamed(fields).items() if key not in LOADS}, options
 
 
@@ -101,14 +113,18 @@ def _checked_beside(key: str, value: Any, duty: Mapping[str, float] | None) -> A
             raise unknown_name("requirement", name, PARTS)
         if own.in_shares:
             allowed = "min and max: one roller has one condition"
-            raise InputError(f"requirement.{name}.probability", own.probability, allowed, "Write it in a study.")
+            raise InputError(
+                f"requirement.{name}.probability", own.probability, allowed, "Write it in a study."
+            )
     return written(required)
 
 
 def _by_strokes(values: Mapping[str, Any]) -> dict[str, Any]:
     """Return the duty of a roller in hours, and what follows from its strokes."""
     duty = checked_duty(values["duty"])
-    case = Case.from_dict({key: value for key, value in values.items() if key in (*FIELDS, *ALIASES, *RADII)})
+    case = Case.from_dict(
+        {key: value for key, value in values.items() if key in (*FIELDS, *ALIASES, *RADII)}
+    )
     if "velocity" in case.not_given:
         velocity = None
     else:
@@ -118,7 +134,8 @@ def _by_strokes(values: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def checked_case(values: Mapping[str, Any]) -> tuple[Case, dict[str, Any], dict[str, Any]]:
-    """Return the case, the options of `solve`, and the entries `BESIDE` of a case file that are given.
+    """Return the case, the options of `solve`, and the entries `BESIDE` of a case file that are
+    given.
 
     The duty is in hours; strokes stand beside it as `strokes`, as they were given.
 
@@ -134,7 +151,8 @@ def checked_case(values: Mapping[str, Any]) -> tuple[Case, dict[str, Any], dict[
 
     Examples
     --------
-    >>> case, options, beside = checked_case({"axial_force": 70, "contact_model": "sliding", "sheet": {"part": 7}})
+    >>> values = {"axial_force": 70, "contact_model": "sliding", "sheet": {"part": 7}}
+    >>> case, options, beside = checked_case(values)
     >>> case.axial_force, options, beside
     (70.0, {'contact_model': 'sliding'}, {'sheet': {'part': '7'}})
     """
@@ -157,7 +175,9 @@ def checked_case(values: Mapping[str, Any]) -> tuple[Case, dict[str, Any], dict[
         if OPTIONS[key].kind == "words" and isinstance(options[key], str):
             options[key] = [part.strip() for part in options[key].split(",")]
     with wrong.part():
-        case = Case.from_dict({key: value for key, value in fields.items() if key in (*FIELDS, *ALIASES, *RADII)})
+        case = Case.from_dict(
+            {key: value for key, value in fields.items() if key in (*FIELDS, *ALIASES, *RADII)}
+        )
     database = load_database()
     for name in MATERIAL_FIELDS:
         with wrong.part():

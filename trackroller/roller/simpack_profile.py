@@ -17,10 +17,23 @@ _SECTION = re.compile(r"\s*(header|spline|point)\.(begin|end)\s*", re.IGNORECASE
 _EXPORT = "Export the points as two columns of text, such as `x [mm]; z [mm]`."
 
 # words that do not change the shape, and the numbers of a profile that is as its points say
-_NOTES = ("file", "file.mtime", "comment", "type", "inversion", "units.len", "units.ang", "units.ang.f")
+_NOTES = (
+    "file",
+    "file.mtime",
+    "comment",
+    "type",
+    "inversion",
+    "units.len",
+    "units.ang",
+    "units.ang.f",
+)
 _SETTINGS = {
-    **dict.fromkeys(("approx.smooth", "point.dist.min", "rotate", "shift.y", "shift.z", "mirror.y", "mirror.z"), 0.0),
-    **dict.fromkeys(("bound.y.min", "bound.z.min"), 1.0),  # a lower bound above the upper one bounds nothing
+    **dict.fromkeys(
+        ("approx.smooth", "point.dist.min", "rotate", "shift.y", "shift.z", "mirror.y", "mirror.z"),
+        0.0,
+    ),
+    # a lower bound above the upper one bounds nothing
+    **dict.fromkeys(("bound.y.min", "bound.z.min"), 1.0),
     **dict.fromkeys(("bound.y.max", "bound.z.max", "units.len.f"), 0.0),
 }
 
@@ -74,9 +87,13 @@ class _Profile:
         weights = {tuple(row[2:]) for row in self.rows.values()}
         if len(weights) > 1:
             allowed = "the same weight for all points"
-            raise self._refused(self.last, "ends points of different weights", allowed, "Leave the weights out.")
+            raise self._refused(
+                self.last, "ends points of different weights", allowed, "Leave the weights out."
+            )
 
-    def _refused(self, line: tuple[int, str], wrong: str, allowed: str, remedy: str = _EXPORT) -> InputError:
+    def _refused(
+        self, line: tuple[int, str], wrong: str, allowed: str, remedy: str = _EXPORT
+    ) -> InputError:
         number, text = line
         return InputError(self.field, text.strip(), allowed, remedy, wrong).at(self.path, number)
 

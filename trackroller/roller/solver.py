@@ -73,28 +73,34 @@ def solve(
 ) -> xr.Dataset:
     """Compute contact forces, tractions, stresses and life of track rollers.
 
-    An option that is not given takes the value of the study file of a design, otherwise the first value of its list.
+    An option that is not given takes the value of the study file of a design, otherwise the first
+    value of its list.
 
     Parameters
     ----------
     cases : Case, mapping, list or data frame of them, or xarray.Dataset
-        What is solved. A list, a data frame with a case a row, and a data set with the dimension `case` give results
-        along `case`. Parameters of a data set are variables or coordinates; any other name is refused. The results of
-        a study's design can be analysed and reported: see `trackroller.open_study`.
+        What is solved. A list, a data frame with a case a row, and a data set with the dimension
+        `case` give results along `case`. Parameters of a data set are variables or coordinates; any
+        other name is refused. The results of a study's design can be analysed and reported: see
+        `trackroller.open_study`.
     outputs : str or iterable of str
-        Groups of results; a group is computed only if it is asked for: "forces", "contact", "peak_stress", "life",
-        "limits" (by default these five), "friction_work", "tractions", "subsurface", one a limit. "limits" stands for
-        the use and the life of every limit whose inputs the case gives.
+        Groups of results; a group is computed only if it is asked for: "forces", "contact",
+        "peak_stress", "life", "limits" (by default these five), "friction_work", "tractions",
+        "subsurface", one a limit. "limits" stands for the use and the life of every limit whose
+        inputs the case gives.
     contact_model : str
-        How friction is distributed over a patch: "kalker" (exact theory), "kalker_table" (table of exact solutions),
-        or "sliding" (full slip everywhere, as published). "kalker" uses its table at accuracy "preview".
+        How friction is distributed over a patch: "kalker" (exact theory), "kalker_table" (table of
+        exact solutions), or "sliding" (full slip everywhere, as published). "kalker" uses its table
+        at accuracy "preview".
     spin_model : str
-        Assumption 0, 1, 2 of the publication on the spin pole, for "sliding": "concentric", "edge", "skewed" (default).
+        Assumption 0, 1, 2 of the publication on the spin pole, for "sliding": "concentric", "edge",
+        "skewed" (default).
     accuracy : str, float, mapping or Accuracy
-        Discretisation: "preview", "standard", "reference", or a relative tolerance of forces and peak stress, also by
-        quantity, down to `{"forces": 1e-3, "peak": 0.01, "life": 0.1}`. A tolerance is met case by case: a case takes
-        the result of the first of these three whose estimated errors are within the tolerance, and `accuracy_used`
-        names it. `error_over_tolerance` is at most 1, or the case has the flag `tolerance_missed`.
+        Discretisation: "preview", "standard", "reference", or a relative tolerance of forces and
+        peak stress, also by quantity, down to `{"forces": 1e-3, "peak": 0.01, "life": 0.1}`. A
+        tolerance is met case by case: a case takes the result of the first of these three whose
+        estimated errors are within the tolerance, and `accuracy_used` names it.
+        `error_over_tolerance` is at most 1, or the case has the flag `tolerance_missed`.
     hertz : str
         "exact" elliptic integrals, or "published" for the table of the published program.
     stress_bodies : str
@@ -107,40 +113,47 @@ def solve(
     credit_pressure : bool
         Whether hydrostatic pressure lowers Dang Van's stress (default).
     wear_law : str
-        Law of wear: "archard" with the wear coefficient of the pair, or "energy" with the `wear_table` of the case.
+        Law of wear: "archard" with the wear coefficient of the pair, or "energy" with the
+        `wear_table` of the case.
     failure_probability : float
         Failure probability in (0, 1) at which the group "limits" states each life.
     not_checked : str or collection of str
         Limits that the group "limits" leaves out.
     normal : str
-        "hertz" for Hertzian patches, "halfspace" for non-Hertzian ones by boundary elements, which drawn profiles need.
+        "hertz" for Hertzian patches, "halfspace" for non-Hertzian ones by boundary elements, which
+        drawn profiles need.
     stop_if : str, optional
-        Condition, where no peak stress is searched for, such as "peak_stress > R_m". See `trackroller.roller.stop`.
+        Condition, where no peak stress is searched for, such as "peak_stress > R_m". See
+        `trackroller.roller.stop`.
     shortcuts : bool
-        Whether symmetry and repetition among the cases are used (default), so that mirrored rollers have mirrored bits.
+        Whether symmetry and repetition among the cases are used (default), so that mirrored rollers
+        have mirrored bits.
     slip_terms : str or collection of str
-        What the rigid slip of kalker counts beyond the tangent of a straight guide: "profile", the slip by
-        eq. (20), which sliding always counts, and "curve", the turning of the roller with the guide's curve.
+        What the rigid slip of kalker counts beyond the tangent of a straight guide: "profile", the
+        slip by eq. (20), which sliding always counts, and "curve", the turning of the roller with
+        the guide's curve.
     database : MaterialDatabase, optional
         The materials; by default the built-in ones with the user's own over them.
 
     Returns
     -------
     xarray.Dataset
-        Results with `units`, `long_name` and the symbol of the publication. The dimensions are `contact` (1, 2), `body`
-        ("roller", "guide") and `case`, which a single case does not have. A quantity that the regime leaves undefined
-        is NaN. `regime`, `converged`, `residual`, `validity` and `contact_model_used` are always there. Inputs
-        of cases are coordinates: parameters that are given or have a default, and names of materials.
+        Results with `units`, `long_name` and the symbol of the publication. The dimensions are
+        `contact` (1, 2), `body` ("roller", "guide") and `case`, which a single case does not have.
+        A quantity that the regime leaves undefined is NaN. `regime`, `converged`, `residual`,
+        `validity` and `contact_model_used` are always there. Inputs of cases are coordinates:
+        parameters that are given or have a default, and names of materials.
 
     Raises
     ------
     InputError
-        For bad input. A case that cannot be solved raises nothing: its `regime` is failed, and a text `reason` says
-        why and what to do.
+        For bad input. A case that cannot be solved raises nothing: its `regime` is failed, and a
+        text `reason` says why and what to do.
 
     Notes
     -----
-    A case takes from 1 ms (sliding) to some seconds (kalker at accuracy "reference") of processor time.
+    A case takes from 1 ms (sliding) to some seconds (kalker at accuracy "reference") of processor
+    time.
 
     Examples
     --------
@@ -154,7 +167,9 @@ def solve(
     >>> dict(both.roller_life_hours.sizes)
     {'case': 2}
     """
-    given = {name: value for name, value in locals().items() if name in OPTIONS and value is not None}
+    given = {
+        name: value for name, value in locals().items() if name in OPTIONS and value is not None
+    }
     if hasattr(cases, "data_vars"):
         return _solve_design(cases, given, database)
     single = is_single(cases)
@@ -170,19 +185,25 @@ def solve(
     return with_inputs(ds, case, database)
 
 
-def _solve_design(cases: xr.Dataset, given: Mapping[str, Any], database: MaterialDatabase | None) -> xr.Dataset:
+def _solve_design(
+    cases: xr.Dataset, given: Mapping[str, Any], database: MaterialDatabase | None
+) -> xr.Dataset:
     """Solve a data set of cases, each with the options that belong to it."""
     different, group = options_of_cases(cases, given)
     options = [Options(**one) for one in different]
     table = to_table(cases, database)
     if len(options) == 1:
-        return with_design(_solve_table(table, options[0], "case" not in cases.dims), cases, database)
+        return with_design(
+            _solve_table(table, options[0], "case" not in cases.dims), cases, database
+        )
     rows = [np.flatnonzero(group == number) for number in range(len(options))]
     parts = [
         _solve_table(table.take(own), one, single=False).assign_coords(case=own)
         for own, one in zip(rows, options, strict=True)
     ]
-    return with_design(joined(parts).sel(case=np.arange(len(table))).drop_vars("case"), cases, database)
+    return with_design(
+        joined(parts).sel(case=np.arange(len(table))).drop_vars("case"), cases, database
+    )
 
 
 def _solve_table(table: CaseTable, options: Options, single: bool) -> xr.Dataset:
@@ -192,7 +213,9 @@ def _solve_table(table: CaseTable, options: Options, single: bool) -> xr.Dataset
     windows = [_solve_window(part, options) for part in _cut(worn, WINDOW)]
     block = join(windows)
     block.fail(list(lost))
-    ds = with_reasons(assemble(block, options, single), worn, options, temperature.reasons(block) | lost)
+    ds = with_reasons(
+        assemble(block, options, single), worn, options, temperature.reasons(block) | lost
+    )
     tell_errors(ds, worn, options)
     checks_limits = verdict.GROUP in options.outputs or options.life_criterion in fatigue.STRESS_OF
     warm = temperature.notes(worn, block)
@@ -216,7 +239,9 @@ def _check_cases(table: CaseTable, options: Options) -> None:
     for name in ("guide_profile", "roller_profile"):
         if options.normal != "halfspace" and np.any(getattr(table, name) != ""):
             remedy = f"Set normal to halfspace, or remove {name}."
-            raise InputError("normal", options.normal, f"halfspace, for a case with a {name}", remedy)
+            raise InputError(
+                "normal", options.normal, f"halfspace, for a case with a {name}", remedy
+            )
 
 
 def _cut(table: CaseTable, size: int) -> Iterator[CaseTable]:
@@ -238,10 +263,16 @@ def _solve_window(table: CaseTable, options: Options) -> Block:
     distinct = one_handed
     number = np.arange(len(table))
     # limits of patches depend on the speed and on all values of the materials
-    if options.shortcuts and len(table) > 1 and not stages_outcome.of_patches(_limits(one_handed, options)):
+    if (
+        options.shortcuts
+        and len(table) > 1
+        and not stages_outcome.of_patches(_limits(one_handed, options))
+    ):
         rows, number = distinct_contacts.distinct_mechanics(one_handed)
         distinct = one_handed.take(rows)
-    at_temperature, block = temperature.settle(one_handed, solve_all(distinct).take(number), options, solve_all)
+    at_temperature, block = temperature.settle(
+        one_handed, solve_all(distinct).take(number), options, solve_all
+    )
     calibrate(at_temperature, block, options)
     stages_outcome.finish(at_temperature, block, options)
     reflect(block.values, mirrored)
@@ -254,12 +285,16 @@ def _solve_block(table: CaseTable, options: Options) -> Block:
     if len(groups) == 1:  # its rows are in order
         model, n, _ = groups[0]
         return _solve_group(table, options.changed(contact_model=model), n)
-    parts = [_solve_group(table.take(rows), options.changed(contact_model=model), n) for model, n, rows in groups]
+    parts = [
+        _solve_group(table.take(rows), options.changed(contact_model=model), n)
+        for model, n, rows in groups
+    ]
     return join(parts).take(np.argsort(np.concatenate([rows for *_, rows in groups])))
 
 
 def _groups(table: CaseTable, options: Options) -> Iterator[tuple[str, int, np.ndarray]]:
-    """Yield contact model, factor on the elements across, and rows of cases that can be solved in one batch.
+    """Yield contact model, factor on the elements across, and rows of cases that can be solved in
+    one batch.
 
     Frictionless cases and those with a film are batches alone.
     """
@@ -280,7 +315,9 @@ def _groups(table: CaseTable, options: Options) -> Iterator[tuple[str, int, np.n
 def _solve_group(table: CaseTable, options: Options, across: int) -> Block:
     scene = stages.prepare(table, options, across)
     results = StageResults.start(scene, balance(scene))
-    results.flag("smoothing", depends_on_smoothing(table, options, across, results.balance.normal_force))
+    results.flag(
+        "smoothing", depends_on_smoothing(table, options, across, results.balance.normal_force)
+    )
     return block_of(results, options)
 
 
@@ -304,14 +341,25 @@ def block_of(results: StageResults, options: Options) -> Block:
     if "subsurface" in outputs:
         stages_stress.subsurface(results, options)
     stages.settle(results)
-    results.values |= {name: results.in_mm(name) for name in results.values}  # the limits take N and mm
+    # the limits take N and mm
+    results.values |= {name: results.in_mm(name) for name in results.values}
     stages_outcome.patch_limits(results, options, limits)
-    model = np.array([CONTACT_MODELS.index(name) for name in scene.model.used(scene.n)], dtype=np.int8)
+    model = np.array(
+        [CONTACT_MODELS.index(name) for name in scene.model.used(scene.n)], dtype=np.int8
+    )
     settings = options.settings.name
     rung = np.zeros(scene.n, dtype=np.int8)
     if settings in RUNGS:
         rung[:] = RUNGS.index(settings)
-    return Block(results.values, results.regime, results.converged, results.bits, model, rung, results.stopped)
+    return Block(
+        results.values,
+        results.regime,
+        results.converged,
+        results.bits,
+        model,
+        rung,
+        results.stopped,
+    )
 
 
 def _limits(table: CaseTable, options: Options) -> tuple[Limit, ...]:
@@ -320,7 +368,9 @@ def _limits(table: CaseTable, options: Options) -> tuple[Limit, ...]:
 
 
 def assemble(block: Block, options: Options, single: bool) -> xr.Dataset:
-    """Return a block of finished cases as a labelled data set; `single` drops the dimension `case`."""
+    """Return a block of finished cases as a labelled data set; `single` drops the dimension
+    `case`.
+    """
     keep = [
         name
         for name in block.values
@@ -342,10 +392,18 @@ def assemble(block: Block, options: Options, single: bool) -> xr.Dataset:
     flags["contact_model_used"] = block.model
     if options.tolerance is not None:
         flags["accuracy_used"] = block.rung
-    grouped = {"first_to_fail": "life", "limiting_mechanism": verdict.GROUP, "limit_state": verdict.GROUP}
-    flags |= {name: block.values[name] for name, group in grouped.items() if group in options.outputs}
+    grouped = {
+        "first_to_fail": "life",
+        "limiting_mechanism": verdict.GROUP,
+        "limit_state": verdict.GROUP,
+    }
+    flags |= {
+        name: block.values[name] for name, group in grouped.items() if group in options.outputs
+    }
     if verdict.GROUP in options.outputs:
-        attrs["limits"] = " ".join(limit.name for limit in judged(options.outputs, options.not_checked))
+        attrs["limits"] = " ".join(
+            limit.name for limit in judged(options.outputs, options.not_checked)
+        )
     if options.stop_if is not None:
         flags["stopped"] = block.stopped
     return build({name: block.values[name] for name in keep}, flags, attrs, single)

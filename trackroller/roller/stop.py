@@ -1,11 +1,13 @@
-"""Conditions on which a case needs no further work, such as `peak_stress > R_m or max_pressure > 1500`.
+"""Conditions on which a case needs no further work, such as `peak_stress > R_m or max_pressure >
+1500`.
 
-A condition is one comparison, or several comparisons joined by `or`. The left side is a result, or the part of one in a
-body or contact, such as `peak_stress_roller`. The right side is an expression over parameters and strengths. The
-condition holds for a case if it holds in any contact and body that the name leaves open.
-Comparisons of results that are known before the stresses are evaluated first. For `peak_stress > ...` a lower bound of
-the peak is compared, so that no peak has to be searched for. This saves most of the work in wide studies,
-where many designs are overloaded and their exact life is of no interest.
+A condition is one comparison, or several comparisons joined by `or`. The left side is a result, or
+the part of one in a body or contact, such as `peak_stress_roller`. The right side is an expression
+over parameters and strengths. The condition holds for a case if it holds in any contact and body
+that the name leaves open. Comparisons of results that are known before the stresses are evaluated
+first. For `peak_stress > ...` a lower bound of the peak is compared, so that no peak has to be
+searched for. This saves most of the work in wide studies, where many designs are overloaded and
+their exact life is of no interest.
 """
 
 from __future__ import annotations
@@ -23,15 +25,30 @@ from trackroller.parameters.expressions import Comparison, comparisons, conditio
 from trackroller.roller.dataset import VARIABLES
 from trackroller.roller.output_names import CONTACTS, PARTS, unit_of
 
-STRENGTHS = {"R_m": "tensile_strength", "tensile_strength": "tensile_strength", "fatigue_limit": "fatigue_limit"}
+STRENGTHS = {
+    "R_m": "tensile_strength",
+    "tensile_strength": "tensile_strength",
+    "fatigue_limit": "fatigue_limit",
+}
 # the share of adhesion is left out, because it needs the tractions
 BEFORE_STRESSES = (
     "regime",
-    *(v.name for v in VARIABLES.values() if v.group in ("forces", "contact") and v.name != "stick_area_fraction"),
+    *(
+        v.name
+        for v in VARIABLES.values()
+        if v.group in ("forces", "contact") and v.name != "stick_area_fraction"
+    ),
 )
 PEAK = "peak_stress"
 _RESULTS = (*BEFORE_STRESSES, PEAK)
-LEFT = (*_RESULTS, *(name for name, part in PARTS.items() if part.variable.name in _RESULTS and name not in _RESULTS))
+LEFT = (
+    *_RESULTS,
+    *(
+        name
+        for name, part in PARTS.items()
+        if part.variable.name in _RESULTS and name not in _RESULTS
+    ),
+)
 
 
 def compared(comparison: Comparison) -> str:
@@ -93,7 +110,8 @@ def holds(comparison: Comparison, value: np.ndarray, table: Any) -> np.ndarray:
     comparison : Comparison
         Part of a condition.
     value : numpy.ndarray, shape (n,), (n, 2) or (n, 2, 2)
-        Values of the left side, by contact and body. The comparison never holds for NaN or an infinite value.
+        Values of the left side, by contact and body. The comparison never holds for NaN or an
+        infinite value.
     table : CaseTable
         The n cases.
 
@@ -109,10 +127,14 @@ def holds(comparison: Comparison, value: np.ndarray, table: Any) -> np.ndarray:
     else:
         known = {name: getattr(table, name)[:, None, None] for name in PARAMETERS}
         for name, field in STRENGTHS.items():
-            known[name] = np.stack([getattr(table.roller, field), getattr(table.guide, field)], axis=1)[:, None, :]
+            known[name] = np.stack(
+                [getattr(table.roller, field), getattr(table.guide, field)], axis=1
+            )[:, None, :]
     full = value.reshape(n, *value.shape[1:], *(1,) * (3 - value.ndim)).astype(float)
     full = np.where(np.isfinite(full), full, np.nan)
-    met = np.broadcast_to(condition(comparison.text, {**known, comparison.name: full}, "stop_if"), (n, 2, 2))
+    met = np.broadcast_to(
+        condition(comparison.text, {**known, comparison.name: full}, "stop_if"), (n, 2, 2)
+    )
     if comparison.name in PARTS:
         at = PARTS[comparison.name].at
         if "contact" in at:

@@ -1,4 +1,6 @@
-"""Record the inputs of one solved case in its data set, from which the sheet and the JSON text are made."""
+"""Record the inputs of one solved case in its data set, from which the sheet and the JSON text are
+made.
+"""
 
 from __future__ import annotations
 
@@ -51,18 +53,24 @@ def with_inputs(ds: xr.Dataset, case: Case, database: MaterialDatabase) -> xr.Da
     """
     values = plain_inputs(case)
     if not isinstance(values["friction_coefficient"], float):  # from the friction of the pair
-        record = database.friction_record(case.roller_material, case.guide_material, values["friction_coefficient"])
+        record = database.friction_record(
+            case.roller_material, case.guide_material, values["friction_coefficient"]
+        )
         values["friction_coefficient"] = record["value"]
         ds.attrs[FRICTION] = json.dumps([record])
     ds.attrs |= {CASE: json.dumps(values), MATERIALS: json.dumps(material_values(case, database))}
-    ds.attrs |= {NOT_GIVEN: json.dumps(case.not_given), DOUBTS: json.dumps(doubts_of_case(case, database))}
+    ds.attrs |= {
+        NOT_GIVEN: json.dumps(case.not_given),
+        DOUBTS: json.dumps(doubts_of_case(case, database)),
+    }
     if case.radii:
         ds.attrs |= {RADII: json.dumps(case.radii)}
     return ds
 
 
 def with_coordinates(ds: xr.Dataset, table: CaseTable) -> xr.Dataset:
-    """Return the result of cases with their inputs as coordinates: numbers with units, and names of materials.
+    """Return the result of cases with their inputs as coordinates: numbers with units, and names of
+    materials.
 
     Parameters
     ----------
@@ -80,8 +88,12 @@ def with_coordinates(ds: xr.Dataset, table: CaseTable) -> xr.Dataset:
         columns[name] = np.array([str(material) for material in body.name])
         labels[name] = {"long_name": name.replace("_", " ")}
     if "case" in ds.dims:
-        return ds.assign_coords({name: ("case", values, labels[name]) for name, values in columns.items()})
-    return ds.assign_coords({name: ((), values[0], labels[name]) for name, values in columns.items()})
+        return ds.assign_coords(
+            {name: ("case", values, labels[name]) for name, values in columns.items()}
+        )
+    return ds.assign_coords(
+        {name: ((), values[0], labels[name]) for name, values in columns.items()}
+    )
 
 
 def _labels(name: str) -> dict[str, str]:
@@ -90,10 +102,14 @@ def _labels(name: str) -> dict[str, str]:
     return {"units": parameter.units, "long_name": parameter.long_name, "symbol": parameter.symbol}
 
 
-def with_design(ds: xr.Dataset, design: xr.Dataset, database: MaterialDatabase | None) -> xr.Dataset:
-    """Return the results of a study's design with the design: its variables as coordinates, and its attributes.
+def with_design(
+    ds: xr.Dataset, design: xr.Dataset, database: MaterialDatabase | None
+) -> xr.Dataset:
+    """Return the results of a study's design with the design: its variables as coordinates, and its
+    attributes.
 
-    The attribute `materials` (JSON) holds the values of the materials. Results of other cases come back as they are.
+    The attribute `materials` (JSON) holds the values of the materials. Results of other cases come
+    back as they are.
     """
     if STUDY not in design.attrs:
         return ds
@@ -105,7 +121,13 @@ def with_design(ds: xr.Dataset, design: xr.Dataset, database: MaterialDatabase |
 
 def materials_of_design(design: xr.Dataset, database: MaterialDatabase) -> str:
     """Return the values of all materials of a design with their sources, as JSON by name."""
-    names = sorted({str(name) for field in MATERIAL_FIELDS for name in np.unique(design[field].values.astype(str))})
+    names = sorted(
+        {
+            str(name)
+            for field in MATERIAL_FIELDS
+            for name in np.unique(design[field].values.astype(str))
+        }
+    )
     return json.dumps({name: database.material(name).with_sources() for name in names}, default=str)
 
 
@@ -116,11 +138,15 @@ def plain_inputs(case: Case) -> dict[str, Any]:
 
 def given_inputs(case: Case) -> dict[str, Any]:
     """Return the inputs of a case that differ from the example, as values that JSON can hold."""
-    return {name: value for name, value in plain_inputs(case).items() if not is_default(name, value)}
+    return {
+        name: value for name, value in plain_inputs(case).items() if not is_default(name, value)
+    }
 
 
 def material_values(case: Case, database: MaterialDatabase) -> dict[str, dict[str, Any]]:
-    """Return the values of both materials of a case with their sources, by `roller_material` and `guide_material`."""
+    """Return the values of both materials of a case with their sources, by `roller_material` and
+    `guide_material`.
+    """
     roller, guide = case.roller_material, case.guide_material
     pair = database.on(roller, guide), database.on(guide, roller)
     return {name: body.with_sources() for name, body in zip(MATERIAL_FIELDS, pair, strict=True)}
@@ -146,7 +172,9 @@ def inputs_of(ds: xr.Dataset) -> dict[str, Any]:
     """
     if CASE not in ds.attrs or "case" in ds.dims:
         remedy = "Solve one case: tr.solve(tr.Case(...)), or select one with solve(case) anew."
-        raise InputError("dataset", sorted(map(str, ds.dims)), "the result of one case with its inputs", remedy)
+        raise InputError(
+            "dataset", sorted(map(str, ds.dims)), "the result of one case with its inputs", remedy
+        )
     values = json.loads(ds.attrs[CASE])
     for name in PARAMETERS:
         if isinstance(values.get(name), str) and values[name] not in FRICTION_LEVELS:
@@ -160,7 +188,9 @@ def case_of_result(ds: xr.Dataset) -> Case:
 
 
 def not_given_of(ds: xr.Dataset) -> dict[str, Any]:
-    """Return the values of a solved case that were not given but taken from the paper's example, by name."""
+    """Return the values of a solved case that were not given but taken from the paper's example, by
+    name.
+    """
     return used_of(inputs_of(ds), names_not_given(ds.attrs))
 
 
@@ -171,7 +201,9 @@ def names_not_given(attrs: Mapping[str, Any]) -> list[str]:
 
 
 def radii_of(ds: xr.Dataset) -> dict[str, float]:
-    """Return outer radius and groove depth [mm] of a solved case; {} if its axis distance was given instead."""
+    """Return outer radius and groove depth [mm] of a solved case; {} if its axis distance was given
+    instead.
+    """
     return json.loads(ds.attrs.get(RADII, "{}"))
 
 
@@ -181,17 +213,26 @@ def doubts_of(ds: xr.Dataset) -> list[str]:
 
 
 def materials_of(ds: xr.Dataset) -> dict[str, dict[str, Any]]:
-    """Return the values of both materials of a solved case, by `roller_material` and `guide_material`."""
+    """Return the values of both materials of a solved case, by `roller_material` and
+    `guide_material`.
+    """
     return json.loads(ds.attrs[MATERIALS])
 
 
 def as_material(values: Mapping[str, Any]) -> Material:
     """Return the material that a result stores with its sources."""
-    return Material(**{key: value for key, value in values.items() if key not in ("sources", "notes", "guesses")})
+    return Material(
+        **{
+            key: value
+            for key, value in values.items()
+            if key not in ("sources", "notes", "guesses")
+        }
+    )
 
 
 def friction_records(attrs: Mapping[str, Any]) -> list[dict[str, Any]]:
-    """Return the friction coefficients that a result took from the database: pair, level, value, source, placeholder.
+    """Return the friction coefficients that a result took from the database: pair, level, value,
+    source, placeholder.
 
     Parameters
     ----------
@@ -229,7 +270,11 @@ def setting_text(value: Any) -> str | None:
 
 
 def solve_command(settings: Mapping[str, Any], words: tuple[str, ...] = ("solve",)) -> str:
-    """Return the command that solves a case with these parameters and options, or that `words` name."""
-    texts = {key: text for key, value in settings.items() if (text := setting_text(value)) is not None}
+    """Return the command that solves a case with these parameters and options, or that `words`
+    name.
+    """
+    texts = {
+        key: text for key, value in settings.items() if (text := setting_text(value)) is not None
+    }
     own = [word for key, text in texts.items() for word in ("--set", f"{key}={text}")]
     return shlex.join(["trackroller", *words, *own])

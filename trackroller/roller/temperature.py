@@ -1,11 +1,14 @@
-"""Take E and R_m of materials with a table at the temperature of their body, which depends on them in turn.
+"""Take E and R_m of materials with a table at the temperature of their body, which depends on them
+in turn.
 
-A case is solved with its materials' own values first. The output `heat` gives the temperature of each body, the tables
-give E and R_m there, and the case is solved again, until the temperature stays.
+A case is solved with its materials' own values first. The output `heat` gives the temperature of
+each body, the tables give E and R_m there, and the case is solved again, until the temperature
+stays.
 
-ASSUME: the bulk temperature counts, not the flash, which stays in a thin layer for a short part of a revolution.
-ASSUME: fatigue limits, yield strength and hardness keep their ratio to R_m; other values do not depend on temperature.
-ASSUME: while a profile wears along its travel, the body has its material's own values.
+ASSUME: the bulk temperature counts, not the flash, which stays in a thin layer for a short part of
+a revolution. ASSUME: fatigue limits, yield strength and hardness keep their ratio to R_m; other
+values do not depend on temperature. ASSUME: while a profile wears along its travel, the body has
+its material's own values.
 """
 
 from __future__ import annotations
@@ -34,7 +37,8 @@ PASSES = 10
 HEAD = "temperature: "  # of a note on a table
 UNSETTLED = "unsettled"  # cases without a fixed point within the passes
 REASON = (
-    f"the temperature still changes by more than {TOLERANCE:g} K after {PASSES} passes between heat and the material's "
+    f"the temperature still changes by more than {TOLERANCE:g} K after {PASSES} passes "
+    "between heat and the material's "
     "temperature_dependence: cool the roller better, or give values for one temperature"
 )
 _table = lru_cache(maxsize=256)(lambda text: TemperatureTable(**json.loads(text)))
@@ -59,9 +63,12 @@ def settle(
     table : CaseTable
         The cases with the values at their temperatures.
     block : Block
-        Their results, with `unsettled`, (n,), if a case was solved again. Cases without a table keep theirs.
+        Their results, with `unsettled`, (n,), if a case was solved again. Cases without a table
+        keep theirs.
     """
-    rows = np.flatnonzero((table.roller.temperature_dependence != "") | (table.guide.temperature_dependence != ""))
+    rows = np.flatnonzero(
+        (table.roller.temperature_dependence != "") | (table.guide.temperature_dependence != "")
+    )
     if "bulk_temperature_rise" not in block.values or not rows.size:
         return table, block
     reached = temperatures(table, block)
@@ -74,9 +81,9 @@ def settle(
         rows = rows[_differ(before, warm)[rows]]  # equal values have equal results
         if not rows.size:
             break
-        place = np.arange(len(block))
-        place[rows] = len(block) + np.arange(rows.size)
-        block = join([block, solve(warm.take(rows))]).take(place)
+        newest_row = np.arange(len(block))
+        newest_row[rows] = len(block) + np.arange(rows.size)
+        block = join([block, solve(warm.take(rows))]).take(newest_row)
         reached = temperatures(table, block)
         rows = rows[np.fmax.reduce(np.abs(reached - used)[rows], axis=1) > TOLERANCE]
     if rows.size:
@@ -86,15 +93,20 @@ def settle(
 
 
 def temperatures(table: CaseTable, block: Block) -> np.ndarray:
-    """Return the temperature of roller and guide, (n, body) [degC]; NaN where `heat` does not know the rise."""
-    rise = np.fmax.reduce(block.values["bulk_temperature_rise"], axis=1)  # a contact that has lifted off has none
+    """Return the temperature of roller and guide, (n, body) [degC]; NaN where `heat` does not know
+    the rise.
+    """
+    # a contact that has lifted off has none
+    rise = np.fmax.reduce(block.values["bulk_temperature_rise"], axis=1)
     return np.asarray(table.ambient_temperature[:, None] + rise)
 
 
 def temperatures_of(ds: xr.Dataset, ambient: ArrayLike) -> np.ndarray:
-    """Return the temperature of roller and guide of one result, (body,), or of each case, (n, body) [degC].
+    """Return the temperature of roller and guide of one result, (body,), or of each case, (n, body)
+    [degC].
 
-    `ambient` is the temperature of the surroundings, a number or (n, 1) [degC]. Without the output `heat` all is NaN.
+    `ambient` is the temperature of the surroundings, a number or (n, 1) [degC]. Without the output
+    `heat` all is NaN.
     """
     if "bulk_temperature_rise" not in ds:
         return np.full(np.broadcast_shapes(np.shape(ambient), (len(BODIES),)), np.nan)
@@ -103,7 +115,9 @@ def temperatures_of(ds: xr.Dataset, ambient: ArrayLike) -> np.ndarray:
 
 
 def at_temperatures(table: CaseTable, temperature: np.ndarray) -> CaseTable:
-    """Return the cases with the values of their tables at temperatures, (n, body) [degC]; NaN leaves them."""
+    """Return the cases with the values of their tables at temperatures, (n, body) [degC]; NaN
+    leaves them.
+    """
     bodies = {body: _at(getattr(table, body), temperature[:, i]) for i, body in enumerate(BODIES)}
     return replace(table, **bodies)
 
@@ -117,23 +131,31 @@ def _at(body: MaterialArrays, temperature: np.ndarray) -> MaterialArrays:
             values[name][rows] = own.at(name, temperature[rows])
     share = values["tensile_strength"] / body.tensile_strength
     return replace(
-        body, **values, **{name: getattr(body, name) * share for name in ("fatigue_limit", *FOLLOW_STRENGTH)}
+        body,
+        **values,
+        **{name: getattr(body, name) * share for name in ("fatigue_limit", *FOLLOW_STRENGTH)},
     )
 
 
 def _differ(one: CaseTable, other: CaseTable) -> np.ndarray:
     """Return whether a value that a table may hold differs, (n,)."""
     pairs = [(getattr(one, body), getattr(other, body)) for body in BODIES]
-    return np.any([getattr(a, name) != getattr(b, name) for a, b in pairs for name in TABLED], axis=0)
+    return np.any(
+        [getattr(a, name) != getattr(b, name) for a, b in pairs for name in TABLED], axis=0
+    )
 
 
 def reasons(block: Block) -> dict[int, str]:
     """Return why cases did not settle, by row."""
-    return dict.fromkeys(np.flatnonzero(block.values.get(UNSETTLED, np.zeros(0)) > 0).tolist(), REASON)
+    return dict.fromkeys(
+        np.flatnonzero(block.values.get(UNSETTLED, np.zeros(0)) > 0).tolist(), REASON
+    )
 
 
 def notes(table: CaseTable, block: Block) -> list[str]:
-    """Return one sentence on each table that results rest on, and on each that a temperature leaves."""
+    """Return one sentence on each table that results rest on, and on each that a temperature
+    leaves.
+    """
     if "bulk_temperature_rise" not in block.values:
         return []
     reached = temperatures(table, block)
@@ -148,9 +170,12 @@ def notes(table: CaseTable, block: Block) -> list[str]:
             values = " and ".join(_table(text).columns)
             out.append(f"{HEAD}{values} of material '{name}' are those at its bulk temperature.")
             if np.isnan(here).any():
-                out.append(f"{HEAD}where that of material '{name}' is not known, its table is not used.")
+                out.append(
+                    f"{HEAD}where that of material '{name}' is not known, its table is not used."
+                )
             if np.any((here < low) | (here > high)):
                 out.append(
-                    f"{HEAD}material '{name}' leaves its table from {low:g} to {high:g} degC, whose end counts there."
+                    f"{HEAD}material '{name}' leaves its table from {low:g} to {high:g} degC, "
+                    "whose end counts there."
                 )
     return list(dict.fromkeys(out))

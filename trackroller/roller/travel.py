@@ -1,4 +1,6 @@
-"""Put the worn profiles into cases that ask for a travel; cases that differ in travel alone share one march."""
+"""Put the worn profiles into cases that ask for a travel; cases that differ in travel alone share
+one march.
+"""
 
 from __future__ import annotations
 
@@ -22,7 +24,11 @@ class _Case:
     def __init__(self, table: CaseTable, options: Options) -> None:
         self.table = table
         self.options = options
-        columns = {f.name: getattr(table, f.name) for f in fields(table) if f.name not in ("travel", "roller", "guide")}
+        columns = {
+            f.name: getattr(table, f.name)
+            for f in fields(table)
+            if f.name not in ("travel", "roller", "guide")
+        }
         bodies = [vars(body) for body in (table.roller, table.guide)]
         texts = [repr(values[0]) for part in (columns, *bodies) for values in part.values()]
         self.key = repr(options), *texts
@@ -67,7 +73,8 @@ def _course(case: _Case) -> _Course:
 
 
 def with_travel(table: CaseTable, options: Options) -> tuple[CaseTable, dict[int, str]]:
-    """Return the cases with the profiles that are worn after their travel, and why some have none, by row.
+    """Return the cases with the profiles that are worn after their travel, and why some have none,
+    by row.
 
     Parameters
     ----------
@@ -93,7 +100,9 @@ def with_travel(table: CaseTable, options: Options) -> tuple[CaseTable, dict[int
         if reason:
             lost[row] = f"after {state.travel:.4g} km, before its travel: {ENDS[reason]}"
         elif mirrored[0]:
-            state = replace(state, **{n: getattr(state, n)[::-1] for n in ("depth", "closing", "inclined")})
+            state = replace(
+                state, **{n: getattr(state, n)[::-1] for n in ("depth", "closing", "inclined")}
+            )
         worn = course.wearing.worn_table(state)
         for name, texts in profiles.items():
             texts[row] = getattr(worn, name)[0]

@@ -1,4 +1,6 @@
-"""Solve one roller while its groove wears: results along the travel as a labelled data set (`tr.wear`)."""
+"""Solve one roller while its groove wears: results along the travel as a labelled data set
+(`tr.wear`).
+"""
 
 from __future__ import annotations
 
@@ -32,23 +34,66 @@ if TYPE_CHECKING:
     from trackroller.materials import MaterialDatabase
 
 OUTPUTS = ("forces", "contact", "friction_work", "peak_stress", "life")
-PATCH = "contact"  # group of pressure and patch, which the states of every run have: page and sentences show them
+# group of pressure and patch, which the states of every run have: page and sentences show them
+PATCH = "contact"
 _C = ("contact",)
 _CB = ("contact", "body")
 VARIABLES = variables(
     "groove",
     ("groove_depth", _CB, "mm", "d", "depth of the deepest worn place"),
-    ("groove_depth_error", (), "mm", "delta(d)", "estimated error of the depth, by steps and elements"),
+    (
+        "groove_depth_error",
+        (),
+        "mm",
+        "delta(d)",
+        "estimated error of the depth, by steps and elements",
+    ),
     ("groove_step_error", (), "mm", "", "estimated error of the depth, summed over the steps"),
-    ("pressure_error", _C, "1", "", "estimated relative error of the largest pressure of a worn groove"),
-    ("groove_volume", _CB, "mm3", "V", "worn volume of the roller's circumference, and of a metre of the guide"),
-    ("worn_depth", (*_CB, "place"), "mm", "d(x)", "depth that wear took off normal to the contact plane"),
+    (
+        "pressure_error",
+        _C,
+        "1",
+        "",
+        "estimated relative error of the largest pressure of a worn groove",
+    ),
+    (
+        "groove_volume",
+        _CB,
+        "mm3",
+        "V",
+        "worn volume of the roller's circumference, and of a metre of the guide",
+    ),
+    (
+        "worn_depth",
+        (*_CB, "place"),
+        "mm",
+        "d(x)",
+        "depth that wear took off normal to the contact plane",
+    ),
     ("guide_surface", (*_C, "place"), "mm", "z", "worn surface of the guide over the new one"),
-    ("roller_surface", (*_C, "place"), "mm", "z", "worn surface of the roller over the new guide, where both touch"),
+    (
+        "roller_surface",
+        (*_C, "place"),
+        "mm",
+        "z",
+        "worn surface of the roller over the new guide, where both touch",
+    ),
     ("contact_angle", _C, "degree", "alpha", "inclination of the resultant of the pressure"),
     ("closing", _C, "mm", "", "distance by which wear let the bodies close"),
-    ("next_step", (), "km", "", "next step of a run that goes on; missing at the end, which lies between two steps"),
-    ("start_inclination", _C, "rad", "", "turning of the contact normal outward, from which the solution started"),
+    (
+        "next_step",
+        (),
+        "km",
+        "",
+        "next step of a run that goes on; missing at the end, which lies between two steps",
+    ),
+    (
+        "start_inclination",
+        _C,
+        "rad",
+        "",
+        "turning of the contact normal outward, from which the solution started",
+    ),
     (
         "start_balance",
         ("unknown",),
@@ -56,14 +101,22 @@ VARIABLES = variables(
         "",
         "rolling radius shift [mm] and forces [N] from which the solution started",
     ),
-    ("start_box", ("contact", "side"), "mm", "", "ends and half length of the patch from which the solution started"),
+    (
+        "start_box",
+        ("contact", "side"),
+        "mm",
+        "",
+        "ends and half length of the patch from which the solution started",
+    ),
 )
 FARTHEST = 1e9  # km
-# Relative difference of two damage rates up to which their mean is the arithmetic one, which is then right to its
-# square. The logarithmic mean divides two differences, of which rounding leaves nothing for nearly equal rates.
+# Relative difference of two damage rates up to which their mean is the arithmetic one, which is
+# then right to its square. The logarithmic mean divides two differences, of which rounding leaves
+# nothing for nearly equal rates.
 ALIKE = 1e-6
-# Error of the largest pressure times the columns of elements, and over its `roughness` within NEAR columns: wear leaves
-# a ridge at the spin pole. The sum covers the difference to finer runs in 95 % of states of random rollers.
+# Error of the largest pressure times the columns of elements, and over its `roughness` within NEAR
+# columns: wear leaves a ridge at the spin pole. The sum covers the difference to finer runs in 95 %
+# of states of random rollers.
 COLUMN_ERROR = 0.5
 RIDGE_ERROR = 0.2
 NEAR = 3
@@ -82,21 +135,22 @@ def wear(
 ) -> xr.Dataset:
     """Follow roller and guide while their profiles wear, and return the results along the travel.
 
-    The case has to give wear coefficients by its materials. Both profiles, the balance of the roller, the pressures and
-    the contact angles are solved anew after each step.
+    The case has to give wear coefficients by its materials. Both profiles, the balance of the
+    roller, the pressures and the contact angles are solved anew after each step.
 
     Parameters
     ----------
     case : Case or mapping
         The new roller and its guide.
     to : float
-        Travel at which to end, > 0 [km]. The travel also ends at `permissible_wear_depth`, and where a contact is lost;
-        the attribute `end` says which.
+        Travel at which to end, > 0 [km]. The travel also ends at `permissible_wear_depth`, and
+        where a contact is lost; the attribute `end` says which.
     outputs : str or iterable of str
-        Groups of results as of `solve`; by default "forces", "contact", "friction_work", "peak_stress" and "life". The
-        group "contact" is always among them.
+        Groups of results as of `solve`; by default "forces", "contact", "friction_work",
+        "peak_stress" and "life". The group "contact" is always among them.
     resume : xarray.Dataset, optional
-        Result of the same case to a shorter travel, from which the run goes on. The result has the same bits.
+        Result of the same case to a shorter travel, from which the run goes on. The result has the
+        same bits.
     tell : callable, optional
         Function that receives the results so far and the goal `to` after each step.
     database : MaterialDatabase, optional
@@ -107,8 +161,9 @@ def wear(
     Returns
     -------
     xarray.Dataset
-        Results of `solve` along `travel` [km], and in addition depth, volume and worn profiles along `place` [mm],
-        contact angles, the damage sum of the S-N curve, and the estimated error of the depth.
+        Results of `solve` along `travel` [km], and in addition depth, volume and worn profiles
+        along `place` [mm], contact angles, the damage sum of the S-N curve, and the estimated error
+        of the depth.
 
     Raises
     ------
@@ -117,14 +172,16 @@ def wear(
 
     Notes
     -----
-    A step is implicit in the pressure, and is taken once whole and once in two halves. Both results extrapolate the
-    depth, and their difference controls the step. To 50 km it takes some seconds of processor time.
+    A step is implicit in the pressure, and is taken once whole and once in two halves. Both results
+    extrapolate the depth, and their difference controls the step. To 50 km it takes some seconds of
+    processor time.
 
     Examples
     --------
     >>> import trackroller as tr
     >>> steel = {"like": "1.7225-quenched-tempered", "wear_coefficient": 1e-5}
-    >>> case = tr.Case(motor_force=0, axial_force=0, friction_coefficient=0.2, roller_material=steel)
+    >>> loads = {"motor_force": 0, "axial_force": 0, "friction_coefficient": 0.2}
+    >>> case = tr.Case(**loads, roller_material=steel)
     >>> ds = tr.wear(case, to=10, contact_model="sliding", accuracy="preview")
     >>> float(ds.travel[-1]), ds.attrs["end"]
     (10.0, 'travel')
@@ -148,7 +205,9 @@ def wear(
 class _Record:
     """The run of one roller: its march, and the results that were made of its states."""
 
-    def __init__(self, case: Case, options: Options, database: MaterialDatabase, tell: Tell | None, to: float) -> None:
+    def __init__(
+        self, case: Case, options: Options, database: MaterialDatabase, tell: Tell | None, to: float
+    ) -> None:
         self.case = case
         self.options = options
         self.database = database
@@ -184,7 +243,12 @@ class _Record:
                 self._add(at, turned, results, onward)
             before = turned
         # nothing wears
-        self._add(replace(self.wearing.start, travel=self.to), before or self.wearing.start, self.wearing.new, np.nan)
+        self._add(
+            replace(self.wearing.start, travel=self.to),
+            before or self.wearing.start,
+            self.wearing.new,
+            np.nan,
+        )
         return self._joined("travel")
 
     def _goal(self, one: Groove, two: Groove) -> tuple[str, Groove] | None:
@@ -207,17 +271,25 @@ class _Record:
         stages_outcome.finish(self.table, block, self.options)
         reflect(block.values, self.mirrored)
         row = assemble(block, self.options, single=True)
-        values = self._values(state, turned, onward) | {"pressure_error": _pressure_error(state, results)}
+        values = self._values(state, turned, onward) | {
+            "pressure_error": _pressure_error(state, results)
+        }
         for v in VARIABLES:
             if v.name in values:
                 array = np.asarray(values[v.name])
-                row[v.name] = v.dims, self._seen(array, v.dims), {"units": v.units, "long_name": v.long_name}
+                row[v.name] = (
+                    v.dims,
+                    self._as_given(array, v.dims),
+                    {"units": v.units, "long_name": v.long_name},
+                )
         self.rows.append(row.assign_coords(travel=state.travel))
         if self.tell is not None:
             self.tell(self._joined("running"), self.to)
 
-    def _seen(self, array: np.ndarray, dims: tuple[str, ...]) -> np.ndarray:
-        """Return an array with contacts 1 and 2 swapped if the mirror image of the roller was solved, and back."""
+    def _as_given(self, array: np.ndarray, dims: tuple[str, ...]) -> np.ndarray:
+        """Return an array with contacts 1 and 2 swapped if the mirror image of the roller was
+        solved, and back.
+        """
         if self.mirrored[0] and dims[:1] == ("contact",):
             return array[::-1]
         return array
@@ -237,7 +309,10 @@ class _Record:
             "groove_depth": depth.max(axis=2),
             "groove_depth_error": state.error + w.element_error * float(depth.max()),
             "groove_step_error": state.error,
-            "groove_volume": np.stack([(depth[:, 0] * around).sum(axis=1), 1e3 * depth[:, 1].sum(axis=1)], 1) * step,
+            "groove_volume": np.stack(
+                [(depth[:, 0] * around).sum(axis=1), 1e3 * depth[:, 1].sum(axis=1)], 1
+            )
+            * step,
             "worn_depth": depth,
             "guide_surface": -depth[:, 1],
             "roller_surface": w.gaps(state) - depth[:, 1],
@@ -253,34 +328,54 @@ class _Record:
         """Return the rows along `travel` with the damage sum, and say why the travel ends."""
         import xarray as xr  # noqa: PLC0415 - heavy
 
-        ds = xr.concat(self.rows, "travel", coords="minimal", compat="override", combine_attrs="override")
-        ds = ds.assign_coords(place=("place", self.wearing.places, {"units": "mm", "long_name": "place outward"}))
+        ds = xr.concat(
+            self.rows, "travel", coords="minimal", compat="override", combine_attrs="override"
+        )
+        ds = ds.assign_coords(
+            place=("place", self.wearing.places, {"units": "mm", "long_name": "place outward"})
+        )
         ds["travel"].attrs |= {"units": "km", "long_name": "travel since the bodies were new"}
         if "life_cycles" in ds:
             ds = ds.assign(_of_lives(ds, self.wearing.per_km))
         ds.attrs |= {"title": "A roller and its guide while they wear", "end": end, "to": self.to}
-        ds.attrs[NOTES] = "\n".join(notes_on_limits(self.table, self.options.changed(outputs=("wear",))))
+        ds.attrs[NOTES] = "\n".join(
+            notes_on_limits(self.table, self.options.changed(outputs=("wear",)))
+        )
         ds.attrs |= {"wear_per_km": self.wearing.rates.tolist(), "end_meaning": ENDS.get(end, "")}
         return with_inputs(ds, self.case, self.database)
 
     def _taken_up(self, ds: xr.Dataset) -> tuple[Groove | None, float]:
-        """Take over the rows of a shorter travel, and return the last state and its next step [km]."""
+        """Take over the rows of a shorter travel, and return the last state and its next step
+        [km].
+        """
         if "next_step" not in ds:
-            raise InputError("resume", ds.attrs.get("title"), "a result of wear", "Give another file.")
+            raise InputError(
+                "resume", ds.attrs.get("title"), "a result of wear", "Give another file."
+            )
         own = with_inputs(ds.isel(travel=0).copy(), self.case, self.database).attrs
         stated = self.options.attributes() | {name: own[name] for name in (CASE, MATERIALS)}
         for name, value in stated.items():
             if str(ds.attrs.get(name)) != str(value):
                 remedy = "Give the same case and options, or start anew in another file."
-                raise InputError("resume", name, "results of the same case with the same options", remedy)
+                raise InputError(
+                    "resume", name, "results of the same case with the same options", remedy
+                )
         states = np.flatnonzero(np.isfinite(ds.next_step.values) & (ds.travel.values < self.to))
         if states.size == 0:
             return None, 0.0
-        derived = ("fatigue_damage", "fatigue_damage_error", "life_travel", "life_travel_new", "place")
+        derived = (
+            "fatigue_damage",
+            "fatigue_damage_error",
+            "life_travel",
+            "life_travel_new",
+            "place",
+        )
         self.rows = [ds.drop_vars(derived, errors="ignore").isel(travel=int(i)) for i in states]
         last = self.rows[-1]
         m = self.wearing.contacts
-        known = {v.name: self._seen(last[v.name].values, v.dims) for v in VARIABLES if v.name in last}
+        known = {
+            v.name: self._as_given(last[v.name].values, v.dims) for v in VARIABLES if v.name in last
+        }
         state = Groove(
             float(last.travel),
             known["worn_depth"][:m],
@@ -294,7 +389,9 @@ class _Record:
 
 
 def _pressure_error(state: Groove, results: StageResults) -> np.ndarray:
-    """Return the estimated relative error of the largest pressure, (2,) [1]; 0 for the new groove."""
+    """Return the estimated relative error of the largest pressure, (2,) [1]; 0 for the new
+    groove.
+    """
     patch: Any = results.patch
     out = np.zeros(2)
     if not state.depth.any():
@@ -307,13 +404,16 @@ def _pressure_error(state: Groove, results: StageResults) -> np.ndarray:
 
 
 def _of_lives(ds: xr.Dataset, per_km: np.ndarray) -> dict[str, Any]:
-    """Return the damage sum along the travel, and the travel at which it reaches 1, with and without wear."""
+    """Return the damage sum along the travel, and the travel at which it reaches 1, with and
+    without wear.
+    """
     travel = ds["travel"].values
     cycles = ds["life_cycles"].transpose("travel", "contact", "body").values
     with np.errstate(divide="ignore", invalid="ignore"):
         rate = per_km / cycles
         one, two = rate[:-1], rate[1:]
-        # between two states the damage rate follows a power of the stress, so that its logarithm is interpolated
+        # between two states the damage rate follows a power of the stress, so that its logarithm is
+        # interpolated
         grows = (one > 0) & (two > 0) & (np.abs(two - one) > ALIKE * one)
         mean = np.where(grows, (two - one) / np.log(two / one), 0.5 * (one + two))
     grown = mean * np.diff(travel)[:, None, None]
@@ -330,10 +430,25 @@ def _of_lives(ds: xr.Dataset, per_km: np.ndarray) -> dict[str, Any]:
     with np.errstate(divide="ignore"):
         new = 1.0 / rate[0]
     words = "travel at which the damage sum reaches 1"
-    of_error = {"units": "1", "long_name": "estimated relative error of the damage sum and of its travel"}
+    of_error = {
+        "units": "1",
+        "long_name": "estimated relative error of the damage sum and of its travel",
+    }
     return {
-        "fatigue_damage": (("travel", *_CB), damage, {"units": "1", "long_name": "damage sum of the S-N curve"}),
+        "fatigue_damage": (
+            ("travel", *_CB),
+            damage,
+            {"units": "1", "long_name": "damage sum of the S-N curve"},
+        ),
         "fatigue_damage_error": (("travel", *_CB), error, of_error),
-        "life_travel": (_CB, life, {"units": "km", "long_name": f"{words}; missing if it lies beyond the end"}),
-        "life_travel_new": (_CB, new, {"units": "km", "long_name": f"{words} under the stress of the new groove"}),
+        "life_travel": (
+            _CB,
+            life,
+            {"units": "km", "long_name": f"{words}; missing if it lies beyond the end"},
+        ),
+        "life_travel_new": (
+            _CB,
+            new,
+            {"units": "km", "long_name": f"{words} under the stress of the new groove"},
+        ),
     }

@@ -1,8 +1,10 @@
-"""Follow the groove of one roller while it wears: states along the travel, which do not depend on where one looks.
+"""Follow the groove of one roller while it wears: states along the travel, which do not depend on
+where one looks.
 
-ASSUME: every place of the roller's circumference is overrolled once in 2 pi r_A of travel, and every place of the guide
-`guide_overrollings_per_hour` times in the travel of an hour. A guide without this number does not wear.
-ASSUME: debris and plastic flow play no part, and the wear coefficients do not change with the travel.
+ASSUME: every place of the roller's circumference is overrolled once in 2 pi r_A of travel, and
+every place of the guide `guide_overrollings_per_hour` times in the travel of an hour. A guide
+without this number does not wear. ASSUME: debris and plastic flow play no part, and the wear
+coefficients do not change with the travel.
 """
 
 from __future__ import annotations
@@ -34,18 +36,22 @@ from trackroller.roller.stages.scene import StageResults, surface_tractions
 
 REACH = 20.0  # half width of the cells over the lateral semi-axis of the new patch
 TOLERANCE = 0.02  # largest error of the depth in a step over the elastic approach of the new bodies
-DEEP, SHARE = 2.0, 0.1  # beyond DEEP elastic approaches, this share of the depth beyond them is allowed in addition
+# beyond DEEP elastic approaches, this share of the depth beyond them is allowed in addition
+DEEP, SHARE = 2.0, 0.1
 FIRST = 0.05  # depth of the first step over the elastic approach of the new bodies
-LEAST = 0.02  # depth of the least step over that of the first step, or of a step that wears SHARE of the depth
+# depth of the least step over that of the first step, or of a step that wears SHARE of the depth
+LEAST = 0.02
 GROWTH, SHRINK = 2.5, 0.3  # limits of the change of a step
 BALANCED = 1e-6  # residual of a balance from which the groove can go on
 TRIES = 3  # steps in a row, each shorter, that end without a balance or in another regime
-STEPS = 25  # largest number of states, which bounds the processor time of a groove that goes on growing
+# largest number of states, which bounds the processor time of a groove that goes on growing
+STEPS = 25
 ENDS = {
     "travel": "the travel asked for is reached",
     "permissible": "the permissible wear depth is reached",
     "lift_off": "a contact has lifted off",
-    "full_slip": "friction can no longer transmit the motor force, so that wear per travel has no limit",
+    "full_slip": "friction can no longer transmit the motor force, so that wear per travel has no "
+    "limit",
     "failed": "no balance of the forces was found",
     "steps": f"the steps became too small, or {STEPS} states were not enough",
     "wide": f"the patch has grown beyond {REACH:g} times the new one",
@@ -61,8 +67,8 @@ class Groove:
     travel : float
         Travel since the bodies were new [km].
     depth : numpy.ndarray, shape (m, 2, cells)
-        Mean depth that wear took off the cells of roller and guide, outward from the first cell [mm]; m is 1 if both
-        contacts are mirror images, otherwise 2.
+        Mean depth that wear took off the cells of roller and guide, outward from the first cell
+        [mm]; m is 1 if both contacts are mirror images, otherwise 2.
     closing : numpy.ndarray, shape (m,)
         How far wear let the bodies close along the contact normal [mm].
     inclined : numpy.ndarray, shape (m,)
@@ -88,11 +94,15 @@ def between(one: Groove, two: Groove, travel: float) -> Groove:
     """Return the state at a travel [km] between two states of a march, by linear interpolation."""
     part = (travel - one.travel) / (two.travel - one.travel)
     names = "depth", "closing", "inclined", "error"
-    return Groove(travel, *((1.0 - part) * getattr(one, name) + part * getattr(two, name) for name in names))
+    return Groove(
+        travel, *((1.0 - part) * getattr(one, name) + part * getattr(two, name) for name in names)
+    )
 
 
 def travel_to_depth(one: Groove, two: Groove, depth: float) -> float:
-    """Return the travel [km] at which the deepest place reaches `depth` [mm] between two states; inf if it does not."""
+    """Return the travel [km] at which the deepest place reaches `depth` [mm] between two states;
+    inf if it does not.
+    """
     grown = two.depth - one.depth
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         part = np.where(two.depth >= depth, (depth - one.depth) / grown, np.inf)
@@ -118,12 +128,20 @@ class Wearing:
     def __init__(self, table: CaseTable, options: Options) -> None:
         self.table = table
         self.options = options.changed(
-            contact_model=model_in_use(options, str(table.friction_law[0]), float(table.layer_flexibility[0]))
+            contact_model=model_in_use(
+                options, str(table.friction_law[0]), float(table.layer_flexibility[0])
+            )
         )
         self.alpha, self.radius, *_ = contact_geometry(vars(table))
         self.modulus = float(contact_modulus(*bodies(table))[0])
-        hourly = np.array([roller_overrollings(table.velocity, self.radius)[0], table.guide_overrollings_per_hour[0]])
-        self.per_km = hourly / (KM_PER_HOUR * table.velocity[0])  # overrollings of a place of roller and guide
+        hourly = np.array(
+            [
+                roller_overrollings(table.velocity, self.radius)[0],
+                table.guide_overrollings_per_hour[0],
+            ]
+        )
+        # overrollings of a place of roller and guide
+        self.per_km = hourly / (KM_PER_HOUR * table.velocity[0])
         self.rates = _rates(table, options, self.per_km)
         self._law = ""
         if options.wear_law == "energy":
@@ -148,10 +166,12 @@ class Wearing:
         low, high = self._gap(table, 1).limits
         step = 2.0 * wide / patch.shape[1]
         self.cells = step * np.arange(
-            np.floor(max(low / step, -REACH * wide / step)), np.ceil(min(high, REACH * wide) / step) + 1
+            np.floor(max(low / step, -REACH * wide / step)),
+            np.ceil(min(high, REACH * wide) / step) + 1,
         )
         self.scale = float(np.mean(patch.approach))
-        self.element_error = ERROR.get(self.options.contact_model, np.nan) / patch.shape[1]  # of the depth
+        # of the depth
+        self.element_error = ERROR.get(self.options.contact_model, np.nan) / patch.shape[1]
         self.start = replace(self.start, depth=np.zeros((self.contacts, 2, self.cells.size - 1)))
         self._lean = self._leaning(self.new, table)
 
@@ -161,7 +181,9 @@ class Wearing:
         return 0.5 * (self.cells[1:] + self.cells[:-1])
 
     def _moved(self, closing: np.ndarray) -> np.ndarray:
-        """Return how far the roller has moved outward along the tangent planes, (m,) [mm]: it sinks by the closing."""
+        """Return how far the roller has moved outward along the tangent planes, (m,) [mm]: it sinks
+        by the closing.
+        """
         tangent = np.tan(self.alpha[0])
         sides = np.broadcast_to(closing, 2)
         sunk = sides.mean() * tangent
@@ -169,22 +191,34 @@ class Wearing:
         return np.array([sunk + apart, sunk - apart])[: self.contacts]
 
     def worn_table(self, state: Groove) -> CaseTable:
-        """Return the case with the worn profiles of a state; the case itself if nothing was worn off."""
+        """Return the case with the worn profiles of a state; the case itself if nothing was worn
+        off.
+        """
         if not state.depth.any():
             return self.table
-        radii = float(self.table.guide_profile_radius[0]), float(self.table.roller_profile_radius[0])
+        radii = (
+            float(self.table.guide_profile_radius[0]),
+            float(self.table.roller_profile_radius[0]),
+        )
         common = {"start": float(self.places[0]), "step": float(self.places[1] - self.places[0])}
         guide = common | {"depth": state.depth[:, 1].tolist(), "inclined": state.inclined.tolist()}
-        roller = common | {"depth": state.depth[:, 0].tolist(), "moved": self._moved(state.closing).tolist()}
+        roller = common | {
+            "depth": state.depth[:, 0].tolist(),
+            "moved": self._moved(state.closing).tolist(),
+        }
         texts = with_wear(*self._texts, radii, [guide, roller])
         guide_text, roller_text = (np.array([text], dtype=object) for text in texts)
         profiles: Any = {"guide_profile": guide_text, "roller_profile": roller_text}
         return replace(self.table, **profiles)
 
     def gaps(self, state: Groove) -> np.ndarray:
-        """Return the gap of the worn bodies at `places` where they touch without load, (2, cells) [mm]."""
+        """Return the gap of the worn bodies at `places` where they touch without load, (2, cells)
+        [mm].
+        """
         table = self.worn_table(state)
-        lateral = np.array([self._gap(table, k + 1).lateral(self.places) for k in range(self.contacts)])
+        lateral = np.array(
+            [self._gap(table, k + 1).lateral(self.places) for k in range(self.contacts)]
+        )
         return np.broadcast_to(lateral - lateral.min(axis=1, keepdims=True), (2, self.places.size))
 
     def solve(self, state: Groove) -> StageResults:
@@ -197,22 +231,29 @@ class Wearing:
         shift = state.balance[:1]
         normal = state.balance[None, 1:]
         rolls = np.full(1, eq.ROLLING, np.int8)
-        near = eq.Equilibrium(rolls, rolls > 0, nan[0, :, 0], rolls > 0, shift, normal, Resultants(*nan))
-        scene = prepare(self.worn_table(state), self.options, self._across, [Box(*row) for row in boxes])
+        near = eq.Equilibrium(
+            rolls, rolls > 0, nan[0, :, 0], rolls > 0, shift, normal, Resultants(*nan)
+        )
+        scene = prepare(
+            self.worn_table(state), self.options, self._across, [Box(*row) for row in boxes]
+        )
         return StageResults.start(scene, balance(scene, near))
 
     def end(self, results: StageResults) -> str:
         """Return why the groove cannot be followed beyond these results; "" if it can."""
         name = REGIMES[int(results.regime[0])]
         if name == "rolling":
-            # a balance that misses its tolerance by little is told in its row, and the groove goes on
+            # a balance that misses its tolerance by little is told in its row, and the groove goes
+            # on
             if results.converged[0] or results.values["residual"][0] <= BALANCED:
                 return ""
             return "failed"
         return name
 
     def turned(self, state: Groove, results: StageResults) -> Groove:
-        """Return a solved state with its own inclination, balance and boxes, from which the next state starts."""
+        """Return a solved state with its own inclination, balance and boxes, from which the next
+        state starts.
+        """
         patch: Any = results.patch
         side = np.array([1.0, -1.0])[: self.contacts]
         middle = side * patch.centre[: self.contacts]
@@ -221,7 +262,9 @@ class Wearing:
             state,
             inclined=self._lean - self._leaning(results, self.worn_table(state)),
             balance=np.concatenate([results.balance.shift, results.balance.normal_force[0]]),
-            boxes=np.stack([middle - wide, middle + wide, patch.semi_axis_rolling[: self.contacts]], axis=1),
+            boxes=np.stack(
+                [middle - wide, middle + wide, patch.semi_axis_rolling[: self.contacts]], axis=1
+            ),
         )
 
     def _gap(self, table: CaseTable, side: int) -> Gap:
@@ -231,7 +274,9 @@ class Wearing:
         return gap(*texts, g, r, alpha, radius, float(table.guide_curve_radius[0]), side)
 
     def _patches(self, results: StageResults, table: CaseTable) -> list[WearingPatch]:
-        """Return the patch of each contact with its pressure and its rates of wear; x counts outward in the gap."""
+        """Return the patch of each contact with its pressure and its rates of wear; x counts
+        outward in the gap.
+        """
         t = surface_tractions(results)
         out = []
         energy = dissipation(results)[0][0]
@@ -239,12 +284,17 @@ class Wearing:
             slip = np.hypot(t.slip_lateral[k], t.slip_rolling[k])
             shear = np.hypot(t.shear_lateral[k], t.shear_rolling[k])
             cell = (t.x[k, 1] - t.x[k, 0]) * (t.y[k, 1] - t.y[k, 0])
-            # constant friction: |tau| = mu p wherever surfaces slide, to more digits than an iteration has
+            # constant friction: |tau| = mu p wherever surfaces slide, to more digits than an
+            # iteration has
             bound = shear
             if self.table.friction_law[0] == "":
                 bound = self.table.friction_coefficient[0] * t.pressure[k]
             ratio = energy_ratio(energy[k], cell * np.sum(bound * slip))
-            rates = ratio * self.rates[:, None, None] * local_rates(t.pressure[k], shear, slip, self._law)
+            rates = (
+                ratio
+                * self.rates[:, None, None]
+                * local_rates(t.pressure[k], shear, slip, self._law)
+            )
             outward = slice(None, None, 1 - 2 * k)  # x counts outward in a gap
             fields = t.pressure[k][:, outward], rates[..., outward]
             x = (1 - 2 * k) * t.x[k, outward]
@@ -252,7 +302,9 @@ class Wearing:
         return out
 
     def leaves_table(self, results: StageResults) -> bool:
-        """Return whether the frictional work of a state lies outside the table of the energy law."""
+        """Return whether the frictional work of a state lies outside the table of the energy
+        law.
+        """
         if not self._law or self.end(results):
             return False
         t = surface_tractions(results)
@@ -260,7 +312,9 @@ class Wearing:
         return bool(leaves_table(work, self._law).any())
 
     def _leaning(self, results: StageResults, table: CaseTable) -> np.ndarray:
-        """Return the mean slope of the guide under the pressure, (m,) [1]; elastic slopes have no mean."""
+        """Return the mean slope of the guide under the pressure, (m,) [1]; elastic slopes have no
+        mean.
+        """
         patch: Any = results.patch
         out = []
         for k in range(self.contacts):
@@ -283,26 +337,35 @@ class Wearing:
                 depth[k, body] = smoothed(grown, patch.width / (self.cells[1] - self.cells[0]))
         return replace(state, travel=state.travel + travel, depth=depth, closing=closing)
 
-    def _two_ways(self, at: Groove, patches: list[WearingPatch], step: float) -> tuple[Groove | None, float, str]:
+    def _two_ways(
+        self, at: Groove, patches: list[WearingPatch], step: float
+    ) -> tuple[Groove | None, float, str]:
         """Return the state after a step, its error over the allowed one, and why there is none."""
         full, half = (self._advanced(at, patches, part * step) for part in (1.0, 0.5))
         middle = self.solve(half)
         reason = self.end(middle)
         if reason:
             return None, np.inf, reason
-        two = self._advanced(self.turned(half, middle), self._patches(middle, self.worn_table(half)), 0.5 * step)
+        two = self._advanced(
+            self.turned(half, middle), self._patches(middle, self.worn_table(half)), 0.5 * step
+        )
         apart = np.abs(two.depth - full.depth).sum(axis=1)
         wore = np.any(two.depth > at.depth, axis=1).sum(axis=1)
         error = float(np.max((apart**2).sum(axis=1) / np.maximum(wore, 1))) ** 0.5
-        allowed = TOLERANCE * self.scale + SHARE * max(float(at.depth.max()) - DEEP * self.scale, 0.0)
-        beyond = TOLERANCE * self.scale / allowed  # extrapolation makes the noise of long steps larger
+        allowed = TOLERANCE * self.scale + SHARE * max(
+            float(at.depth.max()) - DEEP * self.scale, 0.0
+        )
+        # extrapolation makes the noise of long steps larger
+        beyond = TOLERANCE * self.scale / allowed
         depth = np.maximum(two.depth + beyond * (two.depth - full.depth), at.depth)
         closing = two.closing + beyond * (two.closing - full.closing)
         new = replace(two, depth=depth, closing=closing, error=at.error + error)
         return new, error / allowed, ""
 
     def _begin(self, state: Groove | None) -> tuple[Groove, StageResults]:
-        """Return the state from which a march begins, with its results; the new groove if none is given."""
+        """Return the state from which a march begins, with its results; the new groove if none is
+        given.
+        """
         if state is None:
             return self.start, self.new
         return state, self.solve(state)
@@ -310,10 +373,11 @@ class Wearing:
     def march(
         self, state: Groove | None = None, step: float = 0.0, states: int = 1
     ) -> Iterator[tuple[Groove, StageResults, float, str]]:
-        """Yield states with their results, the next step [km], and at the last one why it cannot go on.
+        """Yield states with their results, the next step [km], and at the last one why it cannot go
+        on.
 
-        A state and its next step determine all that follows, so that a march that goes on has the same bits. Without
-        wear the new groove is the only state.
+        A state and its next step determine all that follows, so that a march that goes on has the
+        same bits. Without wear the new groove is the only state.
 
         Parameters
         ----------
@@ -332,7 +396,10 @@ class Wearing:
         for _ in range(states, STEPS):
             patches = self._patches(results, self.worn_table(at))
             at = self.turned(at, results)
-            if any(p.edges[0] < self.cells[0] - p.width or p.edges[-1] > self.cells[-1] + p.width for p in patches):
+            if any(
+                p.edges[0] < self.cells[0] - p.width or p.edges[-1] > self.cells[-1] + p.width
+                for p in patches
+            ):
                 yield at, results, step, "wide"
                 return
             fastest = max(float(patch.rate.max()) for patch in patches)
@@ -365,17 +432,25 @@ class Wearing:
 
 
 def _rates(table: CaseTable, options: Options, per_km: np.ndarray) -> np.ndarray:
-    """Return the depth per km of roller and guide over the integral of `local_rates`, (2,); 0 where it is not known."""
+    """Return the depth per km of roller and guide over the integral of `local_rates`, (2,); 0 where
+    it is not known.
+    """
     if options.normal != "halfspace":
         raise InputError(
-            "normal", options.normal, "halfspace, because a worn groove is no circle", "Set normal to halfspace."
+            "normal",
+            options.normal,
+            "halfspace, because a worn groove is no circle",
+            "Set normal to halfspace.",
         )
     bodies = table.roller, table.guide
     if options.wear_law == "energy":
         if not table.wear_table[0]:
             remedy = "Give wear_table, or take wear_law: archard."
             raise InputError(
-                "wear_table", None, "a table of mass loss over frictional work for wear_law: energy", remedy
+                "wear_table",
+                None,
+                "a table of mass loss over frictional work for wear_law: energy",
+                remedy,
             )
         name = "density"
         allowed = "a number [kg/m3]"
@@ -387,4 +462,6 @@ def _rates(table: CaseTable, options: Options, per_km: np.ndarray) -> np.ndarray
     if np.isnan(k).all():
         remedy = f"Give it: roller_material: {{like: NAME, {name}: NUMBER}}."
         raise InputError(name, None, f"{allowed} of roller or guide", remedy)
-    return np.nan_to_num(1e-3 * np.nan_to_num(table.wear_coefficient_factor[0], nan=1.0) * k * per_km)
+    return np.nan_to_num(
+        1e-3 * np.nan_to_num(table.wear_coefficient_factor[0], nan=1.0) * k * per_km
+    )

@@ -1,4 +1,6 @@
-"""Solve cases on dask workers: workers receive batches of cases and return blocks; only this process writes files."""
+"""Solve cases on dask workers: workers receive batches of cases and return blocks; only this
+process writes files.
+"""
 
 from __future__ import annotations
 
@@ -35,7 +37,8 @@ def workers(scheduler: str, tell: Tell = unheard) -> Iterator[Executor]:
     Parameters
     ----------
     scheduler : str
-        'local' starts one process for each processor of this machine; 'tcp://host:port' names a running scheduler.
+        'local' starts one process for each processor of this machine; 'tcp://host:port' names a
+        running scheduler.
     tell : callable
         Receives one line if the scheduler has no worker yet.
 
@@ -61,17 +64,22 @@ def _client(scheduler: str) -> Any:
         from distributed import Client
     except ImportError:
         wrong = "needs the packages dask and distributed, of which one is missing"
-        remedy = "Install them: pip install 'trackroller[cluster]'. Without --scheduler, this process solves."
+        remedy = (
+            "Install them: pip install 'trackroller[cluster]'. Without --scheduler, this "
+            "process solves."
+        )
         raise InputError("--scheduler", scheduler, "", remedy, wrong) from None
     _check_address(scheduler)
     dask.config.set({"distributed.scheduler.allowed-failures": 2})
-    logging.getLogger("distributed.client").setLevel(logging.CRITICAL)  # the sentence of an error says it
+    # the sentence of an error says it
+    logging.getLogger("distributed.client").setLevel(logging.CRITICAL)
     if scheduler == "local":
         os.environ[SAFE_PATH] = "1"  # the workers inherit it
         return Client(n_workers=cores(), threads_per_worker=1, dashboard_address=None)  # type: ignore[no-untyped-call]
     try:
         return Client(scheduler, timeout=PATIENCE)  # type: ignore[no-untyped-call]
-    except (OSError, ValueError, TypeError) as exc:  # a TypeError: tls without a certificate in dask's settings
+    except (OSError, ValueError, TypeError) as exc:
+        # a TypeError: tls without a certificate in dask's settings
         wrong = f"does not answer as a dask scheduler ({exc})"
         raise InputError("--scheduler", scheduler, "", _START, wrong) from None
 
@@ -81,7 +89,10 @@ def _check_address(scheduler: str) -> None:
     if scheduler == "local" or re.fullmatch(f"(tcp|tls)://{_HOST_AND_PORT}", scheduler):
         return
     if scheduler.lower() == "slurm":
-        remedy = "Slurm takes a study by the workflow: snakemake -s CLONE/Snakefile --profile CLONE/profiles/slurm."
+        remedy = (
+            "Slurm takes a study by the workflow: snakemake -s CLONE/Snakefile --profile "
+            "CLONE/profiles/slurm."
+        )
     elif re.fullmatch(_HOST_AND_PORT, scheduler):
         remedy = f"Write --scheduler tcp://{scheduler}."
     else:
@@ -91,7 +102,9 @@ def _check_address(scheduler: str) -> None:
 
 
 def _solve(client: Any, cases: xr.Dataset, database: Any) -> Iterator[xr.Dataset]:
-    """Yield the blocks of a list; halve a batch that kills its workers until the responsible case is alone."""
+    """Yield the blocks of a list; halve a batch that kills its workers until the responsible case
+    is alone.
+    """
     from distributed import KilledWorker, as_completed  # optional and slow to import, as dask is
     from distributed.client import FutureCancelledError
 
@@ -119,9 +132,12 @@ def _solve(client: Any, cases: xr.Dataset, database: Any) -> Iterator[xr.Dataset
                 yield chunks.failure(cases["case"].values[index], "killed its worker process")
         except FutureCancelledError as exc:
             raise WorkError(
-                f"the dask scheduler does not answer any more. {_START} Then start again: every finished case is kept."
+                f"the dask scheduler does not answer any more. {_START} Then start again: every "
+                "finished case is kept."
             ) from exc
         except (InputError, WorkError):
             raise
         except Exception as exc:
-            raise WorkError(f"a dask worker failed: {exc}. Start again: finished cases are kept.") from exc
+            raise WorkError(
+                f"a dask worker failed: {exc}. Start again: finished cases are kept."
+            ) from exc

@@ -33,11 +33,14 @@ _BYTES = {
     "subsurface": 1_500_000,
 }
 _BYTES_OF_A_LIMIT = 150
-_PATCH_LIMITS = {"shakedown": 0.012, "heat": 0.004, "multiaxial": 0.06}  # s; the limits of forces take no time
+# s; the limits of forces take no time
+_PATCH_LIMITS = {"shakedown": 0.012, "heat": 0.004, "multiaxial": 0.06}
 
 
 def rate(options: Mapping[str, Any], friction_law: Any = None) -> float:
-    """Return the expected cases a second on one core for keyword arguments of `solve` and a friction law of a case."""
+    """Return the expected cases a second on one core for keyword arguments of `solve` and a
+    friction law of a case.
+    """
     accuracy = options.get("accuracy", "standard")
     groups = set(options.get("outputs", ("forces",)))
     model = options.get("contact_model", OPTIONS["contact_model"].default)
@@ -66,15 +69,24 @@ def rate(options: Mapping[str, Any], friction_law: Any = None) -> float:
 
 
 def study_rate(study: Study) -> float:
-    """Return the expected cases a second of a study, in which model, normal problem and friction may be factors."""
-    varied = {name: spec["values"] for name, spec in study.factors.items() if name in OPTION_FACTORS}
-    options = [study.options | dict(zip(varied, values, strict=True)) for values in product(*varied.values())]
+    """Return the expected cases a second of a study, in which model, normal problem and friction
+    may be factors.
+    """
+    varied = {
+        name: spec["values"] for name, spec in study.factors.items() if name in OPTION_FACTORS
+    }
+    options = [
+        study.options | dict(zip(varied, values, strict=True))
+        for values in product(*varied.values())
+    ]
     several = [rate(*each) for each in product(options, study.friction_laws)]
     return len(several) / sum(1.0 / each for each in several)
 
 
 def seconds_of_report(design: str, cases: int) -> float:
-    """Return the expected time on one core [s] to gather and analyse a study, draw its figures and write its page."""
+    """Return the expected time on one core [s] to gather and analyse a study, draw its figures and
+    write its page.
+    """
     return (PAGES_OF_ARRAY if METHODS[design].quick else PAGES_OF_SAMPLE) + cases * PAGES_A_CASE
 
 

@@ -1,4 +1,6 @@
-"""Select the outputs of a solved study that an analysis uses, as plain columns, and the rows it may use."""
+"""Select the outputs of a solved study that an analysis uses, as plain columns, and the rows it may
+use.
+"""
 
 from __future__ import annotations
 
@@ -10,7 +12,15 @@ import xarray as xr
 
 from trackroller.damage import verdict
 from trackroller.errors import InputError, unknown_name
-from trackroller.parameters import BODIES, LIMITS, MAPPING_FIELDS, MATERIAL_FIELDS, PARAMETERS, REGIME_LABELS, REGIMES
+from trackroller.parameters import (
+    BODIES,
+    LIMITS,
+    MAPPING_FIELDS,
+    MATERIAL_FIELDS,
+    PARAMETERS,
+    REGIME_LABELS,
+    REGIMES,
+)
 from trackroller.roller.dataset import FLAGS, VARIABLES
 from trackroller.roller.output_names import PARTS, Part, declared, parts_of
 
@@ -44,7 +54,9 @@ USUAL = (  # outputs that are analysed by default, as far as the study has them
 
 @dataclass(frozen=True)
 class Output:
-    """One analysed output: `values` (n,) on `scale`; `excluded` counts the NaN values by their reason."""
+    """One analysed output: `values` (n,) on `scale`; `excluded` counts the NaN values by their
+    reason.
+    """
 
     name: str
     values: np.ndarray
@@ -60,7 +72,9 @@ def of_fatigue(name: str) -> bool:
     if part is None:
         return False
     by_curve = part.variable.group == "life" and part.variable.life
-    return by_curve or (part.variable.name == "life_hours_by_limit" and part.at.get("limit") == "fatigue")
+    return by_curve or (
+        part.variable.name == "life_hours_by_limit" and part.at.get("limit") == "fatigue"
+    )
 
 
 def of_first_limit(name: str) -> bool:
@@ -70,7 +84,9 @@ def of_first_limit(name: str) -> bool:
 
 
 def case_dims(ds: xr.Dataset, factors: Iterable[str]) -> tuple[str, ...]:
-    """Return the dimensions that count cases: `case`, or the factors of an unstacked grid in their order."""
+    """Return the dimensions that count cases: `case`, or the factors of an unstacked grid in their
+    order.
+    """
     if "case" in ds.dims:
         return ("case",)
     return tuple(name for name in factors if name in ds.dims)
@@ -88,8 +104,12 @@ def flat(ds: xr.Dataset, name: str, dims: tuple[str, ...]) -> np.ndarray:
 
 
 def available(ds: xr.Dataset, factors: Iterable[str], dims: tuple[str, ...]) -> list[str]:
-    """Return the variables that hold results with one number a case, or a contact, body or limit of it."""
-    known = set(factors) | set(PARAMETERS) | set(MATERIAL_FIELDS) | set(MAPPING_FIELDS) | BOOKKEEPING
+    """Return the variables that hold results with one number a case, or a contact, body or limit of
+    it.
+    """
+    known = (
+        set(factors) | set(PARAMETERS) | set(MATERIAL_FIELDS) | set(MAPPING_FIELDS) | BOOKKEEPING
+    )
     return [
         str(name)
         for name, var in ds.data_vars.items()
@@ -101,7 +121,9 @@ def available(ds: xr.Dataset, factors: Iterable[str], dims: tuple[str, ...]) -> 
 
 
 def parts_in(ds: xr.Dataset, names: Iterable[str], dims: tuple[str, ...]) -> dict[str, Part]:
-    """Return the parts with one number a case of variables; a variable that is not declared takes its attributes."""
+    """Return the parts with one number a case of variables; a variable that is not declared takes
+    its attributes.
+    """
     parts: dict[str, Part] = {}
     for name in names:
         var = ds[name]
@@ -126,19 +148,29 @@ def every_name(ds: xr.Dataset, factors: Iterable[str], dims: tuple[str, ...]) ->
 
 
 def default_names(ds: xr.Dataset, factors: Iterable[str], dims: tuple[str, ...]) -> list[str]:
-    """Return the outputs that are analysed by default: those of `USUAL`, otherwise every scalar result."""
+    """Return the outputs that are analysed by default: those of `USUAL`, otherwise every scalar
+    result.
+    """
     free = available(ds, factors, dims)
     return _usual(ds, free, parts_in(ds, free, dims), dims)
 
 
-def _usual(ds: xr.Dataset, free: Sequence[str], known: Mapping[str, Part], dims: tuple[str, ...]) -> list[str]:
-    """Return the outputs that are analysed by default among the variables `free`, whose parts are `known`."""
-    names = [name for name in USUAL if name in known and np.isfinite(ds[known[name].variable.name]).any()]
-    for body in BODIES:  # Hours and cycles of one body are proportional, so only the hours are kept.
+def _usual(
+    ds: xr.Dataset, free: Sequence[str], known: Mapping[str, Part], dims: tuple[str, ...]
+) -> list[str]:
+    """Return the outputs that are analysed by default among the variables `free`, whose parts are
+    `known`.
+    """
+    names = [
+        name for name in USUAL if name in known and np.isfinite(ds[known[name].variable.name]).any()
+    ]
+    # Hours and cycles of one body are proportional, so only the hours are kept.
+    for body in BODIES:
         if f"{body}_life_hours" in names and f"life_cycles_{body}" in names:
             names.remove(f"life_cycles_{body}")
     if "pair_life_hours" in names and "guide_life_hours" not in names:
-        names.remove("pair_life_hours")  # Without hours of the guide it repeats the life of the roller.
+        # Without hours of the guide it repeats the life of the roller.
+        names.remove("pair_life_hours")
     if not names or not {"peak_stress", "normal_force"} & set(free):
         used = {known[name].variable.name for name in names}
         names += [n for n in free if n not in used and set(ds[n].dims) <= set(dims)]
@@ -146,7 +178,8 @@ def _usual(ds: xr.Dataset, free: Sequence[str], known: Mapping[str, Part], dims:
 
 
 def regimes(ds: xr.Dataset, dims: tuple[str, ...]) -> np.ndarray:
-    """Return the index into `REGIMES` of each row, (n,); a row without a known regime counts as failed.
+    """Return the index into `REGIMES` of each row, (n,); a row without a known regime counts as
+    failed.
 
     Rows of a result without the variable `regime`, from another solver, count as rolling.
     """
@@ -159,11 +192,21 @@ def regimes(ds: xr.Dataset, dims: tuple[str, ...]) -> np.ndarray:
 
 
 def _usable(
-    ds: xr.Dataset, dims: tuple[str, ...], regime: np.ndarray, keep: tuple[str, ...], allowed: np.ndarray | None
+    ds: xr.Dataset,
+    dims: tuple[str, ...],
+    regime: np.ndarray,
+    keep: tuple[str, ...],
+    allowed: np.ndarray | None,
 ) -> tuple[np.ndarray, dict[str, int]]:
-    """Return True for converged, allowed rows of the regimes to keep, and the number of other rows by reason."""
+    """Return True for converged, allowed rows of the regimes to keep, and the number of other rows
+    by reason.
+    """
     usable = np.isin(regime, [REGIMES.index(name) for name in keep])
-    lost = {REGIME_LABELS[i]: int((regime == i).sum()) for i, name in enumerate(REGIMES) if name not in keep}
+    lost = {
+        REGIME_LABELS[i]: int((regime == i).sum())
+        for i, name in enumerate(REGIMES)
+        if name not in keep
+    }
     converged = None
     if "converged" in ds:
         converged = flat(ds, "converged", dims) != 0
@@ -177,7 +220,9 @@ def _usable(
 def _countable(
     values: np.ndarray, usable: np.ndarray, stopped: np.ndarray, unlimited: bool, scale: str
 ) -> tuple[np.ndarray, dict[str, int]]:
-    """Return values on their scale, NaN where they are unusable, and the number of rows lost by reason."""
+    """Return values on their scale, NaN where they are unusable, and the number of rows lost by
+    reason.
+    """
     values = np.where(usable, values, np.nan)
     empty = usable & np.isnan(values)
     why = {
@@ -218,13 +263,15 @@ def outputs(
     scale : str or mapping
         "natural" or "log10", for all outputs or by output.
     allowed : numpy.ndarray, optional
-        Rows that meet the constraints of the study, shape (n,). Other rows become NaN and are counted.
+        Rows that meet the constraints of the study, shape (n,). Other rows become NaN and are
+        counted.
 
     Returns
     -------
     list of Output
-        The columns. Unless `unlimited` is True, one indicator (1 where it occurs) is added for each of the regimes
-        `full_slip`, `lift_off` and `failed` that occurs, so that the causes of a regime can be analysed.
+        The columns. Unless `unlimited` is True, one indicator (1 where it occurs) is added for each
+        of the regimes `full_slip`, `lift_off` and `failed` that occurs, so that the causes of a
+        regime can be analysed.
 
     Raises
     ------
@@ -252,7 +299,9 @@ def outputs(
         single = part.values(ds).to_dataset(name=name)
         units = str(ds[part.variable.name].attrs.get("units", "1"))
         on = (scale if isinstance(scale, str) else scale.get(name, "")) or part.variable.scale
-        values, why = _countable(flat(single, name, dims).astype(float), usable, stopped, unlimited, on)
+        values, why = _countable(
+            flat(single, name, dims).astype(float), usable, stopped, unlimited, on
+        )
         columns.append(Output(name, values, units, part.words, on, lost | why))
     for i, name in enumerate(REGIMES):
         if i and (regime == i).any() and not unlimited:

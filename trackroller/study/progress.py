@@ -1,4 +1,6 @@
-"""Show on a terminal how many cases of a study are solved, how fast, the time left, and the steps of a report."""
+"""Show on a terminal how many cases of a study are solved, how fast, the time left, and the steps
+of a report.
+"""
 
 from __future__ import annotations
 
@@ -9,7 +11,14 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 from rich.console import Console
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TaskID, TextColumn, TimeRemainingColumn
+from rich.progress import (
+    BarColumn,
+    MofNCompleteColumn,
+    Progress,
+    TaskID,
+    TextColumn,
+    TimeRemainingColumn,
+)
 from rich.status import Status
 
 _COLUMNS = (
@@ -35,7 +44,9 @@ class Bar:
         self.shown.update(self.task, total=total, completed=done)
 
     def advanced(self, count: int, failed: int) -> None:
-        """Add solved cases, of which some failed; a search solves more than its budget: polish and checks."""
+        """Add solved cases, of which some failed; a search solves more than its budget: polish and
+        checks.
+        """
         self.shown.advance(self.task, count)
         bar = self.shown.tasks[0]
         if bar.total is not None and bar.completed > bar.total:
@@ -62,7 +73,9 @@ def progress_bar(name: str, shown: bool = True) -> Iterator[Bar]:
         Whether to show the bar. Lines of `Bar.tell` are printed anyway.
     """
     console = Console(file=sys.stderr, soft_wrap=True)
-    with Progress(*_COLUMNS, console=console, disable=not shown, speed_estimate_period=120) as progress:
+    with Progress(
+        *_COLUMNS, console=console, disable=not shown, speed_estimate_period=120
+    ) as progress:
         yield Bar(progress, progress.add_task(name, total=None, rate="-", failed=""))
 
 
@@ -79,7 +92,8 @@ class _Last(logging.Handler):
 
 @contextlib.contextmanager
 def shown_steps() -> Iterator[Callable[[str], None]]:
-    """Show what an analysis or report works on in the last line of a terminal, until the context ends.
+    """Show what an analysis or report works on in the last line of a terminal, until the context
+    ends.
 
     Yields
     ------

@@ -83,7 +83,9 @@ def repeat_case(study: Study, number: int, folder: StudyFolder) -> Repeat:
     if not 0 <= number < len(state_number):
         raise InputError("case", number, f"a case number from 0 to {len(state_number) - 1}")
     if state_number[number] < 0:
-        raise WorkError("this case is not solved by this version of the program: run the study first.")
+        raise WorkError(
+            "this case is not solved by this version of the program: run the study first."
+        )
     options, group = options_of_cases(design, {})
     state = ledger.states.isel(case=state_number[[number]])
     before = chunks.read(ledger.paths[state["file"].item()]).isel(case=state["row"].values)
@@ -91,7 +93,9 @@ def repeat_case(study: Study, number: int, folder: StudyFolder) -> Repeat:
     solved = solve(row, database=study.materials, **options[group[number]])
     again = chunks.from_results(solved, state["case"].values)
     again = chunks.join([before.isel(case=[]), again])  # a failed case lacks results of others
-    loads = {name: ("case", row[name].values) for name in row.data_vars if name not in before.variables}
+    loads = {
+        name: ("case", row[name].values) for name in row.data_vars if name not in before.variables
+    }
     differences = compare(before.assign_coords(loads), again.assign_coords(loads))
     case: dict[str, Any] = {}
     for name in case_columns(row):
@@ -100,4 +104,9 @@ def repeat_case(study: Study, number: int, folder: StudyFolder) -> Repeat:
             case[name] = float(value)
         else:
             case[name] = str(value)
-    return Repeat(case, dict(options[group[number]]), differences, study.config.duty and dict(study.config.duty))
+    return Repeat(
+        case,
+        dict(options[group[number]]),
+        differences,
+        study.config.duty and dict(study.config.duty),
+    )

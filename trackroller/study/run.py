@@ -1,4 +1,6 @@
-"""Run a study in this process or on dask workers; a run that was interrupted goes on where it stopped."""
+"""Run a study in this process or on dask workers; a run that was interrupted goes on where it
+stopped.
+"""
 
 from __future__ import annotations
 
@@ -30,7 +32,8 @@ if TYPE_CHECKING:
 
 @dataclass
 class Runner:
-    """What solves the cases of studies, where the results are kept, and who is told; a context that ends its workers.
+    """What solves the cases of studies, where the results are kept, and who is told; a context that
+    ends its workers.
 
     Parameters
     ----------
@@ -45,7 +48,8 @@ class Runner:
     started : callable
         Receives the number of different cases and how many of them the complete chunks hold.
     progress : callable
-        Receives the number of cases of each finished block of the other chunks, and how many of them failed.
+        Receives the number of cases of each finished block of the other chunks, and how many of
+        them failed.
     solver : callable, optional
         Replaces `trackroller.solve` in this process.
     """
@@ -75,20 +79,36 @@ class Runner:
 
     @contextlib.contextmanager
     def solved(self, study: Study, rerun_failed: bool = False) -> Iterator[Ledger]:
-        """Plan a study, solve its missing cases, and keep its ledger as it is until the context ends."""
-        with working_ledger(study, self.results, tell=self.tell, rerun_failed=rerun_failed) as ledger:
+        """Plan a study, solve its missing cases, and keep its ledger as it is until the context
+        ends.
+        """
+        with working_ledger(
+            study, self.results, tell=self.tell, rerun_failed=rerun_failed
+        ) as ledger:
             missing = ledger.open
             tell = self.tell
             progress = self.progress
-            self.started(ledger.distinct, ledger.distinct - sum(ledger.chunks[name] for name in missing))
+            self.started(
+                ledger.distinct, ledger.distinct - sum(ledger.chunks[name] for name in missing)
+            )
             for name in missing:
-                settings: dict[str, Any] = {"executor": self.executor, "tell": tell, "progress": progress}
-                tell(solve_chunk(ledger.folder, name, study.materials, inputs=study.inputs, **settings))
+                settings: dict[str, Any] = {
+                    "executor": self.executor,
+                    "tell": tell,
+                    "progress": progress,
+                }
+                tell(
+                    solve_chunk(
+                        ledger.folder, name, study.materials, inputs=study.inputs, **settings
+                    )
+                )
             yield ledger.anew()
 
     @contextlib.contextmanager
     def deciding(self, study: Study) -> Iterator[StudyFolder]:
-        """Keep other processes from deciding what is solved next; remove failed cases that are to be solved again."""
+        """Keep other processes from deciding what is solved next; remove failed cases that are to
+        be solved again.
+        """
         folder = study_folder(study.name, self.results).create()
         with locked(folder.lock.with_name(".search"), tell=self.tell):
             if self.rerun_failed:
@@ -118,8 +138,8 @@ def run_study(study: Study, results: Path | str = "results", **how: Any) -> Ledg
     InputError
         If the study or the address of the scheduler is wrong.
     WorkError
-        If the work cannot be completed, because an input was edited meanwhile or the disk is full, for example; every
-        finished chunk is kept.
+        If the work cannot be completed, because an input was edited meanwhile or the disk is full,
+        for example; every finished chunk is kept.
     """
     with Runner(results, **how) as runner, runner.solved(study, runner.rerun_failed) as ledger:
         gather(ledger, runner.tell)
@@ -144,11 +164,15 @@ def solve_study(study: Study, started: Count = unheard, progress: Count = unhear
     identified = StudyCases(study)
     design = identified.design
     options, group = identified.options
-    cases = design.drop_vars(list(design.coords)).drop_attrs().assign_coords(case=np.arange(len(group)))
+    cases = (
+        design.drop_vars(list(design.coords)).drop_attrs().assign_coords(case=np.arange(len(group)))
+    )
     started(len(group), 0)
     blocks = []
     for number, settings in enumerate(options):
-        part = cases.isel(case=np.flatnonzero(group == number)).assign_attrs(options=json.dumps(settings))
+        part = cases.isel(case=np.flatnonzero(group == number)).assign_attrs(
+            options=json.dumps(settings)
+        )
         for block in solve_here(part, study.materials):
             blocks.append(block)
             progress(*chunks.counts(block))

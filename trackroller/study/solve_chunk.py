@@ -1,4 +1,6 @@
-"""Solve the cases of a chunk. Every runner calls `solve_chunk`; runners differ in where cases are solved."""
+"""Solve the cases of a chunk. Every runner calls `solve_chunk`; runners differ in where cases are
+solved.
+"""
 
 from __future__ import annotations
 
@@ -24,11 +26,14 @@ BLOCK_SECONDS = 3.0  # between two steps of the progress bar
 SMALLEST_BLOCK = 16
 LARGEST_BLOCK = 8192
 Solver = Callable[..., Any]
-Executor = Callable[[xr.Dataset, Any], Iterator[xr.Dataset]]  # solves the cases of a list, block by block
+# solves the cases of a list, block by block
+Executor = Callable[[xr.Dataset, Any], Iterator[xr.Dataset]]
 
 
 def load_cases(folder: StudyFolder, name: str) -> xr.Dataset:
-    """Return the cases of a chunk with all fields along `case`; raise `chunks.CorruptFile` if the list is damaged."""
+    """Return the cases of a chunk with all fields along `case`; raise `chunks.CorruptFile` if the
+    list is damaged.
+    """
     cases = chunks.read(folder.case_list(name))
     number = cases["case"]
 
@@ -37,20 +42,23 @@ def load_cases(folder: StudyFolder, name: str) -> xr.Dataset:
             return column
         return column.broadcast_like(number)
 
-    return cases.map(along_case)  # a new data set, which dask can send: that of the file holds its handle
+    # a new data set, which dask can send: that of the file holds its handle
+    return cases.map(along_case)
 
 
-def solve_cases(cases: xr.Dataset, database: MaterialDatabase | None, solver: Solver | None = None) -> xr.Dataset:
+def solve_cases(
+    cases: xr.Dataset, database: MaterialDatabase | None, solver: Solver | None = None
+) -> xr.Dataset:
     """Solve cases and return their results as one block.
 
-    If the solver raises, the cases are halved until the responsible case is alone. That case becomes a row with
-    regime failed and the exception as its reason.
+    If the solver raises, the cases are halved until the responsible case is alone. That case
+    becomes a row with regime failed and the exception as its reason.
 
     Parameters
     ----------
     cases : xarray.Dataset
-        Case fields along `case`, whose coordinate holds the fingerprints. The attribute `options` (JSON) has the
-        keyword arguments of `solve`.
+        Case fields along `case`, whose coordinate holds the fingerprints. The attribute `options`
+        (JSON) has the keyword arguments of `solve`.
     database : MaterialDatabase or None
         The materials; None takes the built-in ones and the user's.
     solver : callable, optional
@@ -64,10 +72,12 @@ def solve_cases(cases: xr.Dataset, database: MaterialDatabase | None, solver: So
     Raises
     ------
     InputError
-        If an option is wrong for all cases. A `ShapeError` concerns one case only and becomes a failed row.
+        If an option is wrong for all cases. A `ShapeError` concerns one case only and becomes a
+        failed row.
     """
     if solver is None:
-        from trackroller.roller.solver import solve  # numba compiles on import; planning needs no solver
+        # numba compiles on import; planning needs no solver
+        from trackroller.roller.solver import solve
 
         solver = solve
     started = time.perf_counter()
@@ -82,13 +92,17 @@ def solve_cases(cases: xr.Dataset, database: MaterialDatabase | None, solver: So
             if options.get("normal") == "halfspace" and len(names) > 1:
                 for i in np.flatnonzero(block["regime"] == chunks.FAILED):
                     # the reason why a shape is wrong is known only if the case is solved alone
-                    block["reason"][i] = solve_cases(part.isel(case=[i]), database, solver)["reason"].values[0]
+                    block["reason"][i] = solve_cases(part.isel(case=[i]), database, solver)[
+                        "reason"
+                    ].values[0]
             blocks.append(block)
         except Exception as exc:
             if isinstance(exc, (InputError, WorkError)) and not isinstance(exc, ShapeError):
                 raise
             if len(names) > 1:
-                pending += [part.isel(case=rows) for rows in np.array_split(np.arange(len(names)), 2)[::-1]]
+                pending += [
+                    part.isel(case=rows) for rows in np.array_split(np.arange(len(names)), 2)[::-1]
+                ]
             else:
                 blocks.append(chunks.failure(names, _reason(exc)))
     return chunks.join(blocks).assign_attrs(seconds=time.perf_counter() - started)
@@ -127,7 +141,8 @@ def solve_chunk(
     progress: Count = unheard,
     inputs: Reads | None = None,
 ) -> str:
-    """Solve the cases of a chunk and write its file. A killed process loses the chunk that it works on.
+    """Solve the cases of a chunk and write its file. A killed process loses the chunk that it works
+    on.
 
     Parameters
     ----------
@@ -138,13 +153,15 @@ def solve_chunk(
     database : MaterialDatabase, optional
         The materials; the built-in ones and the user's by default.
     executor : callable
-        Solves the cases of a list and yields blocks: `solve_here`, or the dask workers of `cluster`.
+        Solves the cases of a list and yields blocks: `solve_here`, or the dask workers of
+        `cluster`.
     tell : callable
         Receives one line for each event that the user should read.
     progress : callable
         Receives the number of cases of each finished block, and how many of them failed.
     inputs : dict, optional
-        Kind and digest of each file that the study was made from, by its path: none may have been edited.
+        Kind and digest of each file that the study was made from, by its path: none may have been
+        edited.
 
     Returns
     -------
@@ -176,9 +193,13 @@ def solve_chunk(
             return _summary(chunk, cases.attrs.get("words", f"chunk {name}"), spent)
     except FileNotFoundError:
         why = "is missing: the study was edited and planned anew by another process"
-        raise WorkError(f"{folder.case_list(name)} {why}. Start again: every finished case is kept.") from None
+        raise WorkError(
+            f"{folder.case_list(name)} {why}. Start again: every finished case is kept."
+        ) from None
     except chunks.CorruptFile as exc:
-        raise WorkError(f"corrupt case list: {exc}. Start again: its cases are planned anew.") from None
+        raise WorkError(
+            f"corrupt case list: {exc}. Start again: its cases are planned anew."
+        ) from None
 
 
 def _summary(chunk: xr.Dataset, words: str, spent: float) -> str:
@@ -187,15 +208,21 @@ def _summary(chunk: xr.Dataset, words: str, spent: float) -> str:
         solved = f"{count} case"
     else:
         solved = f"{count} cases"
-    return f"{words}: {solved} solved in {spent:.1f} s, {count / max(spent, 1e-3):.0f} cases/s, {failed} failed"
+    return (
+        f"{words}: {solved} solved in {spent:.1f} s, {count / max(spent, 1e-3):.0f} cases/s, "
+        f"{failed} failed"
+    )
 
 
-def _check_unchanged(folder: StudyFolder, cases: xr.Dataset, database: MaterialDatabase | None) -> None:
+def _check_unchanged(
+    folder: StudyFolder, cases: xr.Dataset, database: MaterialDatabase | None
+) -> None:
     """Raise `WorkError` unless the materials and the solver are those of the plan."""
     if database is None:
         database = load_database()
     if cases.attrs["identity"] != solver_and_materials(database):
         raise WorkError(
-            f"{folder.root}: the materials or the solver changed after the study was planned. Start the run again: it "
+            f"{folder.root}: the materials or the solver changed after the study was planned. "
+            "Start the run again: it "
             "plans anew, and the cases that did not change are kept."
         )

@@ -1,4 +1,6 @@
-"""Count the cases of a study: solved, missing, failed by reason and by factor level, and estimate the time left."""
+"""Count the cases of a study: solved, missing, failed by reason and by factor level, and estimate
+the time left.
+"""
 
 from __future__ import annotations
 
@@ -27,7 +29,8 @@ from trackroller.study.store.manifest import why_altered
 if TYPE_CHECKING:
     from trackroller.study.file.study import Study
 
-SHORT = 600.0  # s on two cores; a shorter study waits longer for the workers of a cluster than it gains by them
+# s on two cores; a shorter study waits longer for the workers of a cluster than it gains by them
+SHORT = 600.0
 
 
 @dataclass
@@ -51,7 +54,8 @@ class Status:
     gathered, outdated : bool
         Whether `study.nc` exists, and whether another version of the solver made the files.
     unused : str
-        How many solved cases of an earlier design this design does not hold, and why; '' if it holds all.
+        How many solved cases of an earlier design this design does not hold, and why; '' if it
+        holds all.
     upcoming : str
         Number and levels of the first chunk that is not solved; '' without one.
     corrupt : list of str
@@ -89,8 +93,8 @@ def find_study(study: str, results: Path | str = "results") -> tuple[Study, Stud
     Returns
     -------
     tuple of Study and StudyFolder
-        The study and its folder: the folder that was found, whatever the name of the study in it is; for a study file
-        the folder in which `trackroller run` keeps its results.
+        The study and its folder: the folder that was found, whatever the name of the study in it
+        is; for a study file the folder in which `trackroller run` keeps its results.
 
     Raises
     ------
@@ -114,7 +118,9 @@ def find_study(study: str, results: Path | str = "results") -> tuple[Study, Stud
 
 
 def find_folder(study: str, results: Path | str = "results") -> StudyFolder | None:
-    """Return the folder of a study by its path or by its name in the results folder, None if there is none."""
+    """Return the folder of a study by its path or by its name in the results folder, None if there
+    is none.
+    """
     folders = [StudyFolder(root) for root in (Path(study), Path(results) / study)]
     return next((f for f in folders if f.plan_file.is_file() or f.study_file.is_file()), None)
 
@@ -171,13 +177,16 @@ def status_of(study: Study, folder: StudyFolder) -> Status:
     )
     for name, factor in study.drawn.factors.items():
         if factor.discrete:
-            counts = Counter(_level(name, study.drawn.columns[name][i]) for i in ledger.cases.rows[failed])
+            counts = Counter(
+                _level(name, study.drawn.columns[name][i]) for i in ledger.cases.rows[failed]
+            )
             status.by_level |= {(name, level): count for level, count in counts.most_common()}
     return status
 
 
 def plan_rows(study: Study, status: Status) -> list[tuple[str, str]]:
-    """Return what a run of a study takes, as names and texts: cases, chunks, time, report and disk space.
+    """Return what a run of a study takes, as names and texts: cases, chunks, time, report and disk
+    space.
 
     Parameters
     ----------
@@ -223,13 +232,20 @@ def _growth_rows(study: Study) -> list[tuple[str, str]]:
     if study.config.method.points:
         where = " at unsure design points"
     if until:
-        text = f"the sample doubles{where} until its intervals are narrow, up to {until.at_most} cases"
+        text = (
+            f"the sample doubles{where} until its intervals are narrow, up to {until.at_most} cases"
+        )
         rows.append(("until", text))
     if study.config.method.proposes:
         designs = f"{study.config.budget.designs} designs"
         if study.config.budget.designs == 1:
             designs = "1 design"
-        rows.append(("search", f"these are the first generation; it goes on to {designs}, and checks the best"))
+        rows.append(
+            (
+                "search",
+                f"these are the first generation; it goes on to {designs}, and checks the best",
+            )
+        )
     return rows
 
 
@@ -237,7 +253,8 @@ def _upcoming(folder: StudyFolder) -> str:
     """Return the words for the first chunk of the plan that is not solved; '' if there is none."""
     for name in folder.record().get("chunks", {}):
         if not folder.chunk(name).is_file():
-            with contextlib.suppress(CorruptFile, FileNotFoundError):  # the next run plans its cases anew
+            # the next run plans its cases anew
+            with contextlib.suppress(CorruptFile, FileNotFoundError):
                 return str(read(folder.case_list(name)).attrs.get("words", ""))
     return ""
 

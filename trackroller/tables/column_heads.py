@@ -20,9 +20,13 @@ _EXCEL_ERROR = re.compile(r"#(?:DIV/0!|N/A|NAME\?|NULL!|NUM!|REF!|VALUE!|#+)", r
 
 
 def is_comment(cells: Sequence[str]) -> bool:
-    """Return whether a line begins with '#', but not with an error of a spreadsheet such as #N/A."""
+    """Return whether a line begins with '#', but not with an error of a spreadsheet such as
+    #N/A.
+    """
     first = cells[0]
-    return first.startswith("#") and not isinstance(first, Refused) and not _EXCEL_ERROR.match(first)
+    return (
+        first.startswith("#") and not isinstance(first, Refused) and not _EXCEL_ERROR.match(first)
+    )
 
 
 def until_names(lines: Iterable[Row]) -> Iterator[Row]:
@@ -89,7 +93,8 @@ def check_head(heads: list[str], rows: dict[int, list[str]], head: int, source: 
         example = "; ".join(f"{name} [{kind.units[name]}]" for name in kind.names)
         allowed = f"a {kind.row}, or the names of the columns, such as {example}"
         remedy = (
-            f"If it names the columns, write {listing(kind.names)} with their units; otherwise remove such lines, or "
+            f"If it names the columns, write {listing(kind.names)} with their units; otherwise "
+            "remove such lines, or "
             "put '#' before them."
         )
         wrong = f"is neither a {kind.row} nor the names of the columns"
@@ -111,7 +116,9 @@ def _is_unnamed(head: str) -> bool:
 
 
 def named_columns(heads: list[str], rows: dict[int, list[str]], field: str) -> list[int]:
-    """Return the places of the columns with names; refuse cells without a name, and a second table."""
+    """Return the places of the columns with names; refuse cells without a name, and a second
+    table.
+    """
     unnamed = [j for j, head in enumerate(heads) if _is_unnamed(head)]
     named = [j for j, head in enumerate(heads) if not _is_unnamed(head)]
     for j in unnamed:
@@ -128,7 +135,10 @@ def named_columns(heads: list[str], rows: dict[int, list[str]], field: str) -> l
         if beside and len(beside) < len(named):
             stand = "stands" if len(beside) == 1 else "stand"
             wrong = f"{stand} beside the empty column {j + 1}, as a second table does"
-            remedy = "Remove the empty column if these columns belong to the table, and these columns if not."
+            remedy = (
+                "Remove the empty column if these columns belong to the table, and these "
+                "columns if not."
+            )
             raise InputError(field, ", ".join(beside), "columns of one table", remedy, wrong)
     return named
 
@@ -139,10 +149,13 @@ def _counts(cells: list[str]) -> bool:
     return cells in (from_zero[:-1], from_zero[1:])
 
 
-def head_names_and_units(heads: list[str], used: Collection[str], kind: TableKind) -> tuple[list[str], list[str]]:
+def head_names_and_units(
+    heads: list[str], used: Collection[str], kind: TableKind
+) -> tuple[list[str], list[str]]:
     """Return the names of the columns and their units; '' for a column without unit.
 
-    A column that is no number of the program keeps the unit as a part of its name, because no number is converted.
+    A column that is no number of the program keeps the unit as a part of its name, because no
+    number is converted.
     """
     if len(heads) > MAX_COLUMNS:
         allowed = f"at most {MAX_COLUMNS:,} columns"
@@ -186,7 +199,10 @@ def _check_named(head: str, name: str, unit: str, used: Collection[str], kind: T
         _check_spelling(head, kind)
     if name in used and name not in kind.units and unit not in PLAIN:
         allowed = f"a column without a unit, because an expression uses {name} and knows no units"
-        remedy = f"Convert the numbers to the unit that the expression needs, and name the column {name}."
+        remedy = (
+            "Convert the numbers to the unit that the expression needs, and name the column "
+            f"{name}."
+        )
         raise InputError("column", head, allowed, remedy)
 
 
@@ -202,10 +218,14 @@ def _check_spelling(head: str, kind: TableKind) -> None:
 
 
 def _check_unit_beside(name: str, beside: str, kind: TableKind) -> None:
-    """Refuse a unit in a cell of its own: with decimal commas its column would hold the decimals."""
+    """Refuse a unit in a cell of its own: with decimal commas its column would hold the
+    decimals.
+    """
     if name in kind.units and not kind.knows(beside) and is_unit(name, beside, kind.units):
         wrong = f"is a unit in a cell of its own, beside {name}"
-        raise InputError("column", beside, "names of columns", f"Write {name} [{beside}], or rename it.", wrong)
+        raise InputError(
+            "column", beside, "names of columns", f"Write {name} [{beside}], or rename it.", wrong
+        )
 
 
 def check_unit(name: str, unit: str, known: Mapping[str, str]) -> None:

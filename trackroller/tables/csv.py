@@ -1,7 +1,8 @@
 """Split the text of a CSV file into the cells of its lines.
 
-Semicolons, tabs, bars or commas separate the cells: the first of these that stands in the line of names. A line
-`sep=;`, which Excel understands, may say it instead. Blanks separate the cells of files that may have them.
+Semicolons, tabs, bars or commas separate the cells: the first of these that stands in the line of
+names. A line `sep=;`, which Excel understands, may say it instead. Blanks separate the cells of
+files that may have them.
 """
 
 from __future__ import annotations
@@ -22,11 +23,13 @@ _WORD = re.compile(r'"([^"]*)"|(\S+)')
 _END_OF_DOS = re.compile(r"\s*\x1a\s*\Z")  # Ctrl-Z
 
 
-def csv_lines(text: str, path: Path, field: str, blanks: bool = False) -> tuple[Iterator[tuple[int, list[str]]], str]:
+def csv_lines(
+    text: str, path: Path, field: str, blanks: bool = False
+) -> tuple[Iterator[tuple[int, list[str]]], str]:
     """Return numbers and cells of the lines of a CSV file, and the character between its cells.
 
-    Spaces around a cell are left out. A cell that holds a formula, or that has swallowed the next lines because a
-    quotation mark is missing, is `Refused`.
+    Spaces around a cell are left out. A cell that holds a formula, or that has swallowed the next
+    lines because a quotation mark is missing, is `Refused`.
 
     Parameters
     ----------
@@ -65,7 +68,9 @@ def _lines(text: str) -> Iterator[str]:
 
 
 def _head(text: str) -> str:
-    """Return the first line that is neither empty nor a comment; of a file of comments and numbers the names."""
+    """Return the first line that is neither empty nor a comment; of a file of comments and numbers
+    the names.
+    """
     for line in _lines(text):
         if line.strip() and not line.startswith("#"):
             return line
@@ -85,7 +90,9 @@ def _separator(head: str, blanks: bool) -> str:
 
 
 def _words(text: str) -> Iterator[tuple[int, list[str]]]:
-    """Yield the words of each line; a unit in brackets belongs to the name before it, and '#' to the word behind it."""
+    """Yield the words of each line; a unit in brackets belongs to the name before it, and '#' to
+    the word behind it.
+    """
     for number, line in enumerate(_lines(text), start=1):
         line = re.sub(r"^#\s*", "#", line)
         line = re.sub(r"\s+(?=[\[(])", "", line)
@@ -95,7 +102,9 @@ def _words(text: str) -> Iterator[tuple[int, list[str]]]:
 def _cells(
     text: str, path: Path, field: str, separator: str, skip_first: bool = False
 ) -> Iterator[tuple[int, list[str]]]:
-    """Yield number and cells of each line; the number of a cell over several lines is that of its last line."""
+    """Yield number and cells of each line; the number of a cell over several lines is that of its
+    last line.
+    """
     stream = io.StringIO(text, newline="")
     reader = csv.reader(stream, delimiter=separator, skipinitialspace=True, strict=True)
     try:

@@ -36,7 +36,8 @@ class TableKind:
     blanks : bool
         Whether blanks may separate the cells.
     small : bool
-        Whether no number reaches 1000 in the unit of its column, so that `4.472` has decimals if no cell decides.
+        Whether no number reaches 1000 in the unit of its column, so that `4.472` has decimals if no
+        cell decides.
     """
 
     field: str
@@ -62,7 +63,9 @@ class Source:
     kind: TableKind
     wrong: Collector
 
-    def refuse(self, number: int, name: str, value: object, allowed: str, remedy: str = "", wrong: str = "") -> None:
+    def refuse(
+        self, number: int, name: str, value: object, allowed: str, remedy: str = "", wrong: str = ""
+    ) -> None:
         """Add the error of a line."""
         error = InputError(name, value, allowed, remedy, wrong)
         self.wrong.errors.append(error.at(self.path, number))

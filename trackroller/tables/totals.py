@@ -13,12 +13,15 @@ ROUNDED = 0.01  # relative difference between a sum and what a line of totals st
 FAR = 1.8  # times the largest addend
 
 _SUM = re.compile(
-    r"(?:grand |sub-?)?totals?|sum|summe|gesamt(?:summe)?|zwischensumme|mean|average|mittelwert|[Σ∑]",
+    r"(?:grand |sub-?)?totals?|sum|summe|gesamt(?:summe)?|zwischensumme"
+    r"|mean|average|mittelwert|[Σ∑]",
     re.IGNORECASE,
 )
 
 
-def total_lines(lines: Mapping[int, list[str]], numbers: Sequence[int], labels: Sequence[int]) -> list[int]:
+def total_lines(
+    lines: Mapping[int, list[str]], numbers: Sequence[int], labels: Sequence[int]
+) -> list[int]:
     """Return the numbers of lines that are named as a total, and of a last line that surely is one.
 
     Parameters
@@ -42,9 +45,11 @@ def _is_named_total(line: list[str], labels: Sequence[int]) -> bool:
 
 
 def _sums_up(above: list[list[str]], line: list[str], numbers: Sequence[int]) -> bool:
-    """Return whether the numbers of a line are sums of the lines above, maybe rounded, of three addends at least.
+    """Return whether the numbers of a line are sums of the lines above, maybe rounded, of three
+    addends at least.
 
-    Levels such as 0, 10, 20 and 30 or 0, 3, 0 and 3 often add up; their sum is not far above the largest.
+    Levels such as 0, 10, 20 and 30 or 0, 3, 0 and 3 often add up; their sum is not far above the
+    largest.
     """
     is_far = False
     for j in numbers:
@@ -60,6 +65,8 @@ def _sums_up(above: list[list[str]], line: list[str], numbers: Sequence[int]) ->
 
 
 def value_of(cell: str) -> float:
-    """Return the number of a cell, whatever unit stands behind it; NaN for a cell without a number."""
+    """Return the number of a cell, whatever unit stands behind it; NaN for a cell without a
+    number.
+    """
     digits, _ = split_quantity(cell) or (cell, "")
     return number_or_nan(digits)

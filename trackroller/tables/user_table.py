@@ -4,14 +4,14 @@ The dialect is:
 
 - text in UTF-8, or in UTF-16 with its mark, or the only visible sheet of a workbook;
 - semicolons, tabs, bars or commas between the cells, the same in all lines;
-- one line of names, each with its unit in brackets where it has one, such as `axial_force [kN]`; a line of units may
-  follow;
-- one cell a name in each further line; numbers with decimal points, or with decimal commas where commas do not separate
-  the cells; a unit may stand behind a number;
+- one line of names, each with its unit in brackets where it has one, such as `axial_force [kN]`; a
+  line of units may follow;
+- one cell a name in each further line; numbers with decimal points, or with decimal commas where
+  commas do not separate the cells; a unit may stand behind a number;
 - lines that begin with '#' are comments.
 
-The reader asks of each other cell and line whether a person would read it otherwise. It then refuses it with file,
-line, column and remedy. Nothing is filled in or guessed.
+The reader asks of each other cell and line whether a person would read it otherwise. It then
+refuses it with file, line, column and remedy. Nothing is filled in or guessed.
 """
 
 from __future__ import annotations
@@ -69,13 +69,15 @@ _OLE = b"\xd0\xcf\x11\xe0"  # first bytes of old workbooks
 
 @dataclass
 class UserTable:
-    """A table of a user: names of the columns, number of their line, and the cells of each further line by number.
+    """A table of a user: names of the columns, number of their line, and the cells of each further
+    line by number.
 
-    Numbers of known columns have a decimal point, no thousands signs, and their unit behind them. Cells of further
-    columns that hold numbers only are `Stored`; cells of other columns stay as they are. `known` holds the units of the
-    known columns, `units` those that the file states for its columns, `signs` the decimal signs of its numbers,
-    `separator` what stands between the cells of a CSV file, `places` where the columns stand in a line of the file,
-    `width` the largest number of cells of a line, and `remarks` the comments by their lines.
+    Numbers of known columns have a decimal point, no thousands signs, and their unit behind them.
+    Cells of further columns that hold numbers only are `Stored`; cells of other columns stay as
+    they are. `known` holds the units of the known columns, `units` those that the file states for
+    its columns, `signs` the decimal signs of its numbers, `separator` what stands between the cells
+    of a CSV file, `places` where the columns stand in a line of the file, `width` the largest
+    number of cells of a line, and `remarks` the comments by their lines.
     """
 
     names: list[str]
@@ -113,8 +115,8 @@ def read_user_table(
 ) -> UserTable:
     """Read a CSV file, or the sheet of a workbook whose name ends in .xlsx or .xlsm.
 
-    Lines have their number in the file, the first line being 1. Spaces around a cell, empty lines, comments and empty
-    columns are left out.
+    Lines have their number in the file, the first line being 1. Spaces around a cell, empty lines,
+    comments and empty columns are left out.
 
     Parameters
     ----------
@@ -156,8 +158,12 @@ def _check_texts(lines: Iterable[Row], source: Source) -> None:
             checked_text(" ".join(cells), source.kind.field, lines=True)
 
 
-def _named_columns_of(lines: Iterable[Row], separator: str, used: Collection[str], source: Source) -> UserTable:
-    """Return the lines of a file as a table of named columns, whose cells are as they stand in the file."""
+def _named_columns_of(
+    lines: Iterable[Row], separator: str, used: Collection[str], source: Source
+) -> UserTable:
+    """Return the lines of a file as a table of named columns, whose cells are as they stand in the
+    file.
+    """
     kind = source.kind
     filled = [(number, cells) for number, cells in lines if any(cells)]
     _check_texts(filled, source)
@@ -174,7 +180,9 @@ def _named_columns_of(lines: Iterable[Row], separator: str, used: Collection[str
     comments = {number: cells for number, cells in filled if is_comment(cells)}
     table = UserTable(names, head, rows, kind.units, units, separator=separator, places=named)
     table.width = max(len(cells) for _, cells in filled)
-    table.remarks = {n: _joined(cells) for n, cells in comments.items() if n != head and n not in rows}
+    table.remarks = {
+        n: _joined(cells) for n, cells in comments.items() if n != head and n not in rows
+    }
     _check_commas(table, source)
     return table
 
@@ -192,7 +200,9 @@ def is_workbook(path: Path) -> bool:
     return path.suffix.lower() in (".xlsx", ".xlsm")
 
 
-def _file_lines(content: bytes, path: Path, kind: TableKind, most_rows: int | None = None) -> tuple[Iterable[Row], str]:
+def _file_lines(
+    content: bytes, path: Path, kind: TableKind, most_rows: int | None = None
+) -> tuple[Iterable[Row], str]:
     """Return the lines with their numbers, and the character between the cells of a CSV file."""
     _check_format(content, path, kind.field)
     if is_workbook(path):
@@ -226,7 +236,9 @@ def _joined(cells: Iterable[str]) -> str:
 
 
 def _without_comments(lines: list[Row], heads: list[str], source: Source) -> Iterator[Row]:
-    """Yield the lines that are no comments; where all lines begin with '#', it belongs to their labels."""
+    """Yield the lines that are no comments; where all lines begin with '#', it belongs to their
+    labels.
+    """
     labels = all(is_comment(cells) for _, cells in lines)
     for number, cells in lines:
         if labels or not is_comment(cells):
@@ -254,7 +266,8 @@ def _check_rows(rows: dict[int, list[str]], heads: list[str], source: Source) ->
 
 
 def _check_lengths(rows: dict[int, list[str]], width: int, separator: str, source: Source) -> None:
-    """Move lines with more or fewer cells than names to the errors; empty cells at the end of a line do not count.
+    """Move lines with more or fewer cells than names to the errors; empty cells at the end of a
+    line do not count.
 
     Where no line has a cell for each name, the first one is named alone.
     """
@@ -284,12 +297,16 @@ def _check_commas(table: UserTable, source: Source) -> None:
     if not any(mark in cell for _, _, cell in table.cells() for mark in ".,"):
         wrong = "may have commas between columns or decimal commas"
         remedy = "Separate the columns by semicolons, or write the names of the columns."
-        error = InputError(source.kind.field, ",".join(line), "numbers that are clear", remedy, wrong)
+        error = InputError(
+            source.kind.field, ",".join(line), "numbers that are clear", remedy, wrong
+        )
         raise error.at(source.path, number)
 
 
 def _read_line_of_units(table: UserTable, used: Collection[str], source: Source) -> None:
-    """Take a line of units below the names out of the table, if there is one, and complete the units."""
+    """Take a line of units below the names out of the table, if there is one, and complete the
+    units.
+    """
     number, line = next(iter(table.lines.items()))
     if not _is_line_of_units(table, line, source.kind):
         return
@@ -307,7 +324,9 @@ def _read_line_of_units(table: UserTable, used: Collection[str], source: Source)
 
 
 def _is_line_of_units(table: UserTable, line: list[str], kind: TableKind) -> bool:
-    """Return whether a line holds no number of a known column, but units, or '-' for pure numbers and words."""
+    """Return whether a line holds no number of a known column, but units, or '-' for pure numbers
+    and words.
+    """
     pairs = list(zip(table.names, line, strict=True))
     below = {name: unbracketed(cell) for name, cell in pairs if name in table.known}
     if any(map(is_number, below.values())):
@@ -316,8 +335,12 @@ def _is_line_of_units(table: UserTable, line: list[str], kind: TableKind) -> boo
     return known == {"-"} or any(is_unit(name, unit, table.known) for name, unit in below.items())
 
 
-def _unit_below(name: str, cell: str, stated: str, used: Collection[str], known: Mapping[str, str]) -> str:
-    """Return the unit of a column of which the head states a unit or '', and the line below another or none."""
+def _unit_below(
+    name: str, cell: str, stated: str, used: Collection[str], known: Mapping[str, str]
+) -> str:
+    """Return the unit of a column of which the head states a unit or '', and the line below another
+    or none.
+    """
     unit = unbracketed(cell)
     if name not in known:
         if name in used and unit not in PLAIN:
@@ -335,7 +358,9 @@ def _unit_below(name: str, cell: str, stated: str, used: Collection[str], known:
 
 
 def _check_remarks(table: UserTable, source: Source) -> None:
-    """Refuse a comment that states another unit for numbers of which neither the head nor the cells state one."""
+    """Refuse a comment that states another unit for numbers of which neither the head nor the cells
+    state one.
+    """
     bare = [
         name
         for name, column in zip(table.names, zip(*table.lines.values(), strict=True), strict=True)
@@ -360,7 +385,9 @@ def _is_other_unit(name: str, unit: str, known: Mapping[str, str]) -> bool:
 
 
 def _units_of(text: str) -> list[str]:
-    """Return the words of a comment that may be units: in brackets, behind 'in' or 'unit', or no word of plain text."""
+    """Return the words of a comment that may be units: in brackets, behind 'in' or 'unit', or no
+    word of plain text.
+    """
     stated = [next(filter(None, groups)) for groups in _STATED_UNIT.findall(text)]
     words = re.sub(r"\d[\d.,]*\s*[^\s\d,;:=()\[\]]+", " ", text)  # without quantities such as 3 kN
     others = [word.strip(".") for word in re.split(r"[\s,;:=#()\[\]]+", words)]
@@ -371,12 +398,16 @@ def _units_of(text: str) -> list[str]:
 def _columns_of_numbers(table: UserTable, used: Collection[str]) -> list[int]:
     """Return the places of the known columns, and of those that hold numbers for an expression."""
     return [
-        j for j, name in enumerate(table.names) if name in table.known or (name in used and table.all(j, is_number))
+        j
+        for j, name in enumerate(table.names)
+        if name in table.known or (name in used and table.all(j, is_number))
     ]
 
 
 def _read_numbers(table: UserTable, numbers: list[int], small: bool) -> None:
-    """Write the numbers of the table plainly, with their units; cells that are not clear become `Refused`."""
+    """Write the numbers of the table plainly, with their units; cells that are not clear become
+    `Refused`.
+    """
     columns = [table.column(j) for j in range(len(table.names))]
     cells = [cell for j in numbers for cell in columns[j]]
     table.signs = decimal_signs(cells)
@@ -393,7 +424,9 @@ def _read_numbers(table: UserTable, numbers: list[int], small: bool) -> None:
 
 
 def _with_one_sign(column: list[str], cells: list[str], signs: frozenset[str]) -> list[str]:
-    """Return a column in which numbers with another decimal sign than the first of all cells are `Refused`."""
+    """Return a column in which numbers with another decimal sign than the first of all cells are
+    `Refused`.
+    """
     certain = []
     if len(signs) > 1:
         certain = [cell for cell in cells if decimal_signs([cell])]
@@ -446,8 +479,8 @@ def _in_unit_of_head(cell: str, unit: str) -> str:
 def _beside_units(cell: str) -> str:
     """Return a cell of a column in which other cells have units.
 
-    A number without a unit is returned as `Refused`, because it could be in their unit; its message is raised where the
-    cell is used.
+    A number without a unit is returned as `Refused`, because it could be in their unit; its message
+    is raised where the cell is used.
     """
     if not _is_without_unit(cell) or number_or_nan(cell) == 0.0:
         return cell
@@ -466,7 +499,9 @@ def _with_unit(cell: str) -> bool:
 
 def _refuse_totals(table: UserTable, numbers: list[int], source: Source) -> None:
     """Move lines that sum up others to the errors."""
-    labels = [j for j, name in enumerate(table.names) if name not in table.known and j not in numbers]
+    labels = [
+        j for j, name in enumerate(table.names) if name not in table.known and j not in numbers
+    ]
     row = source.kind.row
     allowed = f"one {row} a line; this line sums up the lines above or below"
     remedy = f"Remove the line; if it is a {row}, rename it or put it further up."
@@ -477,7 +512,9 @@ def _refuse_totals(table: UserTable, numbers: list[int], source: Source) -> None
 
 def _refuse_mixtures(table: UserTable, numbers: list[int], used: Collection[str]) -> None:
     """Refuse words and units in a column of numbers that an expression uses."""
-    allowed = "a plain number, because an expression uses the column and other cells of it are numbers"
+    allowed = (
+        "a plain number, because an expression uses the column and other cells of it are numbers"
+    )
     remedy = "Write a number without unit, or words in all of its cells."
     for j, name in enumerate(table.names):
         is_free = name in used and name not in table.known and j not in numbers

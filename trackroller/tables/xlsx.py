@@ -34,12 +34,18 @@ _WORDS = re.compile(r'"([^"]*)"|\\(.)')  # in the code of a format
 _DIGITS = re.compile(r"[0#?@]|General|Standard")
 _BEGINS_WITH_DIGITS = re.compile(r'[^"\\]*(?:[0#?@]|General|Standard)')
 _NO_LETTERS = re.compile(r"[Ee][-+]|General|Standard|[^A-Za-z€$£°µ]")
-_REFERENCE = re.compile(r"\$?([A-Z]{1,3})\$?(\d+)(?::\$?([A-Z]{1,3})\$?(\d+))?(?![\w(])", re.IGNORECASE)
-_WHOLE_COLUMN = re.compile(r"\w+\[[^\[\]]*\]|\$?([A-Z]{1,3}):\$?\1(?![\w(])", re.IGNORECASE)  # `Table1[Load]`, `A:A`
+_REFERENCE = re.compile(
+    r"\$?([A-Z]{1,3})\$?(\d+)(?::\$?([A-Z]{1,3})\$?(\d+))?(?![\w(])", re.IGNORECASE
+)
+# `Table1[Load]`, `A:A`
+_WHOLE_COLUMN = re.compile(r"\w+\[[^\[\]]*\]|\$?([A-Z]{1,3}):\$?\1(?![\w(])", re.IGNORECASE)
 
 
-def sheet_lines(content: bytes, path: Path, field: str, row_noun: str, most_rows: int | None = None) -> Lines:
-    """Return numbers and cells of the rows of a workbook's visible sheet, or of its sheet of cases or blocks.
+def sheet_lines(
+    content: bytes, path: Path, field: str, row_noun: str, most_rows: int | None = None
+) -> Lines:
+    """Return numbers and cells of the rows of a workbook's visible sheet, or of its sheet of cases
+    or blocks.
 
     Parameters
     ----------
@@ -57,14 +63,15 @@ def sheet_lines(content: bytes, path: Path, field: str, row_noun: str, most_rows
     Returns
     -------
     list of tuple of int and list of str
-        Numbers are `Stored`, and cells that a person reads otherwise than the program would are `Refused`. A row ends
-        with its last cell that is not empty, or with the width of the first row.
+        Numbers are `Stored`, and cells that a person reads otherwise than the program would are
+        `Refused`. A row ends with its last cell that is not empty, or with the width of the first
+        row.
 
     Raises
     ------
     InputError
-        If the file is no workbook, unpacks to too much, has several sheets, hides, strikes out or merges cells, or
-        openpyxl is missing.
+        If the file is no workbook, unpacks to too much, has several sheets, hides, strikes out or
+        merges cells, or openpyxl is missing.
     """
     try:
         from openpyxl import load_workbook  # noqa: PLC0415 - optional, and heavy
@@ -76,15 +83,21 @@ def sheet_lines(content: bytes, path: Path, field: str, row_noun: str, most_rows
         with warnings.catch_warnings(action="ignore"):  # of parts that no cell needs
             _check_size(content, path, field)
             short = most_rows is not None
-            values = load_workbook(io.BytesIO(content), read_only=short, data_only=True, keep_links=False)
+            values = load_workbook(
+                io.BytesIO(content), read_only=short, data_only=True, keep_links=False
+            )
             sheet = _chosen(values.worksheets, path, field, row_noun)
             if short:
                 sheet.reset_dimensions()  # some programs write wrong ones
-                return _filled_up(_texts(row) for row in sheet.iter_rows(max_row=most_rows, max_col=MAX_COLUMNS))
+                return _filled_up(
+                    _texts(row) for row in sheet.iter_rows(max_row=most_rows, max_col=MAX_COLUMNS)
+                )
             _check_sheet(sheet, path, field)
             formulas = load_workbook(io.BytesIO(content), keep_links=False)[sheet.title]
             on_load = _is_computed_on_load(content)
-            return _filled_up(_checked(*rows, on_load) for rows in zip(sheet.rows, formulas.rows, strict=True))
+            return _filled_up(
+                _checked(*rows, on_load) for rows in zip(sheet.rows, formulas.rows, strict=True)
+            )
     except InputError:
         raise
     except Exception as exc:  # zipfile, XML and openpyxl raise a dozen kinds
@@ -94,24 +107,32 @@ def sheet_lines(content: bytes, path: Path, field: str, row_noun: str, most_rows
 
 
 def _check_size(content: bytes, path: Path, field: str) -> None:
-    """Refuse a workbook that is large as it is unpacked; zipfile unpacks no more than a workbook declares."""
+    """Refuse a workbook that is large as it is unpacked; zipfile unpacks no more than a workbook
+    declares.
+    """
     with zipfile.ZipFile(io.BytesIO(content)) as archive:
         size = sum(entry.file_size for entry in archive.infolist())
     if size > MAX_UNPACKED:
         most = MAX_UNPACKED // 1_000_000
-        allowed = f"a workbook that unpacks to at most {most} MB; this one takes {size / 1e6:.0f} MB"
+        allowed = (
+            f"a workbook that unpacks to at most {most} MB; this one takes {size / 1e6:.0f} MB"
+        )
         raise InputError(field, str(path), allowed, "Save the sheet as CSV.")
 
 
 def _is_computed_on_load(content: bytes) -> bool:
-    """Return whether Excel computes all formulas as it opens the workbook; openpyxl assumes it of each."""
+    """Return whether Excel computes all formulas as it opens the workbook; openpyxl assumes it of
+    each.
+    """
     with zipfile.ZipFile(io.BytesIO(content)) as archive:
         parts = [name for name in archive.namelist() if name.endswith("workbook.xml")]
         return any(b'fullCalcOnLoad="1"' in archive.read(name) for name in parts)
 
 
 def _chosen(sheets: list[Any], path: Path, field: str, row_noun: str) -> Any:
-    """Return the only visible sheet that holds cells, or the one that is named for what its rows describe."""
+    """Return the only visible sheet that holds cells, or the one that is named for what its rows
+    describe.
+    """
     shown = [sheet for sheet in sheets if sheet.sheet_state == "visible"]
     named = [sheet for sheet in sheets if sheet.title.strip().lower() in (row_noun, f"{row_noun}s")]
     if len(named) == 1 and named[0] in shown:
@@ -126,7 +147,12 @@ def _chosen(sheets: list[Any], path: Path, field: str, row_noun: str) -> Any:
     if len(meant) != 1:
         titles = ", ".join(sheet.title for sheet in meant or sheets)
         allowed = "a workbook with one visible sheet that holds cells"
-        raise InputError(field, f"sheets {titles} of {path}", allowed, f"Name the sheet that is meant '{row_noun}s'.")
+        raise InputError(
+            field,
+            f"sheets {titles} of {path}",
+            allowed,
+            f"Name the sheet that is meant '{row_noun}s'.",
+        )
     return meant[0]
 
 
@@ -175,7 +201,9 @@ def _is_hidden(dimension: Any, size: str) -> bool:
 
 
 def _hidden_letters(sheet: Any, columns: set[int]) -> list[str]:
-    """Return the letters of hidden columns with cells; one entry of a sheet may hide several columns."""
+    """Return the letters of hidden columns with cells; one entry of a sheet may hide several
+    columns.
+    """
     from openpyxl.utils import get_column_letter  # noqa: PLC0415 - optional, and heavy
 
     hidden: set[int] = set()
@@ -197,7 +225,9 @@ def _few(noun: str, names: Sequence[object]) -> str:
 
 
 def _filled_up(rows: Iterator[list[str]]) -> Lines:
-    """Return the rows with their numbers; each ends with its last cell or has the width of the first row."""
+    """Return the rows with their numbers; each ends with its last cell or has the width of the
+    first row.
+    """
     lines: Lines = []
     width = letters = 0
     for number, cells in enumerate(rows, start=1):
@@ -219,7 +249,8 @@ def _texts(row: Sequence[Any]) -> list[str]:
 
 
 def _checked(values: Sequence[Any], formulas: Sequence[Any], computed_on_load: bool) -> list[str]:
-    """Return the texts of a row; formulas without their value, and sums of the cells above, are `Refused`.
+    """Return the texts of a row; formulas without their value, and sums of the cells above, are
+    `Refused`.
 
     XlsxWriter stores 0 for every formula, and asks Excel to compute the workbook as it opens it.
     """
@@ -232,16 +263,22 @@ def _checked(values: Sequence[Any], formulas: Sequence[Any], computed_on_load: b
         is_empty = stored is None and values[j].data_type == "n"
         if is_empty or (computed_on_load and stored == 0):
             remedy = "Open the workbook in Excel or LibreOffice and save it there."
-            cells[j] = Refused(text, "a value; the workbook holds a formula without its value", remedy)
+            cells[j] = Refused(
+                text, "a value; the workbook holds a formula without its value", remedy
+            )
         elif _takes_several(text, formula.column_letter) and not isinstance(cells[j], Refused):
-            allowed = "a value of its own; this formula sums up the lines above, or takes several of them"
+            allowed = (
+                "a value of its own; this formula sums up the lines above, or takes several of them"
+            )
             remedy = "Remove the line, or put it into another sheet; if it counts, write its value."
             cells[j] = Refused(text, allowed, remedy)
     return cells
 
 
 def _takes_several(formula: str, letter: str) -> bool:
-    """Return whether a formula refers to several cells of its own column, as a sum of the lines above does."""
+    """Return whether a formula refers to several cells of its own column, as a sum of the lines
+    above does.
+    """
     text = re.sub(r'"[^"]*"', '""', formula)
     own: set[str] = set()
     for first, start, last, end in _REFERENCE.findall(text):
@@ -255,23 +292,29 @@ def _text(cell: Any) -> str:
     value = cell.value
     if value is None:
         return ""
-    if isinstance(value, (datetime.date, datetime.time, datetime.timedelta)):  # Excel makes dates of 1-2 and 3/4
+    # Excel makes dates of 1-2 and 3/4
+    if isinstance(value, (datetime.date, datetime.time, datetime.timedelta)):
         allowed = "a number or a text; the sheet holds a date"
         return Refused(str(value), allowed, "Give the cell the format of a number or a text.")
     if cell.data_type == "e":
-        return Refused(str(value), "a value; the formula of this cell has an error", "Correct the formula.")
+        return Refused(
+            str(value), "a value; the formula of this cell has an error", "Correct the formula."
+        )
     if isinstance(value, bool):
         return str(value).upper()
     if isinstance(value, (int, float)):
         return _formatted(value, cell.number_format)
     text = str(value)
     if len(text) > MAX_LETTERS:
-        return Refused(f"{text[:40]}...", f"a text of at most {MAX_LETTERS:,} characters", "Shorten the text.")
+        return Refused(
+            f"{text[:40]}...", f"a text of at most {MAX_LETTERS:,} characters", "Shorten the text."
+        )
     return text.strip()
 
 
 def _formatted(value: float, code: str) -> str:
-    """Return a number as text; the code of its format may add a unit, a per cent sign or zeros, or hide something.
+    """Return a number as text; the code of its format may add a unit, a per cent sign or zeros, or
+    hide something.
 
     A whole number with more figures than a float holds is a label.
     """
@@ -301,14 +344,18 @@ def _formatted(value: float, code: str) -> str:
 
 
 def _section(value: float, code: str) -> str:
-    """Return the part of the code of a format that shows a number, with the sign of a currency as a word."""
+    """Return the part of the code of a format that shows a number, with the sign of a currency as a
+    word.
+    """
     section = code.split(";")[_own_section(value, code)]
     section = re.sub(r"\[\$([^-\]]*)[^\]]*\]", r'"\1"', section)  # a currency
     return re.sub(r"\[[^\]]*\]|[_*].", "", section)  # colours, conditions, room
 
 
 def _own_section(value: float, code: str) -> int:
-    """Return the place of the part that shows a number: above 0, below 0, or 0; the first one if there is no such."""
+    """Return the place of the part that shows a number: above 0, below 0, or 0; the first one if
+    there is no such.
+    """
     place = 0
     if value < 0:
         place = 1
@@ -323,7 +370,9 @@ def _shows_number(digits: str) -> bool:
 
 
 def _shows_minus(value: float, code: str, words: str) -> bool:
-    """Return whether a format shows that a number is below 0: by a sign, in brackets, or in a colour."""
+    """Return whether a format shows that a number is below 0: by a sign, in brackets, or in a
+    colour.
+    """
     if _own_section(value, code) != 1:
         return True
     return re.search(r"[-(\[]", code.split(";")[1] + words) is not None

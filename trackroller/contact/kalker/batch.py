@@ -1,6 +1,8 @@
-"""Tangential problems of many patches: scaling, friction law and resultants; threads share the patches.
+"""Tangential problems of many patches: scaling, friction law and resultants; threads share the
+patches.
 
-Inside a patch, lengths are divided by c = sqrt(a b), tractions by mu p_max and slips by mu p_max / G.
+Inside a patch, lengths are divided by c = sqrt(a b), tractions by mu p_max and slips by mu p_max /
+G.
 """
 
 from __future__ import annotations
@@ -24,17 +26,19 @@ from trackroller.numerics.compiled import compiled
 from trackroller.numerics.threads import share_rows
 
 PIECE = 16  # patches of the same shape that a thread solves in one call
-TOWARDS_LAW = (0.0, 0.2, 0.4, 0.6, 0.8, 1.0)  # shares of a friction law that are met one after the other
+# shares of a friction law that are met one after the other
+TOWARDS_LAW = (0.0, 0.2, 0.4, 0.6, 0.8, 1.0)
 
 
 class Batch(NamedTuple):
     """Patches to solve, arrays (n,) unless stated.
 
-    semi_axis_lateral, semi_axis_rolling [mm]; bound : mu p_max [MPa]; ratio : mu p_max / G; poisson_ratio;
-    coupling : K / mu; along (n, nx) : rolling part of the rigid slip; lateral [-], spin [1/mm] : the lateral part is
-    lateral - spin y; travel_speed [mm/s]; height, share (n, ny, nx), for ellipses (1, ny, nx) : mean pressure over the
-    largest and share inside the patch of each element; is_hertzian : the pressures are those of ellipses, or of discs;
-    film : flexibility of a film between the bodies times G [mm]; is_plane : two discs, one column of elements.
+    semi_axis_lateral, semi_axis_rolling [mm]; bound : mu p_max [MPa]; ratio : mu p_max / G;
+    poisson_ratio; coupling : K / mu; along (n, nx) : rolling part of the rigid slip; lateral [-],
+    spin [1/mm] : the lateral part is lateral - spin y; travel_speed [mm/s]; height, share (n, ny,
+    nx), for ellipses (1, ny, nx) : mean pressure over the largest and share inside the patch of
+    each element; is_hertzian : the pressures are those of ellipses, or of discs; film : flexibility
+    of a film between the bodies times G [mm]; is_plane : two discs, one column of elements.
     """
 
     semi_axis_lateral: np.ndarray
@@ -58,7 +62,11 @@ class Batch(NamedTuple):
         """Return which patches have friction and finite sizes, (n,)."""
         size = self.semi_axis_lateral * self.semi_axis_rolling
         with np.errstate(invalid="ignore"):
-            finite = np.isfinite(self.ratio * size) & (self.semi_axis_lateral > 0.0) & (self.semi_axis_rolling > 0.0)
+            finite = (
+                np.isfinite(self.ratio * size)
+                & (self.semi_axis_lateral > 0.0)
+                & (self.semi_axis_rolling > 0.0)
+            )
             return finite & (self.ratio > 0.0)
 
 
@@ -77,9 +85,10 @@ def _rigid_slip(batch, i, out):
 class Report(NamedTuple):
     """Numbers of n solved patches: forces (n, 3) F_T, F_A [N], M_R [N mm]; the others (n,).
 
-    stick_fraction [-]; dissipation : summed over the elements; work : of the rigid slip; pressure_work : of the
-    pressures on unlike materials [N]; residual of the friction law over mu p_max; Newton steps; products B tau;
-    own_slip per travel speed, which the traction mu p_max of an element causes at itself.
+    stick_fraction [-]; dissipation : summed over the elements; work : of the rigid slip;
+    pressure_work : of the pressures on unlike materials [N]; residual of the friction law over mu
+    p_max; Newton steps; products B tau; own_slip per travel speed, which the traction mu p_max of
+    an element causes at itself.
     """
 
     forces: np.ndarray
@@ -109,8 +118,9 @@ class Report(NamedTuple):
 class Found(NamedTuple):
     """Start and result of n patches.
 
-    traction (n, 2, ny, nx) over mu p_max: first the start, then the result; slip (n, 2, ny, nx) per travel speed;
-    stick (n, ny, nx); factor (n, ny, nx) : friction over its value at rest, (n, 1, 1) if it is constant; report.
+    traction (n, 2, ny, nx) over mu p_max: first the start, then the result; slip (n, 2, ny, nx) per
+    travel speed; stick (n, ny, nx); factor (n, ny, nx) : friction over its value at rest, (n, 1, 1)
+    if it is constant; report.
     """
 
     traction: np.ndarray
@@ -124,7 +134,9 @@ class Found(NamedTuple):
         """Return room for the result of an iteration that starts from `traction` (n, 2, ny, nx)."""
         n, _, ny, nx = traction.shape
         factor = np.ones((n, 1, 1) if law.is_constant else (n, ny, nx))
-        return cls(traction, np.empty_like(traction), np.zeros((n, ny, nx), bool), factor, Report.empty(n))
+        return cls(
+            traction, np.empty_like(traction), np.zeros((n, ny, nx), bool), factor, Report.empty(n)
+        )
 
     @property
     def own_slip(self) -> np.ndarray:
@@ -133,7 +145,9 @@ class Found(NamedTuple):
 
 
 class _Fields(NamedTuple):
-    """Fields of one patch: traction, slip, rigid slip and rigid slip with that of the pressures, (ny, nx, 2)."""
+    """Fields of one patch: traction, slip, rigid slip and rigid slip with that of the pressures,
+    (ny, nx, 2).
+    """
 
     traction: np.ndarray
     slip: np.ndarray
@@ -143,7 +157,9 @@ class _Fields(NamedTuple):
 
 
 class _Sums(NamedTuple):
-    """Sums over the elements of one patch, per element area; the last two are shares of the patch in elements."""
+    """Sums over the elements of one patch, per element area; the last two are shares of the patch
+    in elements.
+    """
 
     lateral: float
     driving: float
@@ -157,7 +173,9 @@ class _Sums(NamedTuple):
 
 @compiled
 def _sums(field, height, share, rho, a, b, stick):
-    """Add up resultants, works and stick of one patch with tractions over mu p_max; mark sticking elements."""
+    """Add up resultants, works and stick of one patch with tractions over mu p_max; mark sticking
+    elements.
+    """
     traction, slip, rigid, driver, bound = field
     ny, nx = bound.shape
     force_x = force_y = moment = dissipation = work = pressed = sticking = covered = 0.0
@@ -174,7 +192,9 @@ def _sums(field, height, share, rho, a, b, stick):
             moment += x * ty - y * tx
             dissipation -= tx * sx + ty * sy
             work -= tx * rigid[i, j, 0] + ty * rigid[i, j, 1]
-            pressed -= tx * (driver[i, j, 0] - rigid[i, j, 0]) + ty * (driver[i, j, 1] - rigid[i, j, 1])
+            pressed -= tx * (driver[i, j, 0] - rigid[i, j, 0]) + ty * (
+                driver[i, j, 1] - rigid[i, j, 1]
+            )
             covered += share[i, j]
             if (tx - rho * sx) ** 2 + (ty - rho * sy) ** 2 <= bound[i, j] ** 2:
                 stick[i, j] = True
@@ -184,13 +204,17 @@ def _sums(field, height, share, rho, a, b, stick):
 
 @compiled
 def _solve(problem, room, traction, tolerance, limit):
-    """Solve by Newton's method; if a friction law defeats it, approach the law from constant friction in steps."""
+    """Solve by Newton's method; if a friction law defeats it, approach the law from constant
+    friction in steps.
+    """
     at, residual, steps, products = newton(problem, room, traction, tolerance, limit)
     if residual <= tolerance or problem.knots.size == 1:
         return at, residual, steps, products
     for part in TOWARDS_LAW:
         factors = problem.factors[0] + part * (problem.factors - problem.factors[0])
-        eased = Problem(problem.influence, problem.rigid, problem.height, problem.scale, problem.knots, factors)
+        eased = Problem(
+            problem.influence, problem.rigid, problem.height, problem.scale, problem.knots, factors
+        )
         at, residual, more, further = newton(eased, room, at[0].copy(), tolerance, limit)
         steps, products = steps + more, products + further
         if residual > tolerance:
@@ -217,7 +241,9 @@ def _solve_patches(which, batch, functions, pressed, law, limits, out):
         for k in range(ny):
             for j in range(nx):
                 start[k, j] = complex(traction[0, k, j], traction[1, k, j])
-        at, report.residual[i], report.steps[i], report.products[i] = _solve(problem, room, start, tolerance, limit)
+        at, report.residual[i], report.steps[i], report.products[i] = _solve(
+            problem, room, start, tolerance, limit
+        )
         field = _Fields(reals(at[0]), reals(at[1]), reals(rigid), reals(driver), room.bound)
         sides = batch.semi_axis_lateral[i], batch.semi_axis_rolling[i]
         sums = _sums(field, height, batch.share[one], 1.0 / functions.own, *sides, out.stick[i])
@@ -248,11 +274,16 @@ def _write_report(report, i, sums, cell, bound, ratio):
     report.forces[i, 2] = sums.moment * cell * bound
     scale = bound * ratio
     report.dissipation[i] = sums.dissipation * cell * scale
-    report.work[i], report.pressure_work[i] = sums.work * cell * scale, sums.pressure_work * cell * scale
+    report.work[i], report.pressure_work[i] = (
+        sums.work * cell * scale,
+        sums.pressure_work * cell * scale,
+    )
 
 
 class _Piece(NamedTuple):
-    """Numbers of patches with the same elements; half sides, Poisson's ratio and film of one, scaled and rounded."""
+    """Numbers of patches with the same elements; half sides, Poisson's ratio and film of one,
+    scaled and rounded.
+    """
 
     which: np.ndarray
     lateral: float
@@ -262,7 +293,9 @@ class _Piece(NamedTuple):
 
 
 def _pieces(batch: Batch) -> list[_Piece]:
-    """Return the solvable patches in pieces of at most PIECE with the same elements and, on grids, pressures."""
+    """Return the solvable patches in pieces of at most PIECE with the same elements and, on grids,
+    pressures.
+    """
     shapes: dict[tuple, list[int]] = {}
     for i in np.flatnonzero(batch.solvable).tolist():
         a, b = batch.semi_axis_lateral[i], batch.semi_axis_rolling[i]
@@ -277,10 +310,13 @@ def _pieces(batch: Batch) -> list[_Piece]:
 
 
 def _pressed_slip(batch: Batch, i: int, a: float, b: float) -> np.ndarray:
-    """Return the slip (ny, nx), x + iy, that the pressure of patch i causes on unlike bodies for K = G = 1."""
+    """Return the slip (ny, nx), x + iy, that the pressure of patch i causes on unlike bodies for K
+    = G = 1.
+    """
     _, ny, nx = batch.height.shape
     if batch.is_plane:
-        return 2j * batch.height[0]  # of each place alone: the strain along the surface of a half-plane under pressure
+        # of each place alone: the strain along the surface of a half-plane under pressure
+        return 2j * batch.height[0]
     if batch.is_hertzian:
         return np.asarray(hertz_coupling_slip(a, b, ny, nx))
     return coupling_slip(batch.height[i], 2.0 * a / nx, 2.0 * b / ny)

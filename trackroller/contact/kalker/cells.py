@@ -1,4 +1,6 @@
-"""Elements of a patch: mean pressure and covered area. Every ellipse is the unit circle after scaling."""
+"""Elements of a patch: mean pressure and covered area. Every ellipse is the unit circle after
+scaling.
+"""
 
 from __future__ import annotations
 
@@ -24,10 +26,12 @@ def _column_integrals(x: np.ndarray, edges: np.ndarray) -> tuple[np.ndarray, np.
 
 @lru_cache(maxsize=32)
 def unit_cells(ny: int, nx: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return the mean of sqrt(1 - x^2 - y^2) over ny x nx elements of [-1, 1]^2, and the share inside the circle.
+    """Return the mean of sqrt(1 - x^2 - y^2) over ny x nx elements of [-1, 1]^2, and the share
+    inside the circle.
 
-    Both (ny, nx). Exact along y, 12 Gauss points along x; scaled so that the total is the circle's 2 pi/3 and pi.
-    The mean over the whole element keeps the friction of a patch independent of the grid.
+    Both (ny, nx). Exact along y, 12 Gauss points along x; scaled so that the total is the circle's
+    2 pi/3 and pi. The mean over the whole element keeps the friction of a patch independent of the
+    grid.
     """
     nodes, weights = np.polynomial.legendre.leggauss(12)
     x = (np.arange(nx)[:, None] + 0.5 + nodes / 2) * 2.0 / nx - 1.0
@@ -53,8 +57,8 @@ def cells(patch: Ellipse | GridPatch, elements: int) -> tuple[np.ndarray, np.nda
     Returns
     -------
     tuple of ndarray
-        Mean pressure over p_max, and share inside the patch: `unit_cells` (ny, nx) for ellipses, which are alike, or
-        (n, ny, nx) for solved patches.
+        Mean pressure over p_max, and share inside the patch: `unit_cells` (ny, nx) for ellipses,
+        which are alike, or (n, ny, nx) for solved patches.
     """
     if patch.is_hertzian:
         return unit_cells(elements, elements)

@@ -1,4 +1,6 @@
-"""Extrapolate forces from the grids h and 2h to elements of zero size: F = F_h + weight (F_h - F_2h)."""
+"""Extrapolate forces from the grids h and 2h to elements of zero size: F = F_h + weight (F_h -
+F_2h).
+"""
 
 from __future__ import annotations
 
@@ -11,27 +13,32 @@ from trackroller.contact.kalker import subgrid
 from trackroller.contact.quantities import Elastic, Ellipse, slenderness
 from trackroller.contact.slip import Creepage
 
-# The forces converge with order 2 where the patch slides, and with order 1 where much of it sticks: the traction is
-# singular at the trailing edge of full adhesion, and the displacement has a kink at the leading edge.
+# The forces converge with order 2 where the patch slides, and with order 1 where much of it sticks:
+# the traction is singular at the trailing edge of full adhesion, and the displacement has a kink at
+# the leading edge.
 SLIDING, ADHESION = 1.0 / 3.0, 1.0
-# Power of the mean traction over its bound in `weight`. It is high, because even a small adhesion area lowers the order
-# with which the forces converge.
+# Power of the mean traction over its bound in `weight`. It is high, because even a small adhesion
+# area lowers the order with which the forces converge.
 EARLY = 24
-# Patches that are long in the rolling direction converge faster by this power of b/a, if the elements resolve
-# an adhesion area, which means that more than SEEN_USED of the bound is unused.
+# Patches that are long in the rolling direction converge faster by this power of b/a, if the
+# elements resolve an adhesion area, which means that more than SEEN_USED of the bound is unused.
 LONG, SEEN_USED = 0.42, 1e-4
-UNLIKE = 3.4  # factor on (K/mu)^2 of unlike bodies: they slide at the leading edge, where like bodies stick
-FITTED, FITTED_AT, SLENDER = 0.054, 28, 0.9  # factor, elements and power of the axis ratio of `force_error`
-# Least error over mu F_N with a film, on FITTED_AT elements: 1 in 100 of 220 random patches erred more. Below the given
-# flexibility over that of the bodies the error fades to that without a film.
+# factor on (K/mu)^2 of unlike bodies: they slide at the leading edge, where like bodies stick
+UNLIKE = 3.4
+# factor, elements and power of the axis ratio of `force_error`
+FITTED, FITTED_AT, SLENDER = 0.054, 28, 0.9
+# Least error over mu F_N with a film, on FITTED_AT elements: 1 in 100 of 220 random patches erred
+# more. Below the given flexibility over that of the bodies the error fades to that without a film.
 FILM_ERROR, FILM_SHARE = 0.015, 0.05
 ORDER = 1.5  # with which the errors of extrapolated forces fall
 SECOND_ORDER = 1.0 / 3.0  # weight of quantities of second order
 FEW = 5.0  # elements in an adhesion area at which half of the change between the grids is random
-# Factors of `unseen_adhesion`: share, power of b/a, range of b/a, and two spins of an element: where the elements
-# begin to miss the adhesion area, and where the share that they resolve has halved.
+# Factors of `unseen_adhesion`: share, power of b/a, range of b/a, and two spins of an element:
+# where the elements begin to miss the adhesion area, and where the share that they resolve has
+# halved.
 UNSEEN, UNSEEN_POWER, RATIOS, SEEN, SMALL = 0.62, 0.8, (0.25, 3.5), 0.57, 5.0
-# Terms of `pole_stress`: constant, times ln(spin), of the pressure, times |ln(b/a)|, and of unlike bodies, (K/mu)^2.
+# Terms of `pole_stress`: constant, times ln(spin), of the pressure, times |ln(b/a)|, and of unlike
+# bodies, (K/mu)^2.
 AT_POLE = 1.807, 0.174, 0.0184, 0.05, 0.13
 # The least spin and b/a of patches whose elements missed a peak at the pole, among 460 designs.
 RESOLVED_SPIN, LEAST_RATIO = 3.0, 0.8
@@ -42,8 +49,8 @@ def weight(used: np.ndarray, ratio: np.ndarray, coupling: np.ndarray) -> np.ndar
 
     Parameters
     ----------
-    used : mean of the tractions over their bounds, (n,). The adhesion area is not used here: it grows by whole
-        elements, so that the forces would jump.
+    used : mean of the tractions over their bounds, (n,). The adhesion area is not used here: it
+        grows by whole elements, so that the forces would jump.
     ratio : b/a, (n,)
     coupling : K/mu, (n,); 0 for like bodies
     """
@@ -52,12 +59,15 @@ def weight(used: np.ndarray, ratio: np.ndarray, coupling: np.ndarray) -> np.ndar
     return sliding + (ADHESION - sliding) * (1.0 - used**EARLY) / (1.0 + UNLIKE * coupling**2)
 
 
-def unseen_adhesion(spin: np.ndarray, ratio: np.ndarray, pole: np.ndarray, elements: int) -> np.ndarray:
-    """Return by how much |F_T| is too small where the adhesion area at the pole is below an element, over mu F_N (n,).
+def unseen_adhesion(
+    spin: np.ndarray, ratio: np.ndarray, pole: np.ndarray, elements: int
+) -> np.ndarray:
+    """Return by how much |F_T| is too small where the adhesion area at the pole is below an
+    element, over mu F_N (n,).
 
-    Both grids miss this area equally, so that their difference does not show the error. The formula was fitted to
-    random designs: it falls with the area of an element. It is 0 where the elements resolve the adhesion area and where
-    there is no adhesion area.
+    Both grids miss this area equally, so that their difference does not show the error. The formula
+    was fitted to random designs: it falls with the area of an element. It is 0 where the elements
+    resolve the adhesion area and where there is no adhesion area.
 
     Parameters
     ----------
@@ -81,7 +91,8 @@ def extrapolated(
     value: np.ndarray,
     change: np.ndarray,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Extrapolate the resultants `value` (n, 3) of `solution`; `change` (n, 3) came with the last halving of elements.
+    """Extrapolate the resultants `value` (n, 3) of `solution`; `change` (n, 3) came with the last
+    halving of elements.
 
     `solution` is a solution or a grid of it.
 
@@ -92,7 +103,8 @@ def extrapolated(
     unlike = elastic.coupling / np.where(friction > 0.0, friction, np.inf)
     share = weight(subgrid.fields_of(ellipse, solution).used, _ratio(ellipse), unlike)
     limit = share[:, None] * change
-    if ellipse.is_hertzian and solution.factor.shape[1:] == (1, 1):  # the formula was fitted to constant friction
+    # the formula was fitted to constant friction
+    if ellipse.is_hertzian and solution.factor.shape[1:] == (1, 1):
         unseen = _unseen(ellipse, creep, friction, elastic, solution.traction.shape[-1])
         unseen[elastic.film > 0.0] = 0.0  # and to bodies without a film
         limit[:, 0] += np.sign(value[:, 0]) * unseen
@@ -100,9 +112,15 @@ def extrapolated(
 
 
 def doubled(
-    ellipse: Ellipse | GridPatch, creep: Creepage, friction, elastic: Elastic, finer: Any, coarse: Any
+    ellipse: Ellipse | GridPatch,
+    creep: Creepage,
+    friction,
+    elastic: Elastic,
+    finer: Any,
+    coarse: Any,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Extrapolate from the solutions `coarse`, which may be extrapolated, and `finer` on twice the elements.
+    """Extrapolate from the solutions `coarse`, which may be extrapolated, and `finer` on twice the
+    elements.
 
     Returns
     -------
@@ -114,11 +132,20 @@ def doubled(
     return plain + limit, change
 
 
-def _pole(ellipse: Ellipse | GridPatch, creep: Creepage, friction, elastic: Elastic) -> tuple[np.ndarray, np.ndarray]:
-    """Return |phi| sqrt(a b) G / (mu p_max), and the distance of the spin pole from the centre over a, (n,)."""
+def _pole(
+    ellipse: Ellipse | GridPatch, creep: Creepage, friction, elastic: Elastic
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return |phi| sqrt(a b) G / (mu p_max), and the distance of the spin pole from the centre over
+    a, (n,).
+    """
     a, b = ellipse.semi_axis_lateral, ellipse.semi_axis_rolling
     with np.errstate(divide="ignore", invalid="ignore"):
-        spin = np.abs(creep.spin) * np.sqrt(a * b) * elastic.shear_modulus / (friction * ellipse.max_pressure)
+        spin = (
+            np.abs(creep.spin)
+            * np.sqrt(a * b)
+            * elastic.shear_modulus
+            / (friction * ellipse.max_pressure)
+        )
         return spin, np.abs(creep.longitudinal / creep.spin) / a
 
 
@@ -131,13 +158,17 @@ def _unseen(ellipse, creep: Creepage, friction, elastic: Elastic, elements: int)
     return np.where(known, share, 0.0) * friction * ellipse.normal_force
 
 
-def pole_stress(ellipse: Ellipse, creep: Creepage, friction: np.ndarray, elastic: Elastic) -> np.ndarray:
-    """Return the von Mises stress on the surface near the spin pole over p_max, (n,) [1]; 0 without a pole inside.
+def pole_stress(
+    ellipse: Ellipse, creep: Creepage, friction: np.ndarray, elastic: Elastic
+) -> np.ndarray:
+    """Return the von Mises stress on the surface near the spin pole over p_max, (n,) [1]; 0 without
+    a pole inside.
 
-    The tractions turn around a small adhesion area. Their stress grows with the logarithm of the size of the patch over
-    that of the area, as below a vortex of tractions. The terms were fitted to 238 random patches with resolved areas:
-    the stress is within 3 % of theirs in the mean, and within 8 %. The terms of slenderness and of unlike bodies follow
-    wider designs. Below a spin of `RESOLVED_SPIN`, elements resolve the area, and 0 is returned.
+    The tractions turn around a small adhesion area. Their stress grows with the logarithm of the
+    size of the patch over that of the area, as below a vortex of tractions. The terms were fitted
+    to 238 random patches with resolved areas: the stress is within 3 % of theirs in the mean, and
+    within 8 %. The terms of slenderness and of unlike bodies follow wider designs. Below a spin of
+    `RESOLVED_SPIN`, elements resolve the area, and 0 is returned.
     """
     constant, growth, pressed, longer, unlike = AT_POLE
     spin, pole = _pole(ellipse, creep, friction, elastic)
@@ -145,29 +176,40 @@ def pole_stress(ellipse: Ellipse, creep: Creepage, friction: np.ndarray, elastic
     with np.errstate(invalid="ignore", divide="ignore"):
         bound = friction * np.sqrt(1.0 - pole * pole)
         stress = bound * (constant + growth * np.log(np.maximum(spin, 1.0))) + pressed / bound
-        stress *= (1.0 + longer * np.abs(np.log(ratio))) * (1.0 + unlike * (elastic.coupling / friction) ** 2)
+        stress *= (1.0 + longer * np.abs(np.log(ratio))) * (
+            1.0 + unlike * (elastic.coupling / friction) ** 2
+        )
         hides = np.isfinite(stress) & (bound > 0.0) & (spin > RESOLVED_SPIN) & (ratio > LEAST_RATIO)
     return np.where(hides, stress, 0.0)
 
 
 def error_scale(elements: int) -> float:
-    """Return how the errors of forces grow from FITTED_AT to `elements` along each axis, a factor."""
+    """Return how the errors of forces grow from FITTED_AT to `elements` along each axis, a
+    factor.
+    """
     return (FITTED_AT / elements) ** ORDER
 
 
 def elements_for(excess: np.ndarray, elements: int) -> np.ndarray:
-    """Return how many elements along each axis make an error of `elements` smaller by the factor `excess`, (n,)."""
+    """Return how many elements along each axis make an error of `elements` smaller by the factor
+    `excess`, (n,).
+    """
     return elements * np.maximum(excess, 1.0) ** (1.0 / ORDER)
 
 
 def force_error(
-    ellipse: Ellipse | GridPatch, friction, stick: np.ndarray, change: np.ndarray, elements: int, softness=0.0
+    ellipse: Ellipse | GridPatch,
+    friction,
+    stick: np.ndarray,
+    change: np.ndarray,
+    elements: int,
+    softness=0.0,
 ) -> np.ndarray:
     """Return the estimated error of extrapolated friction forces, (n,) [N].
 
-    The change from elements of twice the size alone is a poor estimate, because the coarse grid hardly resolves a small
-    adhesion area. The formula was fitted to random designs; the error of 1 in 100 designs is larger; see
-    `validation.benchmarks.kalker_errors`.
+    The change from elements of twice the size alone is a poor estimate, because the coarse grid
+    hardly resolves a small adhesion area. The formula was fitted to random designs; the error of 1
+    in 100 designs is larger; see `validation.benchmarks.kalker_errors`.
 
     Parameters
     ----------
@@ -176,7 +218,8 @@ def force_error(
     stick : share of the adhesion area, (n,)
     change : of F_T, F_A (and M_R) from elements of twice the size, (n, 3) [N]
     elements : along each axis
-    softness : flexibility of a film times G over b, (n,) or 0; with a film the formula alone tells too little
+    softness : flexibility of a film times G over b, (n,) or 0; with a film the formula alone tells
+        too little
     """
     capacity = friction * ellipse.normal_force
     finer, largest = error_scale(elements), np.abs(change[:, :2]).max(axis=1)
@@ -192,7 +235,8 @@ def _ratio(ellipse: Ellipse | GridPatch) -> np.ndarray:
 def adhesion(fine: np.ndarray, coarse: np.ndarray, weight: np.ndarray, elements: int) -> np.ndarray:
     """Extrapolate the share of the adhesion area from two grids, (n,).
 
-    The coarse grid resolves an area of few elements poorly, so that the change gets a smaller weight there.
+    The coarse grid resolves an area of few elements poorly, so that the change gets a smaller
+    weight there.
     """
     count = 0.25 * np.pi * elements**2 * fine
     return np.clip(fine + weight * count / (count + FEW) * (fine - coarse), 0.0, 1.0)

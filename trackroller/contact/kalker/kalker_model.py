@@ -28,8 +28,12 @@ class KalkerModel(ContactModel):
 
     def __init__(self, given: Rollers, settings: Accuracy, trusts_table: bool = False) -> None:
         self.given, law, elastic = given, given.law, given.elastic
-        self.elements = settings.elements if law.is_constant else max(settings.elements, LEAST_UNDER_LAW)
-        discretisation = KalkerSettings(self.elements, tolerance=1e-8, law=law, profile_slip=given.profile_slip)
+        self.elements = (
+            settings.elements if law.is_constant else max(settings.elements, LEAST_UNDER_LAW)
+        )
+        discretisation = KalkerSettings(
+            self.elements, tolerance=1e-8, law=law, profile_slip=given.profile_slip
+        )
         self._law = KalkerLaw(elastic, discretisation, given.travel_speed)
         if law.is_constant and not np.any(elastic.film):  # all that the table behind the corrections holds
             self.correction = Correction(elastic, discretisation, trusts_table)
@@ -60,7 +64,9 @@ class KalkerModel(ContactModel):
     def pole_stress(self, ellipse, slip, friction, rows):
         if self.correction is None:  # the formula was fitted to constant friction
             return super().pole_stress(ellipse, slip, friction, rows)
-        return extrapolation.pole_stress(ellipse, Creepage.of_slip(slip), friction, self.given.elastic.take(rows))
+        return extrapolation.pole_stress(
+            ellipse, Creepage.of_slip(slip), friction, self.given.elastic.take(rows)
+        )
 
     def power(self, ellipse, slip, friction, rows):
         if self.correction is not None:

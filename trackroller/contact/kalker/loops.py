@@ -1,4 +1,6 @@
-"""Compiled loops of Newton's method for adhesion and slip over fields (ny, nx, 2); see `kalker.newton`."""
+"""Compiled loops of Newton's method for adhesion and slip over fields (ny, nx, 2); see
+`kalker.newton`.
+"""
 
 from __future__ import annotations
 
@@ -21,34 +23,43 @@ def reals(field):
 
 @compiled
 def row_means(field, first, count, out):
-    """Average each element (weight 1/2) with its neighbours in the rolling direction (1/4) within the patch."""
+    """Average each element (weight 1/2) with its neighbours in the rolling direction (1/4) within
+    the patch.
+    """
     assign(out, field)
     for j in range(count.size):
         low, high = first[j], first[j] + count[j] - 1
         for i in range(low, high + 1):
             behind, ahead = max(i - 1, low), min(i + 1, high)
             for c in range(2):
-                out[i, j, c] = 0.5 * field[i, j, c] + 0.25 * (field[behind, j, c] + field[ahead, j, c])
+                out[i, j, c] = 0.5 * field[i, j, c] + 0.25 * (
+                    field[behind, j, c] + field[ahead, j, c]
+                )
 
 
 @compiled
 def law_of_slip(slip, height, scale, knots, factors, bound, slope):
     """Compute the traction bound, height f(scale |s|), and its derivative with respect to |s|.
 
-    The friction law f is linear between its knots. `slip` is the result of `row_means`. If friction fell with the slip
-    of each single element, the slips of neighbouring elements would oscillate against each other, because differences
-    of displacements react most strongly to such oscillations. The average keeps the second order in the element size.
+    The friction law f is linear between its knots. `slip` is the result of `row_means`. If friction
+    fell with the slip of each single element, the slips of neighbouring elements would oscillate
+    against each other, because differences of displacements react most strongly to such
+    oscillations. The average keeps the second order in the element size.
     """
     for i in range(height.shape[0]):
         for j in range(height.shape[1]):
-            factor, steep = polyline(scale * math.hypot(slip[i, j, 0], slip[i, j, 1]), knots, factors)
+            factor, steep = polyline(
+                scale * math.hypot(slip[i, j, 0], slip[i, j, 1]), knots, factors
+            )
             bound[i, j] = height[i, j] * factor
             slope[i, j] = height[i, j] * steep * scale
 
 
 @fast
 def residual(traction, slip, bound, rho, out):
-    """Write F = tau - P_g(tau - rho s) into `out`; return its largest component (scaled as tau) and its norm."""
+    """Write F = tau - P_g(tau - rho s) into `out`; return its largest component (scaled as tau) and
+    its norm.
+    """
     largest, square = 0.0, 0.0
     for i in range(bound.shape[0]):
         for j in range(bound.shape[1]):
@@ -71,9 +82,10 @@ def residual(traction, slip, bound, rho, out):
 def jacobian(traction, slip, mean, bound, slope, rho, derivative, turn):
     """Write the derivative of P_g at z = tau - rho s into `derivative` (4, ny, nx).
 
-    `ALONG` and `ACROSS` hold the derivatives along z and across z: 1 and 1 where an element sticks, 0 and g/|z| where
-    it slides, 0 and 0 without load. `NORMAL_X` and `NORMAL_Y` hold the direction n of z.
-    Write n (dg/d|m|) m/|m| of the sliding elements into `turn` (4, ny, nx). Here m is the `row_means` of the slip.
+    `ALONG` and `ACROSS` hold the derivatives along z and across z: 1 and 1 where an element sticks,
+    0 and g/|z| where it slides, 0 and 0 without load. `NORMAL_X` and `NORMAL_Y` hold the direction
+    n of z. Write n (dg/d|m|) m/|m| of the sliding elements into `turn` (4, ny, nx). Here m is the
+    `row_means` of the slip.
     """
     for i in range(bound.shape[0]):
         for j in range(bound.shape[1]):
@@ -98,16 +110,26 @@ def jacobian(traction, slip, mean, bound, slope, rho, derivative, turn):
 
 @compiled
 def find_slits(traction, slip, bound, rho, held):
-    """Mark sliding elements in lateral gaps of one or two between sticking ones in `held`; return their number."""
+    """Mark sliding elements in lateral gaps of one or two between sticking ones in `held`; return
+    their number.
+    """
     ny, nx = bound.shape
     sticks = np.zeros(nx + 4, np.bool_)  # element j at j + 2
     count = 0
     for i in range(ny):
         for j in range(nx):
-            zx, zy = traction[i, j, 0] - rho * slip[i, j, 0], traction[i, j, 1] - rho * slip[i, j, 1]
+            zx, zy = (
+                traction[i, j, 0] - rho * slip[i, j, 0],
+                traction[i, j, 1] - rho * slip[i, j, 1],
+            )
             sticks[j + 2] = bound[i, j] > 0.0 and zx * zx + zy * zy <= bound[i, j] ** 2
         for j in range(nx):
-            left, far_left, right, far_right = sticks[j + 1], sticks[j], sticks[j + 3], sticks[j + 4]
+            left, far_left, right, far_right = (
+                sticks[j + 1],
+                sticks[j],
+                sticks[j + 3],
+                sticks[j + 4],
+            )
             between = (left and (right or far_right)) or (far_left and right)
             held[i, j] = between and bound[i, j] > 0.0 and not sticks[j + 2]
             count += held[i, j]

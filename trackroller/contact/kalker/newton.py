@@ -1,21 +1,24 @@
 """Solve for adhesion and slip on a patch by a semi-smooth Newton method with Krylov steps.
 
-For each element with traction bound g the law of dry friction is the fixed point tau = P_g(tau - rho s), where
-P_g shortens a vector to at most g and s = w + B tau is the slip (Alart & Curnier 1991). Newton's method is here the
-active-set method of sticking and sliding elements. GMRES with fast products B tau solves its linear systems. If
-friction depends on the slip, g is a function of s, and its derivative enters Newton's matrix.
+For each element with traction bound g the law of dry friction is the fixed point tau = P_g(tau -
+rho s), where P_g shortens a vector to at most g and s = w + B tau is the slip (Alart & Curnier
+1991). Newton's method is here the active-set method of sticking and sliding elements. GMRES with
+fast products B tau solves its linear systems. If friction depends on the slip, g is a function of
+s, and its derivative enters Newton's matrix.
 
-The preconditioner of GMRES solves each column of elements along the rolling direction on its own. Each element has two
-directions: `along` the traction and `across` it. A sliding element moves across only, a sticking one in both
-directions. Each direction of a column is a small banded system with the exact influence of the column on itself, up to
-a distance of `BAND` elements. The influence of elements further away, of other columns, and of one direction on the
-other, is left out. GMRES then needs about 10 products instead of 60 to 100, with a band as with whole columns. The
-preconditioner has single precision, which costs GMRES no product: the products themselves have double precision, so
-that the solution depends on the rounding of the preconditioner by 1e-10 at most.
+The preconditioner of GMRES solves each column of elements along the rolling direction on its own.
+Each element has two directions: `along` the traction and `across` it. A sliding element moves
+across only, a sticking one in both directions. Each direction of a column is a small banded system
+with the exact influence of the column on itself, up to a distance of `BAND` elements. The influence
+of elements further away, of other columns, and of one direction on the other, is left out. GMRES
+then needs about 10 products instead of 60 to 100, with a band as with whole columns. The
+preconditioner has single precision, which costs GMRES no product: the products themselves have
+double precision, so that the solution depends on the rounding of the preconditioner by 1e-10 at
+most.
 
-The whole iteration is compiled, transforms included. With short compiled calls the threads would wait for the
-interpreter most of the time. Fields are complex, x + iy, (ny, nx); compiled loops run over their real numbers,
-(ny, nx, 2).
+The whole iteration is compiled, transforms included. With short compiled calls the threads would
+wait for the interpreter most of the time. Fields are complex, x + iy, (ny, nx); compiled loops run
+over their real numbers, (ny, nx, 2).
 """
 
 from __future__ import annotations
@@ -47,17 +50,20 @@ from trackroller.numerics.compiled import assign, compiled, fast
 from trackroller.numerics.lanes import LANES, multiply, subtract_multiple
 
 COLUMN, DIRECTION, FIRST, ROWS = range(4)  # of a system
-# Elements on each side that a system holds. 12 need 1 % more products than whole columns, 8 need 2 % more.
+# Elements on each side that a system holds. 12 need 1 % more products than whole columns, 8 need 2
+# % more.
 BAND = 12
 WIDTH = 2 * BAND + 1
 
 
 class Systems(NamedTuple):
-    """Systems of one patch: `which` (2 nx, 4) are column, direction, first row and number of rows of each.
+    """Systems of one patch: `which` (2 nx, 4) are column, direction, first row and number of rows
+    of each.
 
-    `x`, `y` (groups, ny LANES) are the directions of their elements, `factors` (groups, ny, WIDTH, LANES) the factors
-    L U of the matrices by their columns, each from `BAND` rows above the diagonal to `BAND` rows below it; the systems
-    of a group stand side by side. `line` (6, 2 ny LANES) is work space.
+    `x`, `y` (groups, ny LANES) are the directions of their elements, `factors` (groups, ny, WIDTH,
+    LANES) the factors L U of the matrices by their columns, each from `BAND` rows above the
+    diagonal to `BAND` rows below it; the systems of a group stand side by side. `line` (6, 2 ny
+    LANES) is work space.
     """
 
     which: np.ndarray
@@ -82,7 +88,9 @@ def systems_for(ny, nx):
 
 @compiled
 def column_ranges(bound):
-    """Return the first row with a bound > 0 in each column, and the number of rows up to the last one."""
+    """Return the first row with a bound > 0 in each column, and the number of rows up to the last
+    one.
+    """
     ny, nx = bound.shape
     first, count = np.zeros(nx, np.int64), np.zeros(nx, np.int64)
     for j in range(nx):
@@ -96,9 +104,11 @@ def column_ranges(bound):
 
 @compiled
 def _list_systems(derivative, first, count, which):
-    """Write the systems of the loaded columns into `which` and return their number; columns of like length meet.
+    """Write the systems of the loaded columns into `which` and return their number; columns of like
+    length meet.
 
-    A system along the traction reaches from the first to the last sticking element; sliding ones have nothing to solve.
+    A system along the traction reaches from the first to the last sticking element; sliding ones
+    have nothing to solve.
     """
     nx, number = count.size, 0
     which[:, ROWS] = 0
@@ -119,10 +129,11 @@ def _list_systems(derivative, first, count, which):
 
 @fast
 def _factorise(columns, n):
-    """Factorise matrices (., WIDTH, LANES) into L U in place; `columns` holds the matrices by their columns.
+    """Factorise matrices (., WIDTH, LANES) into L U in place; `columns` holds the matrices by their
+    columns.
 
-    Rows are not exchanged: the differences lean towards the leading edge, which keeps the pivots away from 0. Zero
-    pivots are left out.
+    Rows are not exchanged: the differences lean towards the leading edge, which keeps the pivots
+    away from 0. Zero pivots are left out.
     """
     flat, one = columns.reshape(-1), np.float32(1.0)
     for k in range(n):
@@ -148,10 +159,23 @@ def _spread(slips, rho, lines):
 
 @fast
 def _fill(systems, group, derivative, n):
-    """Write the matrices 1 - w + w rho d B d of a group; w is the derivative in the direction d of each element."""
-    which, x, y = systems.which[group * LANES : (group + 1) * LANES], systems.x[group], systems.y[group]
+    """Write the matrices 1 - w + w rho d B d of a group; w is the derivative in the direction d of
+    each element.
+    """
+    which, x, y = (
+        systems.which[group * LANES : (group + 1) * LANES],
+        systems.x[group],
+        systems.y[group],
+    )
     line = systems.line
-    own_x, own_y, along_x, along_y, minus_y, other = line[0], line[1], line[2], line[3], line[4], line[5]
+    own_x, own_y, along_x, along_y, minus_y, other = (
+        line[0],
+        line[1],
+        line[2],
+        line[3],
+        line[4],
+        line[5],
+    )
     ny, size = derivative.shape[1], n * LANES
     weight = other[size:]
     x[:], y[:], weight[:] = 0.0, 0.0, 0.0
@@ -166,12 +190,18 @@ def _fill(systems, group, derivative, n):
         along_x[t], along_y[t], minus_y[t] = weight[t] * x[t], weight[t] * y[t], -y[t]
     for m in range(n):
         low, high = max(m - BAND, 0), min(m + BAND + 1, n)
-        column, to, start = systems.factors[group, m].reshape(-1), (BAND - m) * LANES, (ny - 1 - m) * LANES
+        column, to, start = (
+            systems.factors[group, m].reshape(-1),
+            (BAND - m) * LANES,
+            (ny - 1 - m) * LANES,
+        )
         for t in range(low * LANES, high * LANES):
             column[to + t] = along_x[t] * own_x[start + t]
             other[t] = along_y[t] * own_y[start + t]
         multiply(column, to + low * LANES, x, m * LANES, high - low)
-        subtract_multiple(column, to + low * LANES, other, low * LANES, minus_y, m * LANES, high - low)
+        subtract_multiple(
+            column, to + low * LANES, other, low * LANES, minus_y, m * LANES, high - low
+        )
         for t in range(m * LANES, (m + 1) * LANES):
             column[to + t] += np.float32(1.0) - weight[t]
 
@@ -180,7 +210,8 @@ def _fill(systems, group, derivative, n):
 def factorise(slips, derivative, rho, first, count, systems):
     """Factorise the systems of all columns in `systems` and return the number of their groups.
 
-    Rows beyond those of a system are rows of the identity. `derivative` (4, ny, nx) is that of `loops.jacobian`.
+    Rows beyond those of a system are rows of the identity. `derivative` (4, ny, nx) is that of
+    `loops.jacobian`.
     """
     _spread(slips, rho, systems.line)
     groups = -(-_list_systems(derivative, first, count, systems.which) // LANES)
@@ -193,11 +224,16 @@ def factorise(slips, derivative, rho, first, count, systems):
 
 @fast
 def apply_inverse(systems, groups, field, out):
-    """Apply the preconditioner to `field` and write `out`, both (ny, nx, 2); elements without system stay unchanged."""
+    """Apply the preconditioner to `field` and write `out`, both (ny, nx, 2); elements without
+    system stay unchanged.
+    """
     line, before = systems.line[2], systems.line[3]
     assign(out, field)
     for group in range(groups):
-        which, flat = systems.which[group * LANES : (group + 1) * LANES], systems.factors[group].reshape(-1)
+        which, flat = (
+            systems.which[group * LANES : (group + 1) * LANES],
+            systems.factors[group].reshape(-1),
+        )
         n, x, y = which[:, ROWS].max(), systems.x[group], systems.y[group]
         line[: n * LANES] = 0.0
         for lane in range(LANES):
@@ -208,11 +244,15 @@ def apply_inverse(systems, groups, field, out):
         assign(before[: n * LANES], line[: n * LANES])
         for m in range(n):
             below = (m * WIDTH + BAND + 1) * LANES
-            subtract_multiple(line, (m + 1) * LANES, flat, below, line, m * LANES, min(BAND, n - m - 1))
+            subtract_multiple(
+                line, (m + 1) * LANES, flat, below, line, m * LANES, min(BAND, n - m - 1)
+            )
         for m in range(n - 1, -1, -1):
             diagonal, rows = (m * WIDTH + BAND) * LANES, min(BAND, m)
             multiply(line, m * LANES, flat, diagonal, 1)
-            subtract_multiple(line, (m - rows) * LANES, flat, diagonal - rows * LANES, line, m * LANES, rows)
+            subtract_multiple(
+                line, (m - rows) * LANES, flat, diagonal - rows * LANES, line, m * LANES, rows
+            )
         for lane in range(LANES):
             j, first = which[lane, COLUMN], which[lane, FIRST]
             for i in range(which[lane, ROWS]):
@@ -230,7 +270,9 @@ class Operator(NamedTuple):
 
 
 class Columns(NamedTuple):
-    """Loaded columns: own influence `slips` (see `Influence.column`), first loaded row and number of loaded rows."""
+    """Loaded columns: own influence `slips` (see `Influence.column`), first loaded row and number
+    of loaded rows.
+    """
 
     slips: np.ndarray
     first: np.ndarray
@@ -240,7 +282,8 @@ class Columns(NamedTuple):
 class Derivative(NamedTuple):
     """Derivative of the friction law in each element; see `loops.jacobian`.
 
-    projection : P' (4, ny, nx); turn : (4, ny, nx), used only where friction `falls`; rho : scale of the slips.
+    projection : P' (4, ny, nx); turn : (4, ny, nx), used only where friction `falls`; rho : scale
+        of the slips.
     """
 
     projection: np.ndarray
@@ -252,8 +295,9 @@ class Derivative(NamedTuple):
 class Space(NamedTuple):
     """Work space of a Newton step.
 
-    systems : of the preconditioner; basis : Krylov basis (m + 1, 2 ny nx); moves : of each vector of the basis the
-    traction and the slip that it stands for, complex (m, 2, ny, nx); transforms : see `convolve`.
+    systems : of the preconditioner; basis : Krylov basis (m + 1, 2 ny nx); moves : of each vector
+        of the basis the traction and the slip that it stands for, complex (m, 2, ny, nx);
+        transforms : see `convolve`.
     """
 
     systems: Systems
@@ -263,7 +307,9 @@ class Space(NamedTuple):
 
 
 class Triangle(NamedTuple):
-    """Hessenberg matrix (m + 1, m) on its way to a triangle, Givens rotations (2, m) and right-hand side (m + 1,)."""
+    """Hessenberg matrix (m + 1, m) on its way to a triangle, Givens rotations (2, m) and right-hand
+    side (m + 1,).
+    """
 
     hessenberg: np.ndarray
     givens: np.ndarray
@@ -281,7 +327,9 @@ def dot(a, b):
 
 @compiled
 def _rotate(triangle, k):
-    """Apply Givens rotations to column k; the last entry of the right-hand side becomes the residual's norm."""
+    """Apply Givens rotations to column k; the last entry of the right-hand side becomes the
+    residual's norm.
+    """
     hessenberg, givens, rhs = triangle
     for i in range(k):
         c, s = givens[0, i], givens[1, i]
@@ -298,10 +346,11 @@ def _rotate(triangle, k):
 
 @fast
 def arnoldi(direction, product, mean, derivative, basis, k, triangle):
-    """Extend the Krylov space by Newton's matrix times `direction` and return the norm of the residual.
+    """Extend the Krylov space by Newton's matrix times `direction` and return the norm of the
+    residual.
 
-    The matrix times a direction d is d - P'(d - rho B d) - turn M B d, made orthogonal to basis[: k + 1];
-    `product` is B d and `mean` its `row_means` M B d.
+    The matrix times a direction d is d - P'(d - rho B d) - turn M B d, made orthogonal to basis[: k
+    + 1]; `product` is B d and `mean` its `row_means` M B d.
     """
     projection, turn, rho = derivative.projection, derivative.turn, derivative.rho
     hessenberg = triangle.hessenberg
@@ -349,10 +398,11 @@ def combination(vectors, triangle, done, out):
 
 @compiled
 def solve(value, derivative, columns, operator, tolerance, space, move):
-    """Solve Newton's matrix against the residual `value` (ny, nx) by preconditioned GMRES; return the products.
+    """Solve Newton's matrix against the residual `value` (ny, nx) by preconditioned GMRES; return
+    the products.
 
-    The solution and the slip that it causes go into `move` (2, ny, nx). `tolerance` limits the linear residual over
-    the norm of `value`.
+    The solution and the slip that it causes go into `move` (2, ny, nx). `tolerance` limits the
+    linear residual over the norm of `value`.
     """
     ny, nx = value.shape
     slips, first, count = columns
@@ -381,10 +431,10 @@ def solve(value, derivative, columns, operator, tolerance, space, move):
     return done
 
 
-# If many elements between sticking ones are wrongly taken as sliding, Newton's method corrects only one of them in each
-# step, from the leading edge on, with short steps. After SHORT steps of at most half length, a leap sets all of them to
-# stick at once. The residual may then rise by the factor RISE. If it does not fall below its former value within TRIAL
-# steps, the leap is undone.
+# If many elements between sticking ones are wrongly taken as sliding, Newton's method corrects only
+# one of them in each step, from the leading edge on, with short steps. After SHORT steps of at most
+# half length, a leap sets all of them to stick at once. The residual may then rise by the factor
+# RISE. If it does not fall below its former value within TRIAL steps, the leap is undone.
 SHORT, RISE, TRIAL = 2, 8.0, 3
 
 
@@ -414,7 +464,9 @@ class Problem(NamedTuple):
 
 
 class Law(NamedTuple):
-    """The friction law on one patch; attributes as in `Problem`, `falls` if friction depends on the slip."""
+    """The friction law on one patch; attributes as in `Problem`, `falls` if friction depends on the
+    slip.
+    """
 
     height: np.ndarray
     scale: float
@@ -425,7 +477,9 @@ class Law(NamedTuple):
 
 
 class Room(NamedTuple):
-    """Work space for patches of ny x nx elements: fields of the iteration and arrays of its linear systems."""
+    """Work space for patches of ny x nx elements: fields of the iteration and arrays of its linear
+    systems.
+    """
 
     bound: np.ndarray
     slope: np.ndarray
@@ -439,7 +493,9 @@ class Room(NamedTuple):
 
 @compiled
 def room_for(ny, nx, krylov):
-    """Return work space for patches of ny x nx elements, with a Krylov space of at most `krylov` vectors."""
+    """Return work space for patches of ny x nx elements, with a Krylov space of at most `krylov`
+    vectors.
+    """
     return Room(
         np.empty((ny, nx)),
         np.zeros((ny, nx)),
@@ -468,18 +524,39 @@ class Work(NamedTuple):
 
 @compiled
 def _state(law, work, traction, slip):
-    """Compute bounds and residual at a traction and slip; return the residual's largest component and its norm."""
+    """Compute bounds and residual at a traction and slip; return the residual's largest component
+    and its norm.
+    """
     if law.falls:
         row_means(reals(slip), work.columns.first, work.columns.loaded, work.room.mean)
-        law_of_slip(work.room.mean, law.height, law.scale, law.knots, law.factors, work.room.bound, work.room.slope)
+        law_of_slip(
+            work.room.mean,
+            law.height,
+            law.scale,
+            law.knots,
+            law.factors,
+            work.room.bound,
+            work.room.slope,
+        )
     return residual(reals(traction), reals(slip), work.room.bound, law.rho, reals(work.room.value))
 
 
 @compiled
 def _step(law, work, traction, slip, tolerance, leap, move):
-    """Write Newton's step and the slip that it causes into `move`; return its products. A leap holds the slits."""
+    """Write Newton's step and the slip that it causes into `move`; return its products. A leap
+    holds the slits.
+    """
     moved, d = reals(slip), work.derivative
-    jacobian(reals(traction), moved, work.room.mean, work.room.bound, work.room.slope, law.rho, d.projection, d.turn)
+    jacobian(
+        reals(traction),
+        moved,
+        work.room.mean,
+        work.room.bound,
+        work.room.slope,
+        law.rho,
+        d.projection,
+        d.turn,
+    )
     if leap:
         hold(work.room.held, moved, law.rho, reals(work.room.value), d.projection, d.turn)
     return solve(work.room.value, d, work.columns, work.operator, tolerance, work.room.space, move)
@@ -495,7 +572,8 @@ def _move(start, step, length, out):
 
 @compiled
 def _search(law, work, at, norm, moves, new):
-    """Halve the step until the residual's norm falls, at most four times; return residual, norm and step length.
+    """Halve the step until the residual's norm falls, at most four times; return residual, norm and
+    step length.
 
     `at`, `moves` and `new` hold a traction and a slip (2, ny, nx); `new` is written.
     """
@@ -511,18 +589,23 @@ def _search(law, work, at, norm, moves, new):
 
 @compiled
 def _iterate(law, work, at, tolerance, limit):
-    """Iterate on the tractions and slips `at` (2, ny, nx); return residual, Newton steps and products."""
+    """Iterate on the tractions and slips `at` (2, ny, nx); return residual, Newton steps and
+    products.
+    """
     new, moves, before = np.empty_like(at), np.empty_like(at), np.empty_like(at)
     largest, norm = _state(law, work, at[0], at[1])
     norm_before, left, short = norm, 0, 0  # state before a leap; steps left to improve on it
     products, iteration = 1, 0
     while largest > tolerance and iteration < limit:
         iteration += 1
-        # Far from the solution a rough linear solution is enough. Near it, a precise one gives quadratic convergence.
+        # Far from the solution a rough linear solution is enough. Near it, a precise one gives
+        # quadratic convergence.
         inner = max(0.3 * tolerance / largest, min(0.3, largest))
         leap = short >= SHORT and left == 0
         if leap:
-            leap = find_slits(reals(at[0]), reals(at[1]), work.room.bound, law.rho, work.room.held) > 0
+            leap = (
+                find_slits(reals(at[0]), reals(at[1]), work.room.bound, law.rho, work.room.held) > 0
+            )
         products += _step(law, work, at[0], at[1], inner, leap, moves)
         if leap:
             for k in range(2):
@@ -569,14 +652,23 @@ def newton(problem, room, traction, tolerance, limit):
     Returns
     -------
     tuple
-        Tractions and slips (2, ny, nx); largest component of the residual; number of Newton steps; number of products.
-        The traction bounds at these slips are in `room`.
+        Tractions and slips (2, ny, nx); largest component of the residual; number of Newton steps;
+        number of products. The traction bounds at these slips are in `room`.
     """
     functions, rho, falls = problem.influence, 1.0 / problem.influence.own, problem.knots.size > 1
     first, loaded = column_ranges(problem.height)
     room.mean[:] = 0.0
-    # constant friction needs the bounds once; a friction law overwrites them with those of its slips
-    law_of_slip(room.mean, problem.height, problem.scale, problem.knots, problem.factors, room.bound, room.slope)
+    # constant friction needs the bounds once; a friction law overwrites them with those of its
+    # slips
+    law_of_slip(
+        room.mean,
+        problem.height,
+        problem.scale,
+        problem.knots,
+        problem.factors,
+        room.bound,
+        room.slope,
+    )
     work = Work(
         room,
         Derivative(room.projection, room.turn, falls, rho),

@@ -1,9 +1,9 @@
 """Kalker's exact theory of steady rolling with friction on the elastic half-space.
 
-The slip per travel speed is s = w - du/dy. Here w is the rigid slip of the roller against the guide, and u is the
-displacement difference (Kalker 1990, sections 1.3 and 4.2). The material enters the patch at y = +b. Dry friction holds
-in each element: |tau| <= mu p, and tau = -mu p s/|s| where the element slides. Elements are rectangles of constant
-traction.
+The slip per travel speed is s = w - du/dy. Here w is the rigid slip of the roller against the
+guide, and u is the displacement difference (Kalker 1990, sections 1.3 and 4.2). The material enters
+the patch at y = +b. Dry friction holds in each element: |tau| <= mu p, and tau = -mu p s/|s| where
+the element slides. Elements are rectangles of constant traction.
 """
 
 from __future__ import annotations
@@ -34,7 +34,9 @@ def _level(
     settings: KalkerSettings,
     start: np.ndarray,
 ) -> batch.Found:
-    """Solve on the grid of the tractions `start` (n, 2, elements, elements), which the result overwrites."""
+    """Solve on the grid of the tractions `start` (n, 2, elements, elements), which the result
+    overwrites.
+    """
     elements = start.shape[-1]
     height, share = (v.reshape(-1, elements, elements) for v in cells(ellipse, elements))
     a, bound = ellipse.semi_axis_lateral, friction * ellipse.max_pressure
@@ -63,27 +65,41 @@ def _level(
     return solution
 
 
-def _first(ellipse: Ellipse | GridPatch, creep: Creepage, friction, elastic: Elastic, elements: int) -> np.ndarray:
-    """Return the tractions over mu p_max from which the first grid starts, (n, 2, elements, elements).
+def _first(
+    ellipse: Ellipse | GridPatch, creep: Creepage, friction, elastic: Elastic, elements: int
+) -> np.ndarray:
+    """Return the tractions over mu p_max from which the first grid starts, (n, 2, elements,
+    elements).
 
-    On ellipses they are those of Kalker's simplified theory (FASTSIM, 1982), from which Newton's method needs half the
-    steps that it needs from zero. Elements without a finite value, and other patches, start at 0.
+    On ellipses they are those of Kalker's simplified theory (FASTSIM, 1982), from which Newton's
+    method needs half the steps that it needs from zero. Elements without a finite value, and other
+    patches, start at 0.
     """
     if not ellipse.is_hertzian:
         return np.zeros((friction.size, 2, elements, elements))
     a, b = ellipse.semi_axis_lateral, ellipse.semi_axis_rolling
-    c = creepage_coefficients(np.clip(b / a, 1.0 / LARGEST_RATIO, LARGEST_RATIO), elastic.poisson_ratio)
+    c = creepage_coefficients(
+        np.clip(b / a, 1.0 / LARGEST_RATIO, LARGEST_RATIO), elastic.poisson_ratio
+    )
     height, _ = cells(ellipse, elements)
     places = (2.0 * np.arange(elements) + 1.0) / elements - 1.0
     with np.errstate(all="ignore"):
-        length = 2.0 * b / (elements * friction * ellipse.max_pressure)  # of an element, over the bound
+        # of an element, over the bound
+        length = 2.0 * b / (elements * friction * ellipse.max_pressure)
         across = length * 4.0 * elastic.shear_modulus * c.c23 / (np.pi * b * np.sqrt(b / a))
-        lateral = across[:, None] * (creep.lateral[:, None] - creep.spin[:, None] * b[:, None] * places)
-        rolling = (length * 3.0 * elastic.shear_modulus * c.c11 / (8.0 * b))[:, None] * creep.along(a[:, None] * places)
+        lateral = across[:, None] * (
+            creep.lateral[:, None] - creep.spin[:, None] * b[:, None] * places
+        )
+        rolling = (length * 3.0 * elastic.shear_modulus * c.c11 / (8.0 * b))[:, None] * creep.along(
+            a[:, None] * places
+        )
         # a film is softer in the same way: both displacements add up
         softer = 1.0 + elastic.film * 3.0 * elastic.shear_modulus * c.c11 / (8.0 * b)
         rolling, lateral = rolling / softer[:, None], lateral / softer[:, None]
-        out, traction = np.empty((friction.size, 2, elements, elements)), np.zeros((2, friction.size, elements))
+        out, traction = (
+            np.empty((friction.size, 2, elements, elements)),
+            np.zeros((2, friction.size, elements)),
+        )
         for k in range(elements - 1, -1, -1):  # material enters at the leading edge
             traction[0] -= lateral[:, k, None]
             traction[1] -= rolling
@@ -92,8 +108,12 @@ def _first(ellipse: Ellipse | GridPatch, creep: Creepage, friction, elastic: Ela
     return np.nan_to_num(out, copy=False, nan=0.0, posinf=0.0, neginf=0.0)
 
 
-def _coarse(ellipse, creep, friction, elastic, travel, settings: KalkerSettings, traction, started: bool):
-    """Solve on half the elements and, unless the iteration is `started`, fill its start `traction` from there."""
+def _coarse(
+    ellipse, creep, friction, elastic, travel, settings: KalkerSettings, traction, started: bool
+):
+    """Solve on half the elements and, unless the iteration is `started`, fill its start `traction`
+    from there.
+    """
     n, half = friction.size, settings.elements // 2
     if started:
         first = traction.reshape(n, 2, half, 2, half, 2).mean(axis=(3, 5))
@@ -105,20 +125,34 @@ def _coarse(ellipse, creep, friction, elastic, travel, settings: KalkerSettings,
     return solution
 
 
-def on_elements(ellipse: Ellipse | GridPatch, solution: batch.Found | PatchSolution, elements: int) -> np.ndarray:
-    """Return the tractions of a solution, interpolated to `elements` along each axis, (n, 2, elements, elements)."""
+def on_elements(
+    ellipse: Ellipse | GridPatch, solution: batch.Found | PatchSolution, elements: int
+) -> np.ndarray:
+    """Return the tractions of a solution, interpolated to `elements` along each axis, (n, 2,
+    elements, elements).
+    """
     height, _ = cells(ellipse, elements)
-    share = subgrid.shares(subgrid.fields_of(ellipse, solution), elements / solution.traction.shape[-1])
+    share = subgrid.shares(
+        subgrid.fields_of(ellipse, solution), elements / solution.traction.shape[-1]
+    )
     return share * (height if height.ndim == 2 else height[:, None])
 
 
-def shares(ellipse, solution: PatchSolution, parts: int = subgrid.PARTS) -> tuple[np.ndarray, np.ndarray]:
-    """Return the tractions over mu p at `parts` points a side of each element, and for elements of twice the size."""
+def shares(
+    ellipse, solution: PatchSolution, parts: int = subgrid.PARTS
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the tractions over mu p at `parts` points a side of each element, and for elements of
+    twice the size.
+    """
     return subgrid.both_shares(subgrid.fields_of(ellipse, solution), parts)
 
 
-def _integrals(ellipse, friction, solution: batch.Found, settings: KalkerSettings) -> tuple[np.ndarray, np.ndarray]:
-    """Return the resultants (n, 3) and the share of the adhesion area (n,) of one grid: see `subgrid.integrals`."""
+def _integrals(
+    ellipse, friction, solution: batch.Found, settings: KalkerSettings
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the resultants (n, 3) and the share of the adhesion area (n,) of one grid: see
+    `subgrid.integrals`.
+    """
     if not (settings.between and friction.size):
         return solution.report.forces, solution.report.stick_fraction
     finer = ellipse if ellipse.is_hertzian else ellipse.refined(subgrid.PARTS, subgrid.PARTS)
@@ -126,11 +160,16 @@ def _integrals(ellipse, friction, solution: batch.Found, settings: KalkerSetting
     bound = (friction * ellipse.max_pressure)[:, None]
     sides = ellipse.semi_axis_lateral, ellipse.semi_axis_rolling
     forces, adhesion = subgrid.integrals(subgrid.fields_of(ellipse, solution), between, *sides)
-    return bound * forces, np.where(solution.report.products > 0, adhesion, 0.0)  # without friction nothing sticks
+    # without friction nothing sticks
+    return bound * forces, np.where(solution.report.products > 0, adhesion, 0.0)
 
 
-def _solve_block(ellipse, creep, friction, elastic, travel, settings: KalkerSettings, start) -> PatchSolution:
-    """Solve patches at once, see `solve_patch`: on all elements, and on half as many for the extrapolation."""
+def _solve_block(
+    ellipse, creep, friction, elastic, travel, settings: KalkerSettings, start
+) -> PatchSolution:
+    """Solve patches at once, see `solve_patch`: on all elements, and on half as many for the
+    extrapolation.
+    """
     n, elements = friction.size, settings.elements
     if start is not None:
         traction = np.array(start, float)
@@ -140,7 +179,9 @@ def _solve_block(ellipse, creep, friction, elastic, travel, settings: KalkerSett
         traction = _first(ellipse, creep, friction, elastic, elements)
     coarse = None
     if settings.extrapolate:
-        coarse = _coarse(ellipse, creep, friction, elastic, travel, settings, traction, start is not None)
+        coarse = _coarse(
+            ellipse, creep, friction, elastic, travel, settings, traction, start is not None
+        )
     solution = _level(ellipse, creep, friction, elastic, travel, settings, traction)
     fine = solution.report
     value, stick = _integrals(ellipse, friction, solution, settings)
@@ -150,9 +191,13 @@ def _solve_block(ellipse, creep, friction, elastic, travel, settings: KalkerSett
     if coarse is not None:
         other, stick_before = _integrals(ellipse, friction, coarse, settings)
         change, report = value - other, coarse.report
-        weight, limit[:, :3] = extrapolation.extrapolated(ellipse, creep, friction, elastic, solution, value, change)
+        weight, limit[:, :3] = extrapolation.extrapolated(
+            ellipse, creep, friction, elastic, solution, value, change
+        )
         softness = elastic.film * elastic.shear_modulus / ellipse.semi_axis_rolling
-        force_error = extrapolation.force_error(ellipse, friction, stick, change, elements, softness)
+        force_error = extrapolation.force_error(
+            ellipse, friction, stick, change, elements, softness
+        )
         limit[:, 3] = extrapolation.adhesion(stick, stick_before, weight, elements) - stick
         pressed = pressed + weight * (pressed - report.pressure_work)
         work = work + weight * (work - report.work - report.pressure_work)
@@ -188,14 +233,25 @@ def _full(value, n: int) -> np.ndarray:
     return np.array(np.broadcast_to(np.asarray(value, float), n), order="C")
 
 
-def _prepared(ellipse: Ellipse | GridPatch, friction, elastic: Elastic) -> tuple[Any, np.ndarray, Elastic]:
+def _prepared(
+    ellipse: Ellipse | GridPatch, friction, elastic: Elastic
+) -> tuple[Any, np.ndarray, Elastic]:
     """Return patches, friction and constants as arrays (n,) of one memory layout."""
     n = np.size(ellipse.semi_axis_lateral)
     if ellipse.is_hertzian:
         ellipse = Ellipse(
-            *(_full(v, n) for v in (ellipse.semi_axis_lateral, ellipse.semi_axis_rolling, ellipse.max_pressure))
+            *(
+                _full(v, n)
+                for v in (
+                    ellipse.semi_axis_lateral,
+                    ellipse.semi_axis_rolling,
+                    ellipse.max_pressure,
+                )
+            )
         )
-    g, nu, k = (_full(v, n) for v in (elastic.shear_modulus, elastic.poisson_ratio, elastic.coupling))
+    g, nu, k = (
+        _full(v, n) for v in (elastic.shear_modulus, elastic.poisson_ratio, elastic.coupling)
+    )
     return ellipse, _full(friction, n), Elastic(g, nu, k, _full(elastic.film, n))
 
 
@@ -213,7 +269,8 @@ def solve_patch(
     Parameters
     ----------
     ellipse : Ellipse or GridPatch
-        Patches, arrays (n,) [mm], [MPa]. The number of elements of a `GridPatch` is a multiple of `settings.elements`.
+        Patches, arrays (n,) [mm], [MPa]. The number of elements of a `GridPatch` is a multiple of
+        `settings.elements`.
     creep : Creepage
         Rigid slip, arrays (n,) [1], [1/mm].
     friction : array_like, shape (n,) or ()
@@ -234,8 +291,9 @@ def solve_patch(
 
     Notes
     -----
-    Valid for half-spaces, steady rolling and dry friction. The validation pages state the error of the resultants. It
-    is largest in full adhesion and in slender patches (b/a below 0.1) that contain the spin pole.
+    Valid for half-spaces, steady rolling and dry friction. The validation pages state the error of
+    the resultants. It is largest in full adhesion and in slender patches (b/a below 0.1) that
+    contain the spin pole.
 
     References
     ----------
@@ -253,14 +311,22 @@ def solve_patch(
         first = None if start is None else start[rows]
         parts.append(
             _solve_block(
-                ellipse.take(rows), creep.take(rows), friction[rows], elastic.take(rows), travel[rows], settings, first
+                ellipse.take(rows),
+                creep.take(rows),
+                friction[rows],
+                elastic.take(rows),
+                travel[rows],
+                settings,
+                first,
             )
         )
     return parts[0] if len(parts) == 1 else joined(parts, slice(None))
 
 
 def _slip_of_law(solution: PatchSolution, height: np.ndarray) -> np.ndarray:
-    """Return the slips from which the friction law gave the tractions: under a falling law the means of neighbours."""
+    """Return the slips from which the friction law gave the tractions: under a falling law the
+    means of neighbours.
+    """
     if solution.factor.shape[1:] == (1, 1):
         return solution.slip
     out = np.empty_like(solution.slip)
@@ -275,7 +341,9 @@ def _slip_of_law(solution: PatchSolution, height: np.ndarray) -> np.ndarray:
 
 
 def to_tractions(ellipse: Any, friction, solution: PatchSolution) -> SurfaceTractions:
-    """Return the fields of a solution at the element centres, with Hertz's pressure, which is 0 outside the ellipse."""
+    """Return the fields of a solution at the element centres, with Hertz's pressure, which is 0
+    outside the ellipse.
+    """
     n, _, _, elements = solution.traction.shape
     ellipse, friction, _ = _prepared(ellipse, friction, Elastic(np.ones(n), np.ones(n), np.ones(n)))
     if not ellipse.is_hertzian:
@@ -285,7 +353,8 @@ def to_tractions(ellipse: Any, friction, solution: PatchSolution) -> SurfaceTrac
     inside = root > 0
     height, _ = unit_cells(elements, elements)
     moved = _slip_of_law(solution, height)
-    # The solution holds element means. The share of the traction bound at the centre is taken as that of the mean.
+    # The solution holds element means. The share of the traction bound at the centre is taken as
+    # that of the mean.
     share = np.where(inside, root / np.where(height > 0, height, 1.0), 0.0)
     scale = (friction * ellipse.max_pressure)[:, None, None]
     shear = solution.traction * share * scale[:, None]
@@ -295,14 +364,28 @@ def to_tractions(ellipse: Any, friction, solution: PatchSolution) -> SurfaceTrac
 
 
 def _grid_tractions(patch: GridPatch, friction, solution: PatchSolution) -> SurfaceTractions:
-    """Return the fields on a patch whose pressure was solved; the grid of the pressure may be finer."""
+    """Return the fields on a patch whose pressure was solved; the grid of the pressure may be
+    finer.
+    """
     elements = solution.traction.shape[-1]
     heights = patch.heights(elements)
-    share, moved = solution.traction / np.maximum(heights, 1e-300)[:, None], _slip_of_law(solution, heights)
-    share, slip, stick = (np.repeat(v, patch.shape[1] // elements, axis=-1) for v in (share, moved, solution.stick))
+    share, moved = (
+        solution.traction / np.maximum(heights, 1e-300)[:, None],
+        _slip_of_law(solution, heights),
+    )
+    share, slip, stick = (
+        np.repeat(v, patch.shape[1] // elements, axis=-1) for v in (share, moved, solution.stick)
+    )
     bound, loaded = friction[:, None, None] * patch.pressure, patch.pressure > 0
     shear = np.where(loaded[:, None], share * bound[:, None], 0.0)
     slip = np.where(loaded[:, None], slip, 0.0)
     return SurfaceTractions(
-        patch.x, patch.y, patch.pressure, shear[:, 0], shear[:, 1], slip[:, 0], slip[:, 1], loaded & stick
+        patch.x,
+        patch.y,
+        patch.pressure,
+        shear[:, 0],
+        shear[:, 1],
+        slip[:, 0],
+        slip[:, 1],
+        loaded & stick,
     )

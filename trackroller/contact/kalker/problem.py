@@ -19,20 +19,23 @@ class KalkerSettings:
     elements : int
         Number along each axis of the patch; even if `extrapolate` is True.
     tolerance : float
-        Largest residual of the friction law in any element over mu p_max [1], at which the iteration stops.
+        Largest residual of the friction law in any element over mu p_max [1], at which the
+        iteration stops.
     steps, krylov : int
         Limits of Newton steps and of the Krylov space of one step.
     extrapolate : bool
         Extrapolate the resultants from two grids, with `elements` and with half of them.
     between : bool
-        Integrate resultants and adhesion area between the elements too. False, where only the tractions are wanted,
-        adds up the elements.
+        Integrate resultants and adhesion area between the elements too. False, where only the
+        tractions are wanted, adds up the elements.
     profile_slip : bool
-        Use the rigid slip of the circular guide profile, eq. (20), instead of its tangent xi + phi x.
+        Use the rigid slip of the circular guide profile, eq. (20), instead of its tangent xi + phi
+        x.
     law : FrictionLaw, optional
         Friction as a function of the slip speed; default: constant friction.
     travel_speed : float
-        Travel speed of the roller [mm/s], which turns slips into speeds; used where a call gives no travel speed.
+        Travel speed of the roller [mm/s], which turns slips into speeds; used where a call gives no
+        travel speed.
     """
 
     elements: int = 40
@@ -66,23 +69,28 @@ class PatchSolution:
     factor : ndarray, shape (n, ny, nx), or (n, 1, 1) under constant friction
         Friction over its value at rest [1].
     stick_fraction : ndarray, shape (n,)
-        Share of the adhesion area in the patch [1]; its boundary may cross elements. Extrapolated as the resultants.
+        Share of the adhesion area in the patch [1]; its boundary may cross elements. Extrapolated
+        as the resultants.
     friction_energy_per_distance : ndarray, shape (n,)
-        Dissipation per travelled distance [N], from the work of the rigid slip and of the pressures.
+        Dissipation per travelled distance [N], from the work of the rigid slip and of the
+        pressures.
     pressure_work : ndarray, shape (n,)
-        Part of the dissipation that the pressures supply [N]. Tractions on unlike materials move the surfaces along
-        the normal, and the pressures do work on this motion.
+        Part of the dissipation that the pressures supply [N]. Tractions on unlike materials move
+        the surfaces along the normal, and the pressures do work on this motion.
     energy_residual : ndarray, shape (n,)
-        Dissipation summed over the elements, over `friction_energy_per_distance`, less 1 [1]; extrapolated.
+        Dissipation summed over the elements, over `friction_energy_per_distance`, less 1 [1];
+        extrapolated.
     limit : ndarray, shape (n, 6)
-        Change of the resultants, of the adhesion area, of the pressures' work and of the energy residual by the
-        extrapolation [N, N, N mm, 1, N, 1]; 0 without it.
+        Change of the resultants, of the adhesion area, of the pressures' work and of the energy
+        residual by the extrapolation [N, N, N mm, 1, N, 1]; 0 without it.
     error_estimate : ndarray, shape (n, 3)
         |F_h - F_2h| of the resultants [N, N, N mm]; NaN without extrapolation.
     force_error : ndarray, shape (n,)
-        Estimated error of the friction forces [N], see `extrapolation.force_error`; NaN without extrapolation.
+        Estimated error of the friction forces [N], see `extrapolation.force_error`; NaN without
+        extrapolation.
     own_slip : ndarray, shape (n,)
-        Slip per travel speed that the traction mu p_max of an element causes at itself [1], see `subgrid`.
+        Slip per travel speed that the traction mu p_max of an element causes at itself [1], see
+        `subgrid`.
     residual : ndarray, shape (n,)
         Largest residual of the friction law over mu p_max [1].
     steps, products : ndarray of int, shape (n,)
@@ -111,23 +119,41 @@ class PatchSolution:
 
     @property
     def works(self) -> Works:
-        """Return the dissipation summed over the elements and the part that the pressures supply, (n,) [N]."""
-        return Works(self.friction_energy_per_distance * (1.0 + self.energy_residual), self.pressure_work)
+        """Return the dissipation summed over the elements and the part that the pressures supply,
+        (n,) [N].
+        """
+        return Works(
+            self.friction_energy_per_distance * (1.0 + self.energy_residual), self.pressure_work
+        )
 
     def extrapolated_as(self, before: PatchSolution) -> PatchSolution:
-        """Return the solution with energy residual and adhesion area extrapolated as in the similar one `before`."""
+        """Return the solution with energy residual and adhesion area extrapolated as in the similar
+        one `before`.
+        """
         stick = np.clip(self.stick_fraction + before.limit[:, 3], 0.0, 1.0)
-        return replace(self, stick_fraction=stick, limit=before.limit, energy_residual=before.energy_residual)
+        return replace(
+            self, stick_fraction=stick, limit=before.limit, energy_residual=before.energy_residual
+        )
 
     def take(self, index) -> PatchSolution:
         """Return the solution of the patches `index` (integer or boolean array)."""
-        return PatchSolution(self.resultants.take(index), *(getattr(self, f.name)[index] for f in fields(self)[1:]))
+        return PatchSolution(
+            self.resultants.take(index), *(getattr(self, f.name)[index] for f in fields(self)[1:])
+        )
 
 
 def joined(parts: list[PatchSolution], order) -> PatchSolution:
-    """Join solutions one after the other and return their patches in the order `order` (indices)."""
-    rest = [np.concatenate([getattr(p, f.name) for p in parts])[order] for f in fields(PatchSolution)[1:]]
-    forces = [np.concatenate([getattr(p.resultants, f.name) for p in parts])[order] for f in fields(Resultants)]
+    """Join solutions one after the other and return their patches in the order `order`
+    (indices).
+    """
+    rest = [
+        np.concatenate([getattr(p, f.name) for p in parts])[order]
+        for f in fields(PatchSolution)[1:]
+    ]
+    forces = [
+        np.concatenate([getattr(p.resultants, f.name) for p in parts])[order]
+        for f in fields(Resultants)
+    ]
     return PatchSolution(Resultants(*forces), *rest)
 
 
@@ -161,14 +187,24 @@ class Store:
         return self._solution.take(self._rows[slot])
 
     def state(self) -> tuple[np.ndarray, np.ndarray]:
-        """Return the residual in each slot and whether it has converged; 0 and True where nothing was solved."""
+        """Return the residual in each slot and whether it has converged; 0 and True where nothing
+        was solved.
+        """
         residual, converged = np.zeros(self.known.size), np.ones(self.known.size, bool)
         if self._solution is not None:
             rows = self._rows[self.known]
-            residual[self.known], converged[self.known] = self._solution.residual[rows], self._solution.converged[rows]
+            residual[self.known], converged[self.known] = (
+                self._solution.residual[rows],
+                self._solution.converged[rows],
+            )
         return residual, converged
 
 
 def _arrays(solution: PatchSolution) -> list[np.ndarray]:
     r = solution.resultants
-    return [r.lateral_force, r.driving_force, r.spin_moment, *(getattr(solution, f.name) for f in fields(solution)[1:])]
+    return [
+        r.lateral_force,
+        r.driving_force,
+        r.spin_moment,
+        *(getattr(solution, f.name) for f in fields(solution)[1:]),
+    ]

@@ -1,10 +1,10 @@
 """Tractions between the centres of elements.
 
-Neither the traction nor its direction is smooth where slip turns into stick or about the spin pole. The
-vector z = tau/(mu p) - k s with k > 0 is smooth. The law of dry friction gives the traction from it: tau = mu p P(z),
-where P shortens a vector to at most length 1. Cubic splines therefore interpolate z, and the law is applied at each
-point. With k from the slip that an element's own traction causes, a stick area smaller than an element has about its
-true size.
+Neither the traction nor its direction is smooth where slip turns into stick or about the spin pole.
+The vector z = tau/(mu p) - k s with k > 0 is smooth. The law of dry friction gives the traction
+from it: tau = mu p P(z), where P shortens a vector to at most length 1. Cubic splines therefore
+interpolate z, and the law is applied at each point. With k from the slip that an element's own
+traction causes, a stick area smaller than an element has about its true size.
 """
 
 from __future__ import annotations
@@ -24,13 +24,19 @@ POINTS = 2**15  # between elements that are held at once: these stay in the fast
 RIM = 0.2  # smallest divisor of slips over the largest traction bound
 
 
-def smooth(traction: np.ndarray, slip: np.ndarray, bound: np.ndarray, height: np.ndarray, own) -> np.ndarray:
-    """Return z of elements with tractions, slips, traction bounds, pressures over the largest, and own slips."""
+def smooth(
+    traction: np.ndarray, slip: np.ndarray, bound: np.ndarray, height: np.ndarray, own
+) -> np.ndarray:
+    """Return z of elements with tractions, slips, traction bounds, pressures over the largest, and
+    own slips.
+    """
     return traction / np.where(bound > 0.0, bound, 1.0) - slip / (own * np.maximum(height, RIM))
 
 
 def _filled(z: np.ndarray, height: np.ndarray) -> np.ndarray:
-    """Return fields z (n, 2, m, m) with the values of the nearest loaded element outside the patches."""
+    """Return fields z (n, 2, m, m) with the values of the nearest loaded element outside the
+    patches.
+    """
     if height.ndim == 2:
         return filled(z, height)
     return np.array([filled(z[i : i + 1], own)[0] for i, own in enumerate(height)]).reshape(z.shape)
@@ -75,17 +81,25 @@ class Fields(NamedTuple):
 
     @property
     def used(self) -> np.ndarray:
-        """Return the tractions over their bounds in the mean, 0 (small creepages) to 1 (full slip), (n,)."""
+        """Return the tractions over their bounds in the mean, 0 (small creepages) to 1 (full slip),
+        (n,).
+        """
         total = (self.heights * self.factor[:, None]).sum(axis=(1, 2, 3))
-        return np.minimum(np.hypot(self.traction[:, 0], self.traction[:, 1]).sum(axis=(1, 2)) / total, 1.0)
+        return np.minimum(
+            np.hypot(self.traction[:, 0], self.traction[:, 1]).sum(axis=(1, 2)) / total, 1.0
+        )
 
     def before_law(self) -> np.ndarray:
-        """Return z = tau/(mu p) - k s of the elements (n, 2, m, m), outside the patches that of the nearest inside."""
+        """Return z = tau/(mu p) - k s of the elements (n, 2, m, m), outside the patches that of the
+        nearest inside.
+        """
         bound, own = self.heights * self.factor[:, None], self.own_slip[:, None, None, None]
         return _filled(smooth(self.traction, self.slip, bound, self.heights, own), self.height)
 
     def pieces(self, parts: float) -> Iterator[tuple[slice, Fields]]:
-        """Return pieces of the patches that have about POINTS points with `parts` times the elements."""
+        """Return pieces of the patches that have about POINTS points with `parts` times the
+        elements.
+        """
         n, _, _, m = self.traction.shape
         size = max(int(POINTS / (parts * m) ** 2), 1)
         for i in range(0, max(n, 1), size):
@@ -97,8 +111,12 @@ class Fields(NamedTuple):
         """Return the factor of the friction on `parts` times the elements, (n, 1, ., .)."""
         if self.factor.shape[1:] == (1, 1):
             return self.factor[:, None]
-        low, high = (reduce(self.factor, axis=(1, 2))[:, None, None, None] for reduce in (np.min, np.max))
-        return np.clip(interpolated(_filled(self.factor[:, None], self.height), parts, parts), low, high)
+        low, high = (
+            reduce(self.factor, axis=(1, 2))[:, None, None, None] for reduce in (np.min, np.max)
+        )
+        return np.clip(
+            interpolated(_filled(self.factor[:, None], self.height), parts, parts), low, high
+        )
 
 
 def fields_of(patch: Any, solution: Any) -> Fields:
@@ -108,17 +126,24 @@ def fields_of(patch: Any, solution: Any) -> Fields:
 
 
 def shares(fields: Fields, parts: float = PARTS) -> np.ndarray:
-    """Return the traction over mu p at rest on `parts` times the elements, (n, 2, parts m, parts m)."""
-    return np.concatenate([_between(some.before_law(), some, parts) for _, some in fields.pieces(parts)])
+    """Return the traction over mu p at rest on `parts` times the elements, (n, 2, parts m, parts
+    m).
+    """
+    return np.concatenate(
+        [_between(some.before_law(), some, parts) for _, some in fields.pieces(parts)]
+    )
 
 
 def both_shares(fields: Fields, parts: int = PARTS) -> tuple[np.ndarray, np.ndarray]:
-    """Return `shares`, and those of elements of twice the size whose z is the mean of four, (n, 2, ., .) each.
+    """Return `shares`, and those of elements of twice the size whose z is the mean of four, (n, 2,
+    ., .) each.
 
     Both have single precision, as the search for peaks takes them.
     """
     n, _, _, m = fields.traction.shape
-    fine, coarse = (np.empty((n, 2, parts * size, parts * size), np.float32) for size in (m, m // 2))
+    fine, coarse = (
+        np.empty((n, 2, parts * size, parts * size), np.float32) for size in (m, m // 2)
+    )
     for rows, some in fields.pieces(parts):
         z, factor = some.before_law(), some.factor
         if factor.shape[1:] != (1, 1):
@@ -135,7 +160,9 @@ def _of_four(field: np.ndarray) -> np.ndarray:
 
 
 def _between(z: np.ndarray, fields: Fields, parts: float) -> np.ndarray:
-    """Interpolate z (n, 2, m, m) to `parts` times the elements and apply the law of friction of the fields."""
+    """Interpolate z (n, 2, m, m) to `parts` times the elements and apply the law of friction of the
+    fields.
+    """
     return _by_law(interpolated(z, parts, parts), fields, parts)
 
 
@@ -168,9 +195,11 @@ def _sum(traction, a, b, out):
 
 @compiled
 def _adhesion(z, share):
-    """Return the part of a patch where z (2, ny, nx) is shorter than 1; `share` (ny, nx) is the part of each element.
+    """Return the part of a patch where z (2, ny, nx) is shorter than 1; `share` (ny, nx) is the
+    part of each element.
 
-    |z|^2 is taken as linear within an element, with the slopes to its neighbours, so that the boundary may cross it.
+    |z|^2 is taken as linear within an element, with the slopes to its neighbours, so that the
+    boundary may cross it.
     """
     _, ny, nx = z.shape
     excess = z[0] ** 2 + z[1] ** 2 - 1.0
@@ -189,10 +218,11 @@ def integrals(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return F_T, F_A and M_R over mu p_max, (n, 3), and the share of the adhesion area, (n,).
 
-    `finer` are the mean pressure over the largest, and the share inside the patch, of PARTS times the elements, each
-    (., .) or (n, ., .); a, b (n,) are the half sides of the patches [mm]. In full adhesion the traction is singular at
-    the trailing edge, which an element's mean contains and a smooth field does not. The weight of the elements' own
-    tractions therefore grows as less of the bound is used.
+    `finer` are the mean pressure over the largest, and the share inside the patch, of PARTS times
+    the elements, each (., .) or (n, ., .); a, b (n,) are the half sides of the patches [mm]. In
+    full adhesion the traction is singular at the trailing edge, which an element's mean contains
+    and a smooth field does not. The weight of the elements' own tractions therefore grows as less
+    of the bound is used.
     """
     height, share = (np.broadcast_to(v, (len(a), *v.shape[-2:])) for v in finer)
     adhesion, smooth, plain = np.empty(len(a)), np.zeros((len(a), 3)), np.zeros((len(a), 3))

@@ -2,6 +2,12 @@
 
 from __future__ import annotations
 
-from trackroller.contact.normal.pressure import TOLERANCE, NormalSolution, displacement, lift, solve_normal
+from trackroller.contact.normal.pressure import (
+    TOLERANCE,
+    NormalSolution,
+    displacement,
+    lift,
+    solve_normal,
+)
 
 __all__ = ["TOLERANCE", "NormalSolution", "displacement", "lift", "solve_normal"]

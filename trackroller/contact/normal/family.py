@@ -1,9 +1,11 @@
-"""Patches of one gap under any load, from solutions of the normal problem on a fixed lattice of loads.
+"""Patches of one gap under any load, from solutions of the normal problem on a fixed lattice of
+loads.
 
-The equilibrium asks for a patch at tens of slightly different loads. The loads of a geometric lattice, F/E* =
-LATTICE^k, are solved from scratch. The lattice does not depend on the wanted loads, so that no result depends on
-earlier ones. Between lattice loads the box around the patch and the pressures over their load are interpolated. This
-interpolation is exact for Hertz's gap and starts the solution for other gaps.
+The equilibrium asks for a patch at tens of slightly different loads. The loads of a geometric
+lattice, F/E* = LATTICE^k, are solved from scratch. The lattice does not depend on the wanted loads,
+so that no result depends on earlier ones. Between lattice loads the box around the patch and the
+pressures over their load are interpolated. This interpolation is exact for Hertz's gap and starts
+the solution for other gaps.
 """
 
 from __future__ import annotations
@@ -15,23 +17,32 @@ import numpy as np
 
 from trackroller.contact.cross_sections import Gap
 from trackroller.contact.hertz import exact_shape
-from trackroller.contact.normal.measure import Box, largest_pressure, patch_area, patch_box, roughness
+from trackroller.contact.normal.measure import (
+    Box,
+    largest_pressure,
+    patch_area,
+    patch_box,
+    roughness,
+)
 from trackroller.contact.normal.pressure import NormalSolution, displacement, solve_normal
 
 LATTICE = 1.6  # ratio of neighbouring lattice loads
-# Largest `roughness` of a pressure whose ridges the elements resolve: with the given elements across, and with finer
-# ones, on which the rim of the patch is rougher. PROBE elements along the rolling direction are enough to measure it.
+# Largest `roughness` of a pressure whose ridges the elements resolve: with the given elements
+# across, and with finer ones, on which the rim of the patch is rougher. PROBE elements along the
+# rolling direction are enough to measure it.
 RESOLVED, RESOLVED_FINER = 0.15, 0.35
 FACTORS = 1, 2, 4, 8  # on the elements across
 PROBE = 8
-STEADY = 0.01  # relative change of the largest pressure, by twice the elements, up to which a ridge is resolved
+# relative change of the largest pressure, by twice the elements, up to which a ridge is resolved
+STEADY = 0.01
 KEPT = 8  # number of solutions between lattice loads that are kept in memory
 OVERLAP = 1e-3  # least overlap outside the box that counts as contact, over the approach
 COARSE = 16  # elements along each axis of the first solutions, which find the box around the patch
 BOX_TOLERANCE = 3e-3  # relative change of the sides of the box at which it counts as found
 TOUCHES = 1e-9  # largest distance at which a patch ends at an edge, over the width of the box
 MARGIN = 0.08  # margin around the box over its sides; shear can move the patch
-LOWEST = 1e-6  # height up to which places count as the lowest ones, over the heights of the whole gap
+# height up to which places count as the lowest ones, over the heights of the whole gap
+LOWEST = 1e-6
 SAMPLES = 401  # points across for the first box and for the search of contact outside the box
 
 
@@ -94,22 +105,36 @@ class Family:
         self._asked: dict[float, Node] = {}
         x = np.linspace(-1.0, 1.0, SAMPLES)[1:-1]
         low, high = self.limits
-        # even samples over the whole width, and closer ones around the nominal point for small patches
-        x = np.unique(np.concatenate([0.5 * (low + high) + 0.5 * (high - low) * x, np.where(x < 0, -low, high) * x**5]))
+        # even samples over the whole width, and closer ones around the nominal point for small
+        # patches
+        x = np.unique(
+            np.concatenate(
+                [0.5 * (low + high) + 0.5 * (high - low) * x, np.where(x < 0, -low, high) * x**5]
+            )
+        )
         self._samples, self._lateral = x, gap.lateral(x)
 
     def between(self, load: float) -> Node:
-        """Interpolate box and shares under load/E* [mm^2] between two lattice loads; exact for Hertz's gap."""
+        """Interpolate box and shares under load/E* [mm^2] between two lattice loads; exact for
+        Hertz's gap.
+        """
         k = math.floor(math.log(load) / math.log(LATTICE))
         low, high = self.node(k), self.node(k + 1)
         # in Hertz's theory the sizes grow with the cube root of the load
-        t = (np.cbrt(load) - np.cbrt(LATTICE**k)) / (np.cbrt(LATTICE ** (k + 1)) - np.cbrt(LATTICE**k))
-        sides = [(1 - t) * getattr(low.box, name) + t * getattr(high.box, name) for name in ("low", "high", "half")]
+        t = (np.cbrt(load) - np.cbrt(LATTICE**k)) / (
+            np.cbrt(LATTICE ** (k + 1)) - np.cbrt(LATTICE**k)
+        )
+        sides = [
+            (1 - t) * getattr(low.box, name) + t * getattr(high.box, name)
+            for name in ("low", "high", "half")
+        ]
         box, shares = self._clipped(*sides), (1 - t) * low.shares + t * high.shares
         return Node(box, shares, shares.max() / box.cell(shares.size) * load)
 
     def at(self, load: float) -> Node:
-        """Return the solution under load/E* [mm^2], on a box that changes continuously with the load."""
+        """Return the solution under load/E* [mm^2], on a box that changes continuously with the
+        load.
+        """
         if load not in self._asked:
             start = self.between(load)
             solution = self._pressure(start.box, load, self.shape, start.shares)
@@ -117,8 +142,11 @@ class Family:
             self._asked[load] = self._node_of(solution, start.box, load)
         return self._asked[load]
 
-    def pressed(self, load: float, lift: np.ndarray | None = None, start: np.ndarray | None = None) -> Node:
-        """Return the solution with the surfaces moved apart by `lift` (N, M) [mm], on a box with a margin on all sides.
+    def pressed(
+        self, load: float, lift: np.ndarray | None = None, start: np.ndarray | None = None
+    ) -> Node:
+        """Return the solution with the surfaces moved apart by `lift` (N, M) [mm], on a box with a
+        margin on all sides.
 
         `load` is F/E* [mm^2], `start` are pressures (N, M) to start from.
         """
@@ -134,17 +162,20 @@ class Family:
         return self._nodes[k]
 
     def finer_across(self, load: float) -> int:
-        """Return the factor on the elements across that ridges of the pressure under load/E* [mm^2] need.
+        """Return the factor on the elements across that ridges of the pressure under load/E* [mm^2]
+        need.
 
-        Where the patch ends at an edge of the material the pressure is infinite on any elements; the factor is 1.
+        Where the patch ends at an edge of the material the pressure is infinite on any elements;
+        the factor is 1.
         """
         box, coarser, highest, smooth = self._around(load), 1, 0.0, False
         for factor in FACTORS:
             pressure = self._pressure(box, load, (PROBE, factor * self.shape[1])).pressure
             if self._reaches(pressure, box):
                 return 1
-            # an edge of the elements may hide a ridge by chance, so that twice the elements have the last word; where
-            # the box of another load cuts the patch, they resolve the cut alone
+            # an edge of the elements may hide a ridge by chance, so that twice the elements have
+            # the last word; where the box of another load cuts the patch, they resolve the cut
+            # alone
             cut = pressure.max() == max(pressure[:, 0].max(), pressure[:, -1].max())
             if smooth and (cut or abs(pressure.max() - highest) < STEADY * highest):
                 return coarser
@@ -161,12 +192,16 @@ class Family:
         return bool((at_low and pressure[:, 0].any()) or (at_high and pressure[:, -1].any()))
 
     def _start(self, load: float) -> Box:
-        """Return a first box by Hertz's theory, with the mean curvature of the gap over the width of the patch."""
+        """Return a first box by Hertz's theory, with the mean curvature of the gap over the width
+        of the patch.
+        """
         near = self._near and self._clipped(self._near.low, self._near.high, self._near.half)
-        if near and near.low < near.high:  # a groove that became steep may end before the place of the similar patch
+        # a groove that became steep may end before the place of the similar patch
+        if near and near.low < near.high:
             return near
         lowest = float(self._lateral.min())
-        # the middle of the lowest places: on a flat, rounding alone decides which place is the lowest
+        # the middle of the lowest places: on a flat, rounding alone decides which place is the
+        # lowest
         above = (self._lateral - lowest) / (LOWEST * float(np.ptp(self._lateral)))
         weight = np.maximum(1.0 - above, 0.0) * np.gradient(self._samples)
         centre = float(weight @ self._samples / weight.sum())
@@ -176,7 +211,9 @@ class Family:
         for _ in range(12):
             ends = np.interp([centre - wide, centre + wide], self._samples, self._lateral)
             k_x = max((ends.sum() - 2 * lowest) / wide**2, 1e-4 * k_y)
-            hertz = exact_shape(np.array([k_x]), np.array([k_y]), np.array([1.0])).at(np.array([load]))
+            hertz = exact_shape(np.array([k_x]), np.array([k_y]), np.array([1.0])).at(
+                np.array([load])
+            )
             wide = float(np.sqrt(wide * hertz.semi_axis_lateral[0]))
             half = float(hertz.semi_axis_rolling[0])
         return self._clipped(centre - 1.25 * wide, centre + 1.25 * wide, 1.4 * half)
@@ -192,7 +229,9 @@ class Family:
         start: np.ndarray | None = None,
         lift: np.ndarray | None = None,
     ) -> NormalSolution:
-        """Return the pressure under a load over a box; `lift` is a further gap, `start` a pressure to start from."""
+        """Return the pressure under a load over a box; `lift` is a further gap, `start` a pressure
+        to start from.
+        """
         x, y, hx, hy = box.grid(*shape)
         gap = self.gap.field(x, y)
         return solve_normal(gap if lift is None else gap + lift, hx, hy, load, start=start)
@@ -201,17 +240,23 @@ class Family:
         """Solve the patch under a load in a box that is fitted to it in a few turns."""
         box, solution = self._around(load), None
         for attempt in range(6):
-            solution = self._pressure(box, load, self.shape, None if solution is None else solution.pressure)
+            solution = self._pressure(
+                box, load, self.shape, None if solution is None else solution.pressure
+            )
             filled = patch_box(solution.pressure, box)
             wider = self._beyond(solution, box)
             if wider != box:
                 box = wider
                 continue
-            change = max(abs(filled.low - box.low), abs(filled.high - box.high)) / (box.high - box.low)
+            change = max(abs(filled.low - box.low), abs(filled.high - box.high)) / (
+                box.high - box.low
+            )
             if max(change, abs(filled.half / box.half - 1)) < BOX_TOLERANCE or attempt > 2:
                 break
             if attempt > 0:  # the box may oscillate by a part of an element
-                filled = Box(*(0.5 * (getattr(box, k) + getattr(filled, k)) for k in ("low", "high", "half")))
+                filled = Box(
+                    *(0.5 * (getattr(box, k) + getattr(filled, k)) for k in ("low", "high", "half"))
+                )
             box = self._clipped(filled.low, filled.high, filled.half)
         return self._node_of(solution, box, load)
 
@@ -219,15 +264,28 @@ class Family:
         _, _, hx, hy = box.grid(*self.shape)
         p = solution.pressure
         top, area = largest_pressure(p), patch_area(p, hx, hy)
-        return Node(box, p * (hx * hy / load), top, solution.approach, area, self._reaches(p, box), solution.residual)
+        return Node(
+            box,
+            p * (hx * hy / load),
+            top,
+            solution.approach,
+            area,
+            self._reaches(p, box),
+            solution.residual,
+        )
 
     def _beyond(self, solution, box: Box) -> Box:
-        """Return the box, wider by 1.2 elements on each side where the bodies would overlap just outside it."""
+        """Return the box, wider by 1.2 elements on each side where the bodies would overlap just
+        outside it.
+        """
         rows, columns = self.shape
         x, y, hx, hy = box.grid(rows, columns)
         around = np.zeros((rows + 2, columns + 2))
         around[1:-1, 1:-1] = solution.pressure
-        x, y = np.concatenate([[x[0] - hx], x, [x[-1] + hx]]), np.concatenate([[y[0] - hy], y, [y[-1] + hy]])
+        x, y = (
+            np.concatenate([[x[0] - hx], x, [x[-1] + hx]]),
+            np.concatenate([[y[0] - hy], y, [y[-1] + hy]]),
+        )
         total = displacement(around, hx, hy) + self.gap.field(x, y)
         overlap = total < solution.approach - OVERLAP * (solution.approach - self._lateral.min())
         low = box.low - 1.2 * hx * overlap[:, 0].any()
@@ -255,11 +313,15 @@ class Family:
                     return tight
                 box = self._clipped(low - 0.04 * width, high + 0.04 * width, 1.06 * half)
                 continue
-            box = self._clipped(min(low, grows[0]), max(high, grows[1]), 1.4 * half if taller else 1.06 * half)
+            box = self._clipped(
+                min(low, grows[0]), max(high, grows[1]), 1.4 * half if taller else 1.06 * half
+            )
         return box
 
     def _outside(self, solution, box: Box) -> tuple[float, float]:
-        """Return the outermost places left and right of the box where the bodies would overlap; (inf, -inf) if none."""
+        """Return the outermost places left and right of the box where the bodies would overlap;
+        (inf, -inf) if none.
+        """
         x, y, hx, hy = box.grid(COARSE, COARSE)
         beyond = (self._samples < box.low - 0.5 * hx) | (self._samples > box.high + 0.5 * hx)
         places = self._samples[beyond]
@@ -270,4 +332,6 @@ class Family:
         deep = solution.approach - OVERLAP * (solution.approach - self._lateral.min())
         overlap = places[self._lateral[beyond] + sink < deep]
         left, right = overlap[overlap < box.low], overlap[overlap > box.high]
-        return (float(left.min()) if left.size else np.inf), (float(right.max()) if right.size else -np.inf)
+        return (float(left.min()) if left.size else np.inf), (
+            float(right.max()) if right.size else -np.inf
+        )

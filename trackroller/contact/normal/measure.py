@@ -1,4 +1,6 @@
-"""Extent, area and largest pressure of a patch from its element pressures, to a part of an element."""
+"""Extent, area and largest pressure of a patch from its element pressures, to a part of an
+element.
+"""
 
 from __future__ import annotations
 
@@ -10,14 +12,18 @@ import numpy as np
 
 @dataclass(frozen=True)
 class Box:
-    """Rectangle around a patch: `low` to `high` across, -`half` to `half` along the rolling direction [mm]."""
+    """Rectangle around a patch: `low` to `high` across, -`half` to `half` along the rolling
+    direction [mm].
+    """
 
     low: float
     high: float
     half: float
 
     def grid(self, rows: int, columns: int) -> tuple[np.ndarray, np.ndarray, float, float]:
-        """Return element centres x (columns,), y (rows,) and the sides hx, hy of an element [mm]."""
+        """Return element centres x (columns,), y (rows,) and the sides hx, hy of an element
+        [mm].
+        """
         x, y = (np.arange(columns) + 0.5) / columns, (np.arange(rows) + 0.5) / rows
         wide = self.high - self.low
         return self.low + wide * x, self.half * (2 * y - 1), wide / columns, 2 * self.half / rows
@@ -28,15 +34,18 @@ class Box:
 
 
 def _vanishing(sums: np.ndarray) -> float:
-    """Return where sums over lines of elements vanish at the far end, in elements from the centre of the first line.
+    """Return where sums over lines of elements vanish at the far end, in elements from the centre
+    of the first line.
 
-    For a Hertzian patch these sums are a parabola. The outermost line is covered in part only and is left out.
+    For a Hertzian patch these sums are a parabola. The outermost line is covered in part only and
+    is left out.
     """
     last = int(np.flatnonzero(sums > 0)[-1])
     if last < 4:
         return last + 0.5
     a, b, c = sums[last - 3], sums[last - 2], sums[last - 1]
-    curve, slope = 0.5 * (a - 2 * b + c), 0.5 * (3 * c - 4 * b + a)  # of the parabola, at its last point
+    # of the parabola, at its last point
+    curve, slope = 0.5 * (a - 2 * b + c), 0.5 * (3 * c - 4 * b + a)
     root = slope * slope - 4 * curve * c
     if slope >= 0 or root < 0:
         return last + 0.5
@@ -62,7 +71,8 @@ def patch_box(pressure: np.ndarray, box: Box) -> Box:
 
 
 def patch_area(pressure: np.ndarray, hx: float, hy: float) -> float:
-    """Return the area of a patch [mm^2]; along each column p^2 follows a parabola to zero as in Hertz's theory.
+    """Return the area of a patch [mm^2]; along each column p^2 follows a parabola to zero as in
+    Hertz's theory.
 
     Parameters
     ----------
@@ -92,16 +102,20 @@ def largest_pressure(pressure: np.ndarray) -> float:
     gain = 0.0
     for line, k in ((pressure[:, j] ** 2, i), (pressure[i, :] ** 2, j)):
         if 0 < k < line.size - 1 and line[k - 1] > 0 and line[k + 1] > 0:
-            slope, curve = 0.5 * (line[k + 1] - line[k - 1]), line[k + 1] - 2 * line[k] + line[k - 1]
+            slope, curve = (
+                0.5 * (line[k + 1] - line[k - 1]),
+                line[k + 1] - 2 * line[k] + line[k - 1],
+            )
             gain += -0.5 * slope * slope / curve if curve < 0 else 0.0
     return math.sqrt(top + gain)
 
 
 def roughness(pressure: np.ndarray) -> float:
-    """Return the largest second difference of p^2 in the lateral direction, over the largest p^2 [1].
+    """Return the largest second difference of p^2 in the lateral direction, over the largest p^2
+    [1].
 
-    It is small where the elements resolve the pressure. In Hertz's theory p^2 is a parabola, and the result is 8 over
-    the square of the number of elements.
+    It is small where the elements resolve the pressure. In Hertz's theory p^2 is a parabola, and
+    the result is 8 over the square of the number of elements.
 
     Parameters
     ----------

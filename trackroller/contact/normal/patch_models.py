@@ -1,7 +1,7 @@
 """Contact models on solved patches: sliding and Kalker's exact theory for any cross-sections.
 
-The equilibrium passes Hertz's ellipses to these models, which use only their normal forces. The models solve the
-normal problem for each normal force and work on the `GridPatch` that results.
+The equilibrium passes Hertz's ellipses to these models, which use only their normal forces. The
+models solve the normal problem for each normal force and work on the `GridPatch` that results.
 """
 
 from __future__ import annotations
@@ -24,8 +24,8 @@ from trackroller.contact.rollers import Rollers
 from trackroller.contact.slip import Slip
 from trackroller.parameters.contact_models import DECLARED
 
-# Error of the friction forces over mu F_N per `roughness` of the pressure. With the error of the elements it covers the
-# measured error of 79 of 80 contacts with flats beside small blends.
+# Error of the friction forces over mu F_N per `roughness` of the pressure. With the error of the
+# elements it covers the measured error of 79 of 80 contacts with flats beside small blends.
 RIDGE_ERROR = 0.01
 ROUNDS = 3  # solutions of the normal and of the tangential problem in turn, on unlike materials
 
@@ -61,10 +61,16 @@ class GridModel(ContactModel):
         return self.patches.elements
 
     def patch(self, patch: Patch, slip: Slip, rows: np.ndarray, fine: bool = True) -> GridPatch:
-        """Return the solved patches under the normal forces of `patch`; solved ones are returned as they are."""
-        return self.patches.at(patch.normal_force, slip.sine, rows, fine) if patch.is_hertzian else patch  # type: ignore[return-value]
+        """Return the solved patches under the normal forces of `patch`; solved ones are returned as
+        they are.
+        """
+        if patch.is_hertzian:
+            return self.patches.at(patch.normal_force, slip.sine, rows, fine)
+        return patch  # type: ignore[return-value]
 
-    def settled(self, patch: Patch, slip: Slip, friction: np.ndarray, rows: np.ndarray) -> GridPatch:
+    def settled(
+        self, patch: Patch, slip: Slip, friction: np.ndarray, rows: np.ndarray
+    ) -> GridPatch:
         """Return the solved patches; shear changes their pressures in `GridKalkerModel` only."""
         return self.patch(patch, slip, rows)
 
@@ -80,7 +86,9 @@ class GridModel(ContactModel):
         return _known(self._solved(grid, slip, friction, rows).resultants, grid)
 
     def power(self, patch, slip, friction, rows) -> Works:
-        """Return the dissipation per distance travelled and the part that the pressures supply, (m,)."""
+        """Return the dissipation per distance travelled and the part that the pressures supply,
+        (m,).
+        """
         return self._solved(self.patch(patch, slip, rows), slip, friction, rows).works
 
     def _drawn(self, slip: Slip, rows: np.ndarray) -> Slip:
@@ -88,7 +96,10 @@ class GridModel(ContactModel):
         if not self.given.profile_slip:
             return slip
         contour = np.full(len(rows), None)
-        contour[:] = [self.patches.contour(row, sine) for row, sine in zip(rows.tolist(), slip.sine, strict=True)]
+        contour[:] = [
+            self.patches.contour(row, sine)
+            for row, sine in zip(rows.tolist(), slip.sine, strict=True)
+        ]
         return replace(slip, contour=contour)
 
     def _remember(self, patch: GridPatch, slip: Slip, rows: np.ndarray) -> None:
@@ -97,7 +108,9 @@ class GridModel(ContactModel):
         self._roughness[rows, side] = [roughness(pressure) for pressure in patch.pressure]
 
     def state(self, n: int) -> tuple[np.ndarray, np.ndarray]:
-        """Return the residual of the patches of n rollers at the last fine call, and whether it is met, both (n,)."""
+        """Return the residual of the patches of n rollers at the last fine call, and whether it is
+        met, both (n,).
+        """
         return self._residual.max(axis=1), np.all(self._residual <= TOLERANCE, axis=1)
 
 
@@ -106,16 +119,22 @@ class GridSlidingModel(GridModel):
 
     declaration = DECLARED["sliding"]
     elastic = False
-    residual = 1e-9  # the normal problem gives the same patch for the same load, so that smaller residuals are reached
+    # the normal problem gives the same patch for the same load, so that smaller residuals are
+    # reached
+    residual = 1e-9
 
     def _solved(self, patch, slip, friction, rows) -> normal_sliding.SlidingPatches:
         g = self.given
-        return normal_sliding.solve_sliding(patch, slip, friction, g.spin_model, g.law, g.travel_speed[rows])
+        return normal_sliding.solve_sliding(
+            patch, slip, friction, g.spin_model, g.law, g.travel_speed[rows]
+        )
 
     def surface(self, patch, slip, friction, rows) -> SurfaceTractions:
         """Return the tractions on the grid of elements."""
         grid, g = self.patch(patch, slip, rows), self.given
-        return normal_sliding.tractions(grid, slip, friction, g.spin_model, g.law, g.travel_speed[rows])
+        return normal_sliding.tractions(
+            grid, slip, friction, g.spin_model, g.law, g.travel_speed[rows]
+        )
 
 
 class GridKalkerModel(GridModel):
@@ -123,11 +142,14 @@ class GridKalkerModel(GridModel):
 
     declaration = DECLARED["kalker"]
     refines = False
-    peak_error = 0.01  # of the elements that the tractions are solved on; measured on the same contacts
+    # of the elements that the tractions are solved on; measured on the same contacts
+    peak_error = 0.01
 
     def __init__(self, given: Rollers, patches: NormalSolver) -> None:
         super().__init__(given, patches)
-        settings = kalker.KalkerSettings(patches.elements, 1e-8, law=given.law, profile_slip=given.profile_slip)
+        settings = kalker.KalkerSettings(
+            patches.elements, 1e-8, law=given.law, profile_slip=given.profile_slip
+        )
         self._law = KalkerLaw(given.elastic, settings, given.travel_speed)
         self._per_stress = given.elastic.coupling / given.elastic.shear_modulus
 
@@ -143,11 +165,14 @@ class GridKalkerModel(GridModel):
     def _solved(self, patch, slip, friction, rows):
         return self._law.kept(patch, self._drawn(slip, rows), friction, rows)
 
-    def settled(self, patch: Patch, slip: Slip, friction: np.ndarray, rows: np.ndarray) -> GridPatch:
-        """Return the patches with the pressures that shear has changed on unlike materials (Panagiotopoulos 1975).
+    def settled(
+        self, patch: Patch, slip: Slip, friction: np.ndarray, rows: np.ndarray
+    ) -> GridPatch:
+        """Return the patches with the pressures that shear has changed on unlike materials
+        (Panagiotopoulos 1975).
 
-        The normal and the tangential problem are solved in turn, ROUNDS times; after that both change by less than
-        1e-4.
+        The normal and the tangential problem are solved in turn, ROUNDS times; after that both
+        change by less than 1e-4.
         """
         load, unlike = patch.normal_force, np.abs(self._per_stress[rows]) > 0.0
         pressed = unlike & np.isfinite(load) & np.isfinite(slip.shift) & (friction > 0.0)
@@ -157,7 +182,8 @@ class GridKalkerModel(GridModel):
         place[own] = np.arange(own.size)
         pressing = Pressing(place, self._per_stress[rows[own]])
         grid = self.patches.at(load, slip.sine, rows, True, pressing)
-        for _ in range(ROUNDS):  # of the patches `own` only, so that the results of other rollers do not depend on them
+        # of the patches `own` only, so that the results of other rollers do not depend on them
+        for _ in range(ROUNDS):
             t = self.surface(grid.take(own), slip.take(own), friction[own], rows[own])
             pressing = replace(pressing, shear=t)
             grid = self.patches.at(load, slip.sine, rows, True, pressing)
@@ -173,7 +199,9 @@ class GridKalkerModel(GridModel):
         return self._solved(self.patch(patch, slip, rows), slip, friction, rows).stick_fraction
 
     def force_error(self, n):
-        """Return the estimated error of the friction forces over mu F_N, (n, 2): of the elements and of ridges."""
+        """Return the estimated error of the friction forces over mu F_N, (n, 2): of the elements
+        and of ridges.
+        """
         return self._law.error(n) + RIDGE_ERROR * self._roughness
 
     def state(self, n):

@@ -1,8 +1,8 @@
 """Full sliding with an empirical spin pole under pressures solved on a grid.
 
-This is the model of `contact.sliding`, eqs (21)-(30). The rules of the spin pole take half the sides of the box around
-the patch as semi-axes. The pressure is constant in each element. The integrals use Gauss points across the rolling
-direction and closed forms along it.
+This is the model of `contact.sliding`, eqs (21)-(30). The rules of the spin pole take half the
+sides of the box around the patch as semi-axes. The pressure is constant in each element. The
+integrals use Gauss points across the rolling direction and closed forms along it.
 """
 
 from __future__ import annotations
@@ -18,7 +18,8 @@ from trackroller.contact.sliding import slip_field, slip_lines
 from trackroller.contact.slip import Slip
 
 POINTS = 4  # Gauss points across each element
-PIECES = 3  # parts of each element along the rolling direction in which a falling friction law is constant
+# parts of each element along the rolling direction in which a falling friction law is constant
+PIECES = 3
 _TINY = 1e-13  # keeps logarithms finite on the column through the pole
 
 
@@ -72,8 +73,8 @@ def solve_sliding(
 
     Notes
     -----
-    On Hertz's ellipse with 40 elements the result agrees with `contact.sliding` within 1e-3 of mu F_N
-    (tests/contact/test_normal_models.py).
+    On Hertz's ellipse with 40 elements the result agrees with `contact.sliding` within 1e-3 of mu
+    F_N (tests/contact/test_normal_models.py).
     """
     n, rows, columns = patch.pressure.shape
     law, per_omega = law or constant(), travel_speed / slip.rolling_radius
@@ -85,16 +86,23 @@ def solve_sliding(
     for i in range(n):
         line = x[i], along[i], offset[i], slip.sine[i], patch.semi_axis_rolling[i]
         means = _column_means(*line, rows, law, per_omega[i])
-        across = (means.reshape(4, columns, POINTS, rows) * (0.5 * weights)[:, None]).sum(axis=2).transpose(0, 2, 1)
+        across = (
+            (means.reshape(4, columns, POINTS, rows) * (0.5 * weights)[:, None])
+            .sum(axis=2)
+            .transpose(0, 2, 1)
+        )
         bound = friction[i] * patch.pressure[i]
         shear[i] = across[:2] * bound
         total[i] = (across * bound).sum(axis=(1, 2)) * hx[i] * hy[i]
     works = Works.of_friction(total[:, 3] / slip.rolling_radius)
-    return SlidingPatches(Resultants(total[:, 0], total[:, 1], total[:, 2]), works, shear[:, 0], shear[:, 1])
+    return SlidingPatches(
+        Resultants(total[:, 0], total[:, 1], total[:, 2]), works, shear[:, 0], shear[:, 1]
+    )
 
 
 def _column_means(x, along, offset, sine, half, m, law, per_omega) -> np.ndarray:
-    """Return means over the m elements of each column of -v_x/|v|, -v_y/|v|, their moment and |v|/omega.
+    """Return means over the m elements of each column of -v_x/|v|, -v_y/|v|, their moment and
+    |v|/omega.
 
     The result has the shape (4, columns, m); `half` is half the length of the box [mm].
     """
@@ -108,7 +116,9 @@ def _column_means(x, along, offset, sine, half, m, law, per_omega) -> np.ndarray
     lever = np.diff(0.5 * t * rho - mixed, axis=1) + offset[:, None] * tilt
     speed = abs(sine) * np.diff(0.5 * t * rho + mixed, axis=1)
     sign, sign_along = np.sign(sine), np.where(along > 0, 1.0, -1.0)[:, None]
-    parts = np.stack([-sign * tilt, -sign_along * turn, sign * lever - x[:, None] * sign_along * turn, speed])
+    parts = np.stack(
+        [-sign * tilt, -sign_along * turn, sign * lever - x[:, None] * sign_along * turn, speed]
+    )
     step = 2.0 * half / m
     if pieces > 1:
         parts = parts * law(speed / (step / pieces) * per_omega)
@@ -119,7 +129,9 @@ def _column_means(x, along, offset, sine, half, m, law, per_omega) -> np.ndarray
 def tractions(
     patch: GridPatch, slip: Slip, friction, spin_model="skewed", law=None, travel_speed=1.0
 ) -> SurfaceTractions:
-    """Return pressure and mean shear of each element, and the slip at its centre; parameters as in `solve_sliding`."""
+    """Return pressure and mean shear of each element, and the slip at its centre; parameters as in
+    `solve_sliding`.
+    """
     solution = solve_sliding(patch, slip, friction, spin_model, law, travel_speed)
     moved = slip_field(patch, slip, patch.x[:, None, :], patch.y[:, :, None], spin_model)
     shear = solution.shear_lateral, solution.shear_rolling

@@ -18,7 +18,9 @@ from trackroller.errors import ShapeError
 
 GapOf = Callable[[int, int], tuple[tuple, Callable[[], Gap]]]
 Boxes = Sequence[Box]
-SCALARS = tuple(field.name for field in fields(GridPatch) if field.name not in ("normal_force", "pressure"))
+SCALARS = tuple(
+    field.name for field in fields(GridPatch) if field.name not in ("normal_force", "pressure")
+)
 
 
 @dataclass(frozen=True)
@@ -46,7 +48,8 @@ class Pressing:
             return family.at(load)
         if self.shear is None:
             return family.pressed(load)
-        t, flip = self.shear, slice(None, None, 1 if side == 1 else -1)  # x counts outward in a family
+        # x counts outward in a family
+        t, flip = self.shear, slice(None, None, 1 if side == 1 else -1)
         sides = t.x[k, 1] - t.x[k, 0], t.y[k, 1] - t.y[k, 0]
         apart = lift(t.shear_lateral[k], t.shear_rolling[k], *sides, self.per_stress[k])
         return family.pressed(load, apart[:, flip], t.pressure[k][:, flip])
@@ -58,8 +61,8 @@ class NormalSolver:
     Parameters
     ----------
     gaps : callable
-        Function of roller `row` and contact `side` (1 or 2). It returns a key, which equal gaps share, and a function
-        that makes the gap.
+        Function of roller `row` and contact `side` (1 or 2). It returns a key, which equal gaps
+        share, and a function that makes the gap.
     modulus : numpy.ndarray, shape (n,)
         Contact modulus E* of the rollers [MPa].
     elements : int
@@ -72,11 +75,17 @@ class NormalSolver:
     Raises
     ------
     ShapeError
-        If no roller has both gaps. If some rollers have both gaps, the patches of the other rollers are NaN.
+        If no roller has both gaps. If some rollers have both gaps, the patches of the other rollers
+        are NaN.
     """
 
     def __init__(
-        self, gaps: GapOf, modulus: np.ndarray, elements: int, across: int = 1, near: Boxes | None = None
+        self,
+        gaps: GapOf,
+        modulus: np.ndarray,
+        elements: int,
+        across: int = 1,
+        near: Boxes | None = None,
     ) -> None:
         self.modulus, self.elements = modulus, elements
         families: dict[tuple, Family | None] = {}
@@ -87,15 +96,24 @@ class NormalSolver:
                 key, make = gaps(row, side)
                 if key not in families:
                     try:
-                        families[key] = Family(make(), elements, across, None if near is None else near[side - 1])
+                        families[key] = Family(
+                            make(), elements, across, None if near is None else near[side - 1]
+                        )
                     except ShapeError as error:
                         families[key], problem = None, error
                 self._places[row, side] = families[key]
-        if problem is not None and not any(self._places[i, 1] and self._places[i, 2] for i in range(len(modulus))):
+        if problem is not None and not any(
+            self._places[i, 1] and self._places[i, 2] for i in range(len(modulus))
+        ):
             raise problem
 
     def at(
-        self, load: np.ndarray, sine: np.ndarray, rows: np.ndarray, fine: bool = True, pressing: Pressing | None = None
+        self,
+        load: np.ndarray,
+        sine: np.ndarray,
+        rows: np.ndarray,
+        fine: bool = True,
+        pressing: Pressing | None = None,
     ) -> GridPatch:
         """Return the patches of m contacts under given loads.
 
@@ -129,14 +147,27 @@ class NormalSolver:
             if not fine:
                 node = family.between(scaled)
             else:
-                node = family.at(scaled) if pressing is None else pressing.node(family, scaled, i, side)
+                node = (
+                    family.at(scaled)
+                    if pressing is None
+                    else pressing.node(family, scaled, i, side)
+                )
             box, shares = node.box, rim_means(node.shares) if fine else node.shares
             outward = 1.0 if side == 1 else -1.0  # x counts outward in a family, along x_R here
             wide, middle = 0.5 * (box.high - box.low), 0.5 * (box.high + box.low)
-            values = (wide, box.half, node.largest * modulus, outward * middle, node.approach, node.area)
+            values = (
+                wide,
+                box.half,
+                node.largest * modulus,
+                outward * middle,
+                node.approach,
+                node.area,
+            )
             for name, value in zip(SCALARS, (*values, node.reaches, node.residual), strict=True):
                 scalars[name][i] = value
-            pressures[i] = (shares if side == 1 else shares[:, ::-1]) * (load[i] / box.cell(shares.size))
+            pressures[i] = (shares if side == 1 else shares[:, ::-1]) * (
+                load[i] / box.cell(shares.size)
+            )
         shape = next((p.shape for p in pressures.values()), (self.elements, self.elements))
         pressure = np.full((n, *shape), np.nan)
         for i, mean in pressures.items():
@@ -146,6 +177,8 @@ class NormalSolver:
         return GridPatch(pressure=pressure, **scalars)
 
     def contour(self, row: int, sine: float) -> Callable[[np.ndarray], np.ndarray] | None:
-        """Return `slip.contour_over_tangent` of the guide at contact 1 (sine > 0) or 2; None without a gap."""
+        """Return `slip.contour_over_tangent` of the guide at contact 1 (sine > 0) or 2; None
+        without a gap.
+        """
         family = self._places[row, 1 if sine > 0 else 2]
         return None if family is None else contour_over_tangent(family.gap.guide, family.gap.alpha)

@@ -1,12 +1,13 @@
 """The normal problem of two elastic half-spaces on a grid: pressure and patch for any gap.
 
-The pressure is constant in each element, and the gap is evaluated at the element centres: u = A p, with the
-displacement of a uniformly loaded rectangle (Love 1929; Johnson 1985, eq. 3.25) and products by FFT. In the patch p > 0
-and u + g = delta; outside p = 0 and u + g >= delta. The conjugate-gradient method keeps the load as a side condition
-(Polonsky & Keer 1999, Wear 231, 206-219).
+The pressure is constant in each element, and the gap is evaluated at the element centres: u = A p,
+with the displacement of a uniformly loaded rectangle (Love 1929; Johnson 1985, eq. 3.25) and
+products by FFT. In the patch p > 0 and u + g = delta; outside p = 0 and u + g >= delta. The
+conjugate-gradient method keeps the load as a side condition (Polonsky & Keer 1999, Wear 231,
+206-219).
 
-Shear tractions displace the surfaces along the normal on unlike materials; `lift` gives this displacement, which is
-added to the gap.
+Shear tractions displace the surfaces along the normal on unlike materials; `lift` gives this
+displacement, which is added to the gap.
 """
 
 from __future__ import annotations
@@ -39,8 +40,8 @@ class NormalSolution:
     iterations : int
         Number of iterations.
     residual : float
-        Largest remaining gap of an element of the patch, or largest overlap of an element outside it, over the approach
-        [1].
+        Largest remaining gap of an element of the patch, or largest overlap of an element outside
+        it, over the approach [1].
     """
 
     pressure: np.ndarray
@@ -61,7 +62,9 @@ def _multiplier(hx: float, hy: float, ny: int, nx: int) -> tuple[np.ndarray, tup
 
 
 class _Surface:
-    """Products with the influence functions of one grid; lengths over the element width let grids share spectra."""
+    """Products with the influence functions of one grid; lengths over the element width let grids
+    share spectra.
+    """
 
     def __init__(self, hx: float, hy: float, ny: int, nx: int) -> None:
         self.shape = ny, nx
@@ -70,23 +73,29 @@ class _Surface:
         self.spectrum, self.lengths = _multiplier(1.0, hy / hx, ny, nx)
 
     def displacement(self, pressure: np.ndarray) -> np.ndarray:
-        """Return the displacement u (ny, nx) [mm] under pressures over the contact modulus (ny, nx) [1]."""
+        """Return the displacement u (ny, nx) [mm] under pressures over the contact modulus (ny, nx)
+        [1].
+        """
         field = fft.irfft2(fft.rfft2(pressure, self.lengths) * self.spectrum, self.lengths)
         return self.unit * field[: self.shape[0], : self.shape[1]]
 
 
 def displacement(pressure: np.ndarray, hx: float, hy: float) -> np.ndarray:
-    """Return the normal displacement (ny, nx) [mm] under pressures over the contact modulus (ny, nx) [1].
+    """Return the normal displacement (ny, nx) [mm] under pressures over the contact modulus (ny,
+    nx) [1].
 
     hx, hy are the element sides [mm].
     """
     return _Surface(hx, hy, *pressure.shape).displacement(pressure)
 
 
-def lift(shear_lateral: np.ndarray, shear_rolling: np.ndarray, hx: float, hy: float, per_stress: float) -> np.ndarray:
+def lift(
+    shear_lateral: np.ndarray, shear_rolling: np.ndarray, hx: float, hy: float, per_stress: float
+) -> np.ndarray:
     """Return the distance by which shear on the roller moves unlike surfaces apart, (ny, nx) [mm].
 
-    w = K/(pi G) int (x - x').tau/|x - x'|^2, the counterpart of the creep by pressures (Kalker 1990, section 1.5).
+    w = K/(pi G) int (x - x').tau/|x - x'|^2, the counterpart of the creep by pressures (Kalker
+    1990, section 1.5).
 
     Parameters
     ----------
@@ -101,7 +110,9 @@ def lift(shear_lateral: np.ndarray, shear_rolling: np.ndarray, hx: float, hy: fl
     along_x, along_y = pressure_displacements(hx, hy, ny, nx, 0, 0)
     lengths = fft.next_fast_len(3 * ny - 2, real=True), fft.next_fast_len(3 * nx - 2, real=True)
     pairs = (shear_lateral, along_x), (shear_rolling, along_y)
-    whole = fft.irfft2(sum(fft.rfft2(load, lengths) * fft.rfft2(move, lengths) for load, move in pairs), lengths)
+    whole = fft.irfft2(
+        sum(fft.rfft2(load, lengths) * fft.rfft2(move, lengths) for load, move in pairs), lengths
+    )
     return -per_stress * whole[ny - 1 : 2 * ny - 1, nx - 1 : 2 * nx - 1]
 
 
@@ -134,17 +145,19 @@ def solve_normal(
 
     Notes
     -----
-    The sum of the pressures equals the load to rounding. The error against Hertz falls with the element size to the
-    power 1.5 to 2.
+    The sum of the pressures equals the load to rounding. The error against Hertz falls with the
+    element size to the power 1.5 to 2.
 
     References
     ----------
-    Polonsky, I. A. & Keer, L. M. (1999). A numerical method for solving rough contact problems. Wear 231, 206-219.
+    Polonsky, I. A. & Keer, L. M. (1999). A numerical method for solving rough contact problems.
+    Wear 231, 206-219.
     """
     ny, nx = gap.shape
     surface, area = _Surface(hx, hy, ny, nx), hx * hy
     if start is None:
-        # on a flat many elements have the median of the gap: a margin takes all of them, whatever their last digits are
+        # on a flat many elements have the median of the gap: a margin takes all of them, whatever
+        # their last digits are
         start = np.sqrt(np.maximum(np.quantile(gap, 0.5) + MARGIN * np.ptp(gap) - gap, 0.0))
     p = np.maximum(start, 0.0)
     if not p.any():
@@ -171,7 +184,10 @@ def solve_normal(
         size_old = size
         answer = surface.displacement(direction)
         answer -= answer[inside].mean()
-        length = float(np.sum(deviation[inside] * direction[inside]) / np.sum(answer[inside] * direction[inside]))
+        length = float(
+            np.sum(deviation[inside] * direction[inside])
+            / np.sum(answer[inside] * direction[inside])
+        )
         p = np.where(inside, np.maximum(p - length * direction, 0.0), 0.0)
         again = (p == 0.0) & (deviation < 0.0)
         conjugate = not again.any()

@@ -1,17 +1,19 @@
 """Depth that wear takes off a patch in one implicit step.
 
-The depth that wears off at the lateral place x is the integral of local rates along the rolling direction, for example
-of k p |s|. Wear changes the pressure: a wave of wave number q and depth d changes it by E* q d/2, so that an explicit
-step of more than about a tenth of a micrometre turns the groove into noise. The pressure at the end of the step is
-therefore an unknown of the step. In each column of elements, along the rolling direction, its distribution stays that
-of the start, and so does the rate of wear per load; the load Q of the column changes. With the influence matrix A of
+The depth that wears off at the lateral place x is the integral of local rates along the rolling
+direction, for example of k p |s|. Wear changes the pressure: a wave of wave number q and depth d
+changes it by E* q d/2, so that an explicit step of more than about a tenth of a micrometre turns
+the groove into noise. The pressure at the end of the step is therefore an unknown of the step. In
+each column of elements, along the rolling direction, its distribution stays that of the start, and
+so does the rate of wear per load; the load Q of the column changes. With the influence matrix A of
 the columns and the depth c Q of the step
 
     A (Q - Q_0) + c Q + gap = closing,   Q >= 0,   sum Q = sum Q_0,
 
-where c is the rate of wear per load times the travel. Columns beside the patch take part, with the gap that is left
-there, so that the patch can grow within the step. The rate per load is exact for Archard's law; for a law that is not
-linear in the pressure its change is an error of first order in the step.
+where c is the rate of wear per load times the travel. Columns beside the patch take part, with the
+gap that is left there, so that the patch can grow within the step. The rate per load is exact for
+Archard's law; for a law that is not linear in the pressure its change is an error of first order in
+the step.
 """
 
 from __future__ import annotations
@@ -24,7 +26,9 @@ from trackroller.contact.influence import displacements
 BESIDE = 0.25  # columns added on each side of the patch, over the columns of the grid
 LOADED = 1e-5  # share of the largest column load from which a column counts as loaded
 ROUNDS = 60  # limit of changes of the loaded columns
-RIM = 3.0  # columns at the end of a patch whose depths are evened; the share falls to nothing within as many more
+# columns at the end of a patch whose depths are evened; the share falls to nothing within as many
+# more
+RIM = 3.0
 SPREAD = 0.25  # standard deviation of the smoothing of depths over the width of a column
 
 
@@ -53,7 +57,13 @@ class WearingPatch:
     """
 
     def __init__(
-        self, gap: Gap, x: np.ndarray, y: np.ndarray, pressure: np.ndarray, rates: np.ndarray, modulus: float
+        self,
+        gap: Gap,
+        x: np.ndarray,
+        y: np.ndarray,
+        pressure: np.ndarray,
+        rates: np.ndarray,
+        modulus: float,
     ) -> None:
         hx, hy = x[1] - x[0], y[1] - y[0]
         beside = int(np.ceil(BESIDE * x.size))
@@ -82,7 +92,8 @@ class WearingPatch:
         self._gap = np.where(self.loaded, 0.0, np.maximum(apart - closing, 0.0))
 
     def worn(self, travel: float) -> tuple[np.ndarray, float]:
-        """Return the depth of roller and guide at each column after an implicit step, (2, m), and how far they close.
+        """Return the depth of roller and guide at each column after an implicit step, (2, m), and
+        how far they close.
 
         Depths and closing are in mm, `travel` in km.
         """
@@ -109,18 +120,24 @@ class WearingPatch:
 
 
 def _continued(values: np.ndarray, first: int, last: int) -> np.ndarray:
-    """Return values of columns, continued beyond the loaded columns `first` to `last` along straight lines."""
+    """Return values of columns, continued beyond the loaded columns `first` to `last` along
+    straight lines.
+    """
     out, places = values.copy(), np.arange(values.size)
     for end, inward in ((first, 1), (last, -1)):
         span = min(3, last - first)
         slope = (values[end] - values[end + inward * span]) / span if span else 0.0
         beyond = (places - end) * inward < 0
-        out[beyond] = np.maximum(values[end] + np.maximum(slope, 0.0) * np.abs(places[beyond] - end), 0.0)
+        out[beyond] = np.maximum(
+            values[end] + np.maximum(slope, 0.0) * np.abs(places[beyond] - end), 0.0
+        )
     return out
 
 
 def _column_matrix(shape: np.ndarray, hx: float, hy: float) -> np.ndarray:
-    """Return the displacement of columns by unit loads of columns for E* = 1, both weighted by `shape` (N, m)."""
+    """Return the displacement of columns by unit loads of columns for E* = 1, both weighted by
+    `shape` (N, m).
+    """
     rows, columns = shape.shape
     influence = displacements(hx, hy, 0.0, rows, columns, 0, 0)[0]
     along = np.arange(rows)
@@ -129,28 +146,34 @@ def _column_matrix(shape: np.ndarray, hx: float, hy: float) -> np.ndarray:
     for step in range(columns):
         moved = influence[apart, columns - 1 + step] @ shape
         place = np.arange(columns - step)
-        out[place, place + step] = out[place + step, place] = (shape[:, : columns - step] * moved[:, step:]).sum(axis=0)
+        out[place, place + step] = out[place + step, place] = (
+            shape[:, : columns - step] * moved[:, step:]
+        ).sum(axis=0)
     return out
 
 
 def on_cells(edges: np.ndarray, depth: np.ndarray, cells: np.ndarray) -> np.ndarray:
-    """Return the mean of depths (m,), constant between `edges` (m + 1,), in other cells with the edges `cells`.
+    """Return the mean of depths (m,), constant between `edges` (m + 1,), in other cells with the
+    edges `cells`.
 
     The cumulative volume is interpolated, so that no volume is lost and no depth is negative.
     """
     from scipy.interpolate import PchipInterpolator  # noqa: PLC0415 - heavy, and for worn profiles only
 
     with np.errstate(over="ignore"):  # a slope that underflows counts as zero
-        volume = PchipInterpolator(edges, np.concatenate([[0.0], np.cumsum(depth * np.diff(edges))]))
+        volume = PchipInterpolator(
+            edges, np.concatenate([[0.0], np.cumsum(depth * np.diff(edges))])
+        )
     return np.maximum(np.diff(volume(np.clip(cells, edges[0], edges[-1]))) / np.diff(cells), 0.0)
 
 
 def evened_at_rims(depth: np.ndarray, loaded: np.ndarray) -> np.ndarray:
-    """Halve the differences between neighbouring depths (2, m) near both ends of the `loaded` columns (m,).
+    """Halve the differences between neighbouring depths (2, m) near both ends of the `loaded`
+    columns (m,).
 
-    A patch ends within a column, but a column is loaded as a whole or not at all. This leaves a false edge in the
-    depths. The next patch has other columns: they press on this edge, and further steps would make it larger. The
-    volume does not change.
+    A patch ends within a column, but a column is loaded as a whole or not at all. This leaves a
+    false edge in the depths. The next patch has other columns: they press on this edge, and further
+    steps would make it larger. The volume does not change.
     """
     inside, face = np.flatnonzero(loaded), np.arange(1, depth.shape[1])
     within = np.minimum(
@@ -164,8 +187,9 @@ def evened_at_rims(depth: np.ndarray, loaded: np.ndarray) -> np.ndarray:
 def smoothed(depth: np.ndarray, width: float) -> np.ndarray:
     """Smooth the depths (m,) of cells over the `width` of a column of elements, in cells.
 
-    The patch grows while it wears, and its columns with it. Their centres would see details of narrower cells at
-    random, and wear would turn these details into noise. Means of neighbouring cells keep the volume.
+    The patch grows while it wears, and its columns with it. Their centres would see details of
+    narrower cells at random, and wear would turn these details into noise. Means of neighbouring
+    cells keep the volume.
     """
     variance = SPREAD**2 * max(width**2 - 1.0, 0.0)
     rounds = int(np.ceil(2.0 * variance))

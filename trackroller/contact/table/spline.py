@@ -1,10 +1,11 @@
 """Resultants of the exact rolling theory from a stored table, as in Kalker's program USETAB.
 
-Over the coordinates of `trackroller.contact.table.coordinates` the table interpolates F_A/(mu N rho),
-F_T/(mu N rho cos(chi) cos(theta)) and M_R/(mu N c rho cos(chi) cos(theta)), and the share of the adhesion area. These
-functions are smooth and have the symmetries of the problem, so the forces change their signs with those of the
-creepages and of K. One tensor product of cubic splines holds them at nu = 0.3; a second, coarser one holds their first
-and second coefficient in nu - 0.3. `validation.kalker_table` builds them.
+Over the coordinates of `trackroller.contact.table.coordinates` the table interpolates F_A/(mu N
+rho), F_T/(mu N rho cos(chi) cos(theta)) and M_R/(mu N c rho cos(chi) cos(theta)), and the share of
+the adhesion area. These functions are smooth and have the symmetries of the problem, so the forces
+change their signs with those of the creepages and of K. One tensor product of cubic splines holds
+them at nu = 0.3; a second, coarser one holds their first and second coefficient in nu - 0.3.
+`validation.kalker_table` builds them.
 """
 
 from __future__ import annotations
@@ -30,7 +31,9 @@ FIELDS = ("lateral", "driving", "spin", "stick")
 
 
 class Spline(NamedTuple):
-    """Tensor product of cubic splines: four knot vectors, and coefficients (n1, n2, n3, n4, fields)."""
+    """Tensor product of cubic splines: four knot vectors, and coefficients (n1, n2, n3, n4,
+    fields).
+    """
 
     knots: tuple[np.ndarray, ...]
     values: np.ndarray
@@ -60,7 +63,9 @@ class TableSolution:
 
 @compiled
 def _basis(knots, x, out):
-    """Write the four nonzero cubic B-splines at x into `out`; return the index of the first one (de Boor)."""
+    """Write the four nonzero cubic B-splines at x into `out`; return the index of the first one (de
+    Boor).
+    """
     low = interval(x, knots, 3, knots.size - 4)
     out[0] = 1.0
     for degree in range(1, 4):
@@ -81,7 +86,11 @@ def evaluate(spline, place, basis, line, out):
     basis (4, 4) and line (4 fields,) are work space.
     """
     (k0, k1, k2, k3), values = spline
-    h, i, j = (_basis(k0, place[0], basis[0]), _basis(k1, place[1], basis[1]), _basis(k2, place[2], basis[2]))
+    h, i, j = (
+        _basis(k0, place[0], basis[0]),
+        _basis(k1, place[1], basis[1]),
+        _basis(k2, place[2], basis[2]),
+    )
     fields = values.shape[4]
     first = _basis(k3, place[3], basis[3]) * fields
     rows = values.reshape(*values.shape[:3], values.shape[3] * fields)
@@ -108,7 +117,8 @@ class Tables:
     forces : Spline
         The four fields at nu = 0.3, over (rho, chi, theta, ln g).
     poisson : Spline
-        First and second coefficient of the fields in nu - 0.3, eight in all, over the same coordinates.
+        First and second coefficient of the fields in nu - 0.3, eight in all, over the same
+        coordinates.
     errors : dict of str to float
         Differences from the exact solver, measured by `validation.kalker_table`.
     """
@@ -118,7 +128,9 @@ class Tables:
     errors: dict[str, float]
 
     def force_error(self, level: str) -> float:
-        """Return the measured error of the forces over mu F_N of like and unlike bodies: 'median', 'p99' or 'max'."""
+        """Return the measured error of the forces over mu F_N of like and unlike bodies: 'median',
+        'p99' or 'max'.
+        """
         return max(self.errors[f"{kind}_force_{level}"] for kind in ("like", "unlike"))
 
 
@@ -170,7 +182,9 @@ def solve_patch(ellipse: Patch, longitudinal, spin, friction, elastic: Elastic) 
     unit, _, known = _looked_up(patches)
     capacity = patches.capacity
     unit[~known] = np.nan
-    forces = Resultants(capacity * unit[:, 0], capacity * unit[:, 1], capacity * patches.size * unit[:, 2])
+    forces = Resultants(
+        capacity * unit[:, 0], capacity * unit[:, 1], capacity * patches.size * unit[:, 2]
+    )
     work = -(patches.longitudinal * forces.driving_force + patches.spin * forces.spin_moment)
     return TableSolution(forces, np.clip(unit[:, 3], 0.0, 1.0), work, known)
 
@@ -180,7 +194,8 @@ def nearest_forces(
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return the forces of the nearest patch that the table holds, and the place of the slip.
 
-    Parameters are those of `solve_patch`. A patch outside the range takes the forces at the end of the range.
+    Parameters are those of `solve_patch`. A patch outside the range takes the forces at the end of
+    the range.
 
     Returns
     -------
@@ -208,21 +223,30 @@ def _looked_up(patches: Rolling) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """
     n, tables, linear = patches.lateral.size, stored(), chebyshev()
     out = np.empty((n, 4)), np.empty(n), np.empty(n, bool)
-    share_rows(lambda first, last: _look_up(first, last, patches, linear, tables.forces, tables.poisson, out), n, 512)
+    share_rows(
+        lambda first, last: _look_up(
+            first, last, patches, linear, tables.forces, tables.poisson, out
+        ),
+        n,
+        512,
+    )
     return out
 
 
 @compiled
 def _look_up(first, last, patches, linear, forces, poisson, out):
-    """Write F_T/(mu N), F_A/(mu N), M_R/(mu N c) and the share of the adhesion area of patches into `unit` (n, 4).
+    """Write F_T/(mu N), F_A/(mu N), M_R/(mu N c) and the share of the adhesion area of patches into
+    `unit` (n, 4).
 
-    A patch outside the range takes the values at the end of the range. NaN where there is no patch. `place` (n,) takes
-    X/(3 + r), and `held` (n,) whether the patch is in the range. `out` are these three arrays.
+    A patch outside the range takes the values at the end of the range. NaN where there is no patch.
+    `place` (n,) takes X/(3 + r), and `held` (n,) whether the patch is in the range. `out` are these
+    three arrays.
     """
     unit, place, held = out
     at = np.empty(4)  # coordinates of the table
     basis = np.empty((4, 4))
-    by_poisson = np.empty(2 * len(FIELDS))  # first and second change of each field with Poisson's ratio
+    # first and second change of each field with Poisson's ratio
+    by_poisson = np.empty(2 * len(FIELDS))
     line = np.empty(4 * len(FIELDS))
     wide = np.empty(8 * len(FIELDS))
     for i in range(first, last):

@@ -1,4 +1,6 @@
-"""Example tests, all synthetic, with the case files that belong to them; `trackroller fit example` writes them."""
+"""Example tests, all synthetic, with the case files that belong to them; `trackroller fit example`
+writes them.
+"""
 
 from __future__ import annotations
 
@@ -32,12 +34,20 @@ def write_examples(folder: Path) -> list[Path]:
     InputError
         If one of these files stands there with another content; then none is written.
     """
-    texts = {folder / name: Path(__file__).with_name(name).read_text(encoding="utf-8") for name in FILES}
+    texts = {
+        folder / name: Path(__file__).with_name(name).read_text(encoding="utf-8") for name in FILES
+    }
     for path, text in texts.items():
-        if path.exists() and (not path.is_file() or path.read_text(encoding="utf-8", errors="replace") != text):
+        if path.exists() and (
+            not path.is_file() or path.read_text(encoding="utf-8", errors="replace") != text
+        ):
             remedy = "Give an empty folder, or move this file."
             raise InputError(
-                "folder", str(folder), "a folder without these files", remedy, f"holds another {path.name}"
+                "folder",
+                str(folder),
+                "a folder without these files",
+                remedy,
+                f"holds another {path.name}",
             )
     folder.mkdir(parents=True, exist_ok=True)
     for path, text in texts.items():

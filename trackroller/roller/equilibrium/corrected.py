@@ -1,4 +1,6 @@
-"""Equilibrium under an expensive contact law, found with a cheap law that is corrected at the balance."""
+"""Equilibrium under an expensive contact law, found with a cheap law that is corrected at the
+balance.
+"""
 
 from __future__ import annotations
 
@@ -13,8 +15,8 @@ from trackroller.roller.equilibrium.roller import LAST_SLIP, ContactLaw, Roller,
 from trackroller.roller.equilibrium.solution import FAILED, ROLLING, Equilibrium, solve_equilibrium
 
 ROUNDS = 6  # of correction at most
-# The balance is final after a correction that changes no force by more than this, over mu F_N: the next correction
-# would change the forces much less.
+# The balance is final after a correction that changes no force by more than this, over mu F_N: the
+# next correction would change the forces much less.
 SETTLED = 2e-3
 
 _ARRAYS = tuple(f.name for f in fields(RollerLoads) if f.type == "np.ndarray")
@@ -22,7 +24,9 @@ _ARRAYS = tuple(f.name for f in fields(RollerLoads) if f.type == "np.ndarray")
 Correct = Callable[[np.ndarray, Equilibrium], np.ndarray]
 
 
-def solve_corrected(loads: RollerLoads, law: ContactLaw, correct: Correct) -> tuple[Equilibrium, np.ndarray]:
+def solve_corrected(
+    loads: RollerLoads, law: ContactLaw, correct: Correct
+) -> tuple[Equilibrium, np.ndarray]:
     """Find the equilibrium of n rollers under a law that is corrected after each solution.
 
     Parameters
@@ -32,15 +36,17 @@ def solve_corrected(loads: RollerLoads, law: ContactLaw, correct: Correct) -> tu
     law : ContactLaw
         The cheap law with its corrections.
     correct : callable
-        Corrects the law at the balance of given rollers and returns the largest change of a force there over mu F_N.
+        Corrects the law at the balance of given rollers and returns the largest change of a force
+        there over mu F_N.
 
     Returns
     -------
     balance : Equilibrium
         The equilibrium.
     rows : numpy.ndarray of int, shape (m,)
-        Rollers whose last correction was larger than `SETTLED`, which is their residual then; rollers that a
-        correction has stopped rolling; and rollers for which the cheap law has no balance.
+        Rollers whose last correction was larger than `SETTLED`, which is their residual then;
+        rollers that a correction has stopped rolling; and rollers for which the cheap law has no
+        balance.
     """
     balance = solve_equilibrium(loads, law)
     rows = _rolling(balance, loads, np.arange(loads.friction.size))
@@ -55,7 +61,8 @@ def solve_corrected(loads: RollerLoads, law: ContactLaw, correct: Correct) -> tu
         open_ = ~(change <= SETTLED)
         balance.residual[rows[open_]], balance.converged[rows[open_]] = change[open_], False
         rows = _rolling(balance, loads, rows[open_])
-    # the corrections hold near the slip where they were made, so that they do not show a change of regime
+    # the corrections hold near the slip where they were made, so that they do not show a change of
+    # regime
     lost = np.flatnonzero(rolled & (balance.regime != ROLLING) & (loads.friction > 0.0))
     return balance, np.union1d(rows, lost)
 
@@ -64,8 +71,12 @@ def _rolling(balance: Equilibrium, loads: RollerLoads, rows: np.ndarray) -> np.n
     return rows[(balance.regime[rows] == ROLLING) & (loads.friction[rows] > 0.0)]
 
 
-def balance_again(loads: RollerLoads, law: ContactLaw, rows: np.ndarray, balance: Equilibrium) -> Equilibrium:
-    """Return `balance` with the rollers `rows` balanced again; the search starts from their last balance."""
+def balance_again(
+    loads: RollerLoads, law: ContactLaw, rows: np.ndarray, balance: Equilibrium
+) -> Equilibrium:
+    """Return `balance` with the rollers `rows` balanced again; the search starts from their last
+    balance.
+    """
     roller = Roller(loads, law, rows)
     bounds = Bounds(roller.w_of(-roller.radius), np.full(rows.size, LAST_SLIP))
     start = roller.w_of(balance.shift[rows]), balance.normal_force[rows].T.copy()
@@ -82,11 +93,11 @@ def balance_again(loads: RollerLoads, law: ContactLaw, rows: np.ndarray, balance
         normal_force=near.normal.T,
         forces=Resultants(*near.forces.transpose(0, 2, 1)),
     )
-    found = merged(balance, rows[good], again, np.flatnonzero(good))
+    merged_balance = merged(balance, rows[good], again, np.flatnonzero(good))
     lost = rows[~good]
     if lost.size:
-        return merged(found, lost, solve_some(loads, law, lost), np.arange(lost.size))
-    return found
+        return merged(merged_balance, lost, solve_some(loads, law, lost), np.arange(lost.size))
+    return merged_balance
 
 
 def solve_some(loads: RollerLoads, law: ContactLaw, rows: np.ndarray) -> Equilibrium:
@@ -99,7 +110,9 @@ def solve_some(loads: RollerLoads, law: ContactLaw, rows: np.ndarray) -> Equilib
     return solve_equilibrium(replace(loads, shape=loads.shape.take(rows), **arrays), numbered)
 
 
-def merged(balance: Equilibrium, rows: np.ndarray, other: Equilibrium, places: np.ndarray) -> Equilibrium:
+def merged(
+    balance: Equilibrium, rows: np.ndarray, other: Equilibrium, places: np.ndarray
+) -> Equilibrium:
     """Return `balance` with the rollers `rows` replaced by the rollers `places` of `other`."""
 
     def put(old: np.ndarray, new: np.ndarray) -> np.ndarray:
@@ -109,5 +122,8 @@ def merged(balance: Equilibrium, rows: np.ndarray, other: Equilibrium, places: n
 
     names = [f.name for f in fields(Equilibrium) if f.name != "forces"]
     values = {name: put(getattr(balance, name), getattr(other, name)) for name in names}
-    parts = (put(getattr(balance.forces, f.name), getattr(other.forces, f.name)) for f in fields(Resultants))
+    parts = (
+        put(getattr(balance.forces, f.name), getattr(other.forces, f.name))
+        for f in fields(Resultants)
+    )
     return Equilibrium(**values, forces=Resultants(*parts))

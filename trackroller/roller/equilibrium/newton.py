@@ -1,4 +1,6 @@
-"""Find roots of the balances of a roller: bracket the slip with a coarse law, then refine all unknowns by Newton."""
+"""Find roots of the balances of a roller: bracket the slip with a coarse law, then refine all
+unknowns by Newton.
+"""
 
 from __future__ import annotations
 
@@ -11,11 +13,12 @@ import numpy as np
 from trackroller.numerics.compiled import assign, compiled
 from trackroller.roller.equilibrium.roller import Roller
 
-SMALL = 0.01  # the error of the forces is estimated where rolling radius / size of the patch is below this ratio
+# the error of the forces is estimated where rolling radius / size of the patch is below this ratio
+SMALL = 0.01
 EPS = 2.0**-53
-# The iteration of a roller ends when a step changes its forces by less than SETTLED times the goal. Models in closed
-# form (goal up to CLOSED) are cheap and iterate until rounding ends them, which rollers at the ends of the parameter
-# ranges need.
+# The iteration of a roller ends when a step changes its forces by less than SETTLED times the goal.
+# Models in closed form (goal up to CLOSED) are cheap and iterate until rounding ends them, which
+# rollers at the ends of the parameter ranges need.
 SETTLED, CLOSED = 0.1, 1e-11
 
 
@@ -36,7 +39,9 @@ class Bounds(NamedTuple):
 
 @dataclass
 class Solution:
-    """Solutions of m rollers: residual (m,), slip w (m,), normal forces (2, m) [N], contact forces (3, 2, m)."""
+    """Solutions of m rollers: residual (m,), slip w (m,), normal forces (2, m) [N], contact forces
+    (3, 2, m).
+    """
 
     residual: np.ndarray
     w: np.ndarray
@@ -45,7 +50,9 @@ class Solution:
 
     def take(self, rows: np.ndarray) -> Solution:
         """Return the solutions `rows`."""
-        return Solution(self.residual[rows], self.w[rows], self.normal[:, rows], self.forces[:, :, rows])
+        return Solution(
+            self.residual[rows], self.w[rows], self.normal[:, rows], self.forces[:, :, rows]
+        )
 
     def put(self, rows: np.ndarray, other: Solution) -> None:
         """Overwrite the solutions `rows`."""
@@ -53,7 +60,9 @@ class Solution:
         self.normal[:, rows], self.forces[:, :, rows] = other.normal, other.forces
 
     def put_better(self, rows: np.ndarray, other: Solution, converged: float) -> None:
-        """Overwrite solutions by those with a smaller residual or with a residual up to `converged`."""
+        """Overwrite solutions by those with a smaller residual or with a residual up to
+        `converged`.
+        """
         take = ~((other.residual > self.residual[rows]) & (other.residual > converged))
         self.put(rows[take], other.take(take))
 
@@ -61,7 +70,8 @@ class Solution:
 def bracketed(
     roller: Roller, bounds: Bounds, fine: bool, sweeps: int, tolerance: float
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Find the root of the torque balance in w by the Illinois rule, with normal forces that follow.
+    """Find the root of the torque balance in w by the Illinois rule, with normal forces that
+    follow.
 
     The torque falls with w. The search narrows the arrays of `bounds`.
 
@@ -101,7 +111,8 @@ def bracketed(
         up = t > 0
         at = w[active]
         sign = np.where(up, 1.0, -1.0)
-        # a bound that stays twice counts with half its torque, so that the next slip comes closer to it
+        # a bound that stays twice counts with half its torque, so that the next slip comes closer
+        # to it
         share = np.where(sign == side[active], 0.5, 1.0)
         lo, hi = np.where(up, at, w_low[active]), np.where(up, w_high[active], at)
         tl, th = np.where(up, t, share * t_low[active]), np.where(up, share * t_high[active], t)
@@ -111,7 +122,8 @@ def bracketed(
         with np.errstate(divide="ignore", invalid="ignore"):
             new = (lo * th - hi * tl) / (th - tl)
         new = np.where(np.isfinite(new) & (new > lo) & (new < hi), new, (lo + hi) / 2)
-        new = np.where(t == 0.0, at, new)  # a root, beside which a steep law would lead Newton's method away
+        # a root, beside which a steep law would lead Newton's method away
+        new = np.where(t == 0.0, at, new)
         moved = np.abs(new - at)
         w[active] = new
         # Newton's method refines rollers whose torque is balanced already
@@ -128,7 +140,9 @@ def settled(roller: Roller) -> float:
 
 
 def _following(roller: Roller, w, normal, fine: bool, rows: np.ndarray) -> np.ndarray:
-    """Return the contact forces (3, 2, m) of `rows` at slip w; the normal forces follow, in three steps if `fine`."""
+    """Return the contact forces (3, 2, m) of `rows` at slip w; the normal forces follow, in three
+    steps if `fine`.
+    """
     f = np.empty((3, 2, rows.size))
     go = np.arange(rows.size)
     steps = 1
@@ -147,17 +161,24 @@ def _following(roller: Roller, w, normal, fine: bool, rows: np.ndarray) -> np.nd
 
 
 def _jacobian(roller: Roller, w, normal, pick) -> np.ndarray:
-    """Return the derivatives of the balances by (F_N1, F_N2, w), (m, 3, 3), as differences of the coarse law."""
+    """Return the derivatives of the balances by (F_N1, F_N2, w), (m, 3, 3), as differences of the
+    coarse law.
+    """
     h, m = roller.step, w.size
     step = h * (1 - np.abs(w)) * np.where(w > 0, -1.0, 1.0)
-    slips, normals = np.concatenate((w, w, w + step)), np.concatenate((normal, normal * (1 + h), normal), axis=1)
+    slips, normals = (
+        np.concatenate((w, w, w + step)),
+        np.concatenate((normal, normal * (1 + h), normal), axis=1),
+    )
     picks, f = np.concatenate((pick, pick, pick)), np.empty((3, 2, 3 * m))
     # an iterative law starts from the state before; the others take the three states at once
     count = 3
     if roller.goal <= CLOSED:
         count = 1
     for part in np.split(np.arange(3 * m), count):
-        f[:, :, part] = roller.contact(roller.shift(slips[part], picks[part]), normals[:, part], False, picks[part])
+        f[:, :, part] = roller.contact(
+            roller.shift(slips[part], picks[part]), normals[:, part], False, picks[part]
+        )
     base, grown, moved = f[:, :, :m], f[:, :, m : 2 * m], f[:, :, 2 * m :]
     r0 = roller.residuals(normal, base, pick)
     jac = np.empty((m, 3, 3))
@@ -170,7 +191,12 @@ def _jacobian(roller: Roller, w, normal, pick) -> np.ndarray:
 
 
 def newton_polish(
-    roller: Roller, w: np.ndarray, normal: np.ndarray, bounds: Bounds, enough: float = 0.0, steps: int = 14
+    roller: Roller,
+    w: np.ndarray,
+    normal: np.ndarray,
+    bounds: Bounds,
+    enough: float = 0.0,
+    steps: int = 14,
 ) -> Solution:
     """Refine all three unknowns by Newton's method with Broyden's updates and the fine law.
 
@@ -183,7 +209,8 @@ def newton_polish(
     bounds : Bounds
         Limits of w.
     enough : float
-        Residual at which the iteration of a roller ends; with 0 only rounding or the noise of the law ends it.
+        Residual at which the iteration of a roller ends; with 0 only rounding or the noise of the
+        law ends it.
     steps : int
         Largest number of steps.
 
@@ -216,7 +243,9 @@ def newton_polish(
             jac[active] = _jacobian(roller, w[active], normal[:, active], active)
         else:
             jac[active] += _broyden(jac[active], step_old[active], r - r_old[active])
-        step, sound = _damped(_solve3(jac[active], -r), normal[:, active], w[active], bounds.take(active))
+        step, sound = _damped(
+            _solve3(jac[active], -r), normal[:, active], w[active], bounds.take(active)
+        )
         step_old[active], r_old[active] = step, r
         normal[:, active] += step[:, :2].T
         w[active] += step[:, 2]
@@ -227,17 +256,22 @@ def newton_polish(
 
 
 def _broyden(jac: np.ndarray, step: np.ndarray, change: np.ndarray) -> np.ndarray:
-    """Return Broyden's update (m, 3, 3) after a step (m, 3) that changed the residuals by `change` (m, 3).
+    """Return Broyden's update (m, 3, 3) after a step (m, 3) that changed the residuals by `change`
+    (m, 3).
 
-    Broyden's update needs a nonzero step. After a zero step it is NaN, and the roller is reported as singular.
+    Broyden's update needs a nonzero step. After a zero step it is NaN, and the roller is reported
+    as singular.
     """
     miss = change - np.einsum("mij,mj->mi", jac, step)
     with np.errstate(divide="ignore", invalid="ignore"):
         return miss[:, :, None] * step[:, None, :] / np.sum(step * step, axis=1)[:, None, None]
 
 
-def _damped(step: np.ndarray, normal: np.ndarray, w: np.ndarray, bounds: Bounds) -> tuple[np.ndarray, np.ndarray]:
-    """Shorten steps (m, 3) so that normal forces stay positive and w within its bounds; mark finite steps (m,).
+def _damped(
+    step: np.ndarray, normal: np.ndarray, w: np.ndarray, bounds: Bounds
+) -> tuple[np.ndarray, np.ndarray]:
+    """Shorten steps (m, 3) so that normal forces stay positive and w within its bounds; mark finite
+    steps (m,).
 
     Steps of singular systems become zero.
     """
@@ -252,7 +286,9 @@ def _damped(step: np.ndarray, normal: np.ndarray, w: np.ndarray, bounds: Bounds)
 
 @compiled
 def _solve3(a, b):
-    """Solve m systems of three equations by Cramer's rule on scaled rows and columns; singular systems give NaN."""
+    """Solve m systems of three equations by Cramer's rule on scaled rows and columns; singular
+    systems give NaN.
+    """
     x, s, c = np.empty_like(b), np.empty((3, 3)), np.empty(3)
     for m in range(len(b)):
         for i in range(3):
@@ -266,7 +302,11 @@ def _solve3(a, b):
                 s[i, j] /= column[j]
         for j in range(3):
             u, v = s[:, (j + 1) % 3], s[:, (j + 2) % 3]
-            k0, k1, k2 = u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]
+            k0, k1, k2 = (
+                u[1] * v[2] - u[2] * v[1],
+                u[2] * v[0] - u[0] * v[2],
+                u[0] * v[1] - u[1] * v[0],
+            )
             if j == 0:
                 determinant = s[0, 0] * k0 + s[1, 0] * k1 + s[2, 0] * k2
             x[m, j] = (k0 * c[0] + k2 * c[2] + k1 * c[1]) / determinant / column[j]
@@ -278,10 +318,11 @@ def _solve3(a, b):
 def digits_of_forces(roller: Roller, solution: Solution) -> np.ndarray:
     """Return the uncertainty of the transmitted force over the largest friction force, (m,).
 
-    It is computed for rollers smaller than `SMALL` of their patch and is 0 for the others. On such small rollers the
-    drilling torque exceeds the torque of the force a thousandfold and more, so that a small imbalance of the torque
-    does not bound the error of the force. The error is dF_A/dtorque times the imbalance or its rounding error; the
-    derivative is taken over two steps of the slip, a short one and the shortest one.
+    It is computed for rollers smaller than `SMALL` of their patch and is 0 for the others. On such
+    small rollers the drilling torque exceeds the torque of the force a thousandfold and more, so
+    that a small imbalance of the torque does not bound the error of the force. The error is
+    dF_A/dtorque times the imbalance or its rounding error; the derivative is taken over two steps
+    of the slip, a short one and the shortest one.
     """
     w, normal, f = solution.w, solution.normal, solution.forces
     size = np.hypot(roller.shape.lateral, roller.shape.rolling) * np.cbrt(np.max(normal, axis=0))

@@ -16,7 +16,8 @@ from trackroller.contact.quantities import Ellipse, Resultants
 from trackroller.contact.slip import Slip
 from trackroller.contact.wedge import determinant
 
-LAST_SLIP = 1.0 - 2.0**-53  # largest |w|; beyond it the friction is that of complete slip to the last digit
+# largest |w|; beyond it the friction is that of complete slip to the last digit
+LAST_SLIP = 1.0 - 2.0**-53
 TOLERANCE = 0.01  # residual that the solution aims at, over the residual that counts as converged
 LIFTED = 1e-8  # share of the load; a contact that carries no more has lifted off
 
@@ -30,7 +31,9 @@ class RollerLoads:
 
     Attributes
     ----------
-    radial_force, axial_force, motor_force, friction, contact_angle, guide_profile_radius : numpy.ndarray, shape (n,)
+    radial_force, axial_force, motor_force, friction : numpy.ndarray, shape (n,)
+        See `trackroller.parameters`.
+    contact_angle, guide_profile_radius : numpy.ndarray, shape (n,)
         See `trackroller.parameters`.
     rolling_radius : numpy.ndarray, shape (n,)
         r_A.
@@ -69,7 +72,9 @@ class RollerLoads:
         """Return cos(alpha), (n,)."""
         return np.cos(self.contact_angle)
 
-    def contacts(self, normal: np.ndarray, shift: np.ndarray, rows: np.ndarray) -> tuple[Ellipse, Slip]:
+    def contacts(
+        self, normal: np.ndarray, shift: np.ndarray, rows: np.ndarray
+    ) -> tuple[Ellipse, Slip]:
         """Return the ellipses and the kinematics of both contacts.
 
         Parameters
@@ -82,7 +87,13 @@ class RollerLoads:
         sine = self.sine[rows]
         second = slice(len(rows) // 2, None)
         sine[second] = -sine[second]
-        slip = Slip(sine, self.cosine[rows], self.guide_profile_radius[rows], self.rolling_radius[rows], shift)
+        slip = Slip(
+            sine,
+            self.cosine[rows],
+            self.guide_profile_radius[rows],
+            self.rolling_radius[rows],
+            shift,
+        )
         return self.shape.take(rows).at(normal), slip
 
 
@@ -104,23 +115,33 @@ class Roller:
         self.sin, self.cos = loads.sine[rows], loads.cosine[rows]
         self.load = np.abs(self.radial_force) + np.abs(self.axial_force)
         self.largest = self.load * np.maximum(1e3, 10.0 / np.minimum(self.sin, self.cos))
-        # The slip varies over the patch by the spin and by the curved profile of the guide, which ends at its equator.
-        # On a roller smaller than its patch, the spin moment decays slowly with the slip; the last factor counts this.
+        # The slip varies over the patch by the spin and by the curved profile of the guide, which
+        # ends at its equator. On a roller smaller than its patch, the spin moment decays slowly
+        # with the slip; the last factor counts this.
         root = np.cbrt(self.load * np.maximum(1.0, 0.5 / self.cos))
         flat = loads.guide_profile_radius[rows] * self.cos
         wide, long = self.shape.lateral, self.shape.rolling
         bend = np.minimum((wide * root * self.cos) ** 2 / flat, flat)
         varies = 0.5 * (self.sin * np.hypot(wide, long) * root + bend)
         self.slip_scale = varies * (1.0 + varies / self.radius)
-        # the residual of the torque is relative to the largest torque of friction, so that it shows under low friction
+        # the residual of the torque is relative to the largest torque of friction, so that it shows
+        # under low friction
         pressing = np.abs(self.radial_force) / self.cos + np.abs(self.axial_force)
-        self.torque_scale = self.friction * pressing * (1.0 + varies / self.radius) + np.abs(self.motor_force)
+        self.torque_scale = self.friction * pressing * (1.0 + varies / self.radius) + np.abs(
+            self.motor_force
+        )
 
-    def contact(self, shift: np.ndarray, normal: np.ndarray, fine: bool, pick=slice(None)) -> np.ndarray:
-        """Return F_T, F_A, M_R of both contacts, (3, 2, m), at shift (m,) [mm] and normal forces (2, m) [N]."""
+    def contact(
+        self, shift: np.ndarray, normal: np.ndarray, fine: bool, pick=slice(None)
+    ) -> np.ndarray:
+        """Return F_T, F_A, M_R of both contacts, (3, 2, m), at shift (m,) [mm] and normal forces
+        (2, m) [N].
+        """
         own = self.rows[pick]
         rows = np.concatenate((own, own))
-        ellipse, slip = self.loads.contacts(normal.reshape(-1), np.concatenate((shift, shift)), rows)
+        ellipse, slip = self.loads.contacts(
+            normal.reshape(-1), np.concatenate((shift, shift)), rows
+        )
         r = self.law(ellipse, slip, self.loads.friction[rows], rows, fine)
         return np.array((r.lateral_force, r.driving_force, r.spin_moment)).reshape(3, 2, shift.size)
 
@@ -139,16 +160,20 @@ class Roller:
         return self.normal_forces(np.zeros((2, self.rows.size)))
 
     def torque(self, f: np.ndarray, pick=slice(None)) -> np.ndarray:
-        """Return the residual of the drive torque over r_A, (m,) [N]; > 0 if friction drives more than required."""
+        """Return the residual of the drive torque over r_A, (m,) [N]; > 0 if friction drives more
+        than required.
+        """
         drilling = (f[2, 0] - f[2, 1]) * self.sin[pick] / self.radius[pick]
         return drilling + f[1, 0] + f[1, 1] + self.motor_force[pick]
 
     def wedged(self, normal: np.ndarray, f: np.ndarray) -> np.ndarray:
-        """Return True where the solution lies on the branch that grows out of the frictionless wedge, (m,).
+        """Return True where the solution lies on the branch that grows out of the frictionless
+        wedge, (m,).
 
-        On this branch the determinant of eqs (7), (9) is positive: more axial force means a larger difference of the
-        normal forces. Beyond self-locking, mu f = tan(alpha), there is another branch, on which the wrong contact
-        carries the lateral load. Without axial force both branches are the same.
+        On this branch the determinant of eqs (7), (9) is positive: more axial force means a larger
+        difference of the normal forces. Beyond self-locking, mu f = tan(alpha), there is another
+        branch, on which the wrong contact carries the lateral load. Without axial force both
+        branches are the same.
         """
         return (determinant(self.sin, self.cos, *(f[0] / normal)) > 0) | (self.axial_force == 0)
 
@@ -173,11 +198,15 @@ class Roller:
         return np.any(normal <= LIFTED * self.load, axis=0)
 
     def grips(self, normal: np.ndarray, f: np.ndarray) -> np.ndarray:
-        """Return True where friction alone carries the lateral load of a contact, |F_T| >= F_N tan(alpha), (m,)."""
+        """Return True where friction alone carries the lateral load of a contact, |F_T| >= F_N
+        tan(alpha), (m,).
+        """
         return np.any(np.abs(f[0]) * self.cos >= normal * self.sin, axis=0)
 
     def floored(self, normal: np.ndarray, pick=slice(None)) -> np.ndarray:
-        """Return normal forces that are finite and positive: a contact about to lift off still needs an ellipse."""
+        """Return normal forces that are finite and positive: a contact about to lift off still
+        needs an ellipse.
+        """
         load = self.load[pick]
         known = np.where(np.isnan(normal), load, normal)
         return np.minimum(np.maximum(known, 1e-9 * load), self.largest[pick])

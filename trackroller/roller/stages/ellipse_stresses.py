@@ -20,24 +20,28 @@ from trackroller.roller.distinct_contacts import distinct_rows, normalised_patch
 from trackroller.roller.stages.patch_stresses import PatchStresses
 from trackroller.roller.stages.scene import surface_tractions
 
-SECTION_ORDER = 24  # quadrature points of sections: they meet the rim exactly, where the quadrature is hardest
+# quadrature points of sections: they meet the rim exactly, where the quadrature is hardest
+SECTION_ORDER = 24
 SEEDS = 5  # least effort of the search under tractions with adhesion
 FINALISTS = 2
 QUICK_SEEDS = 3  # seeds of a quick search
 PIECE = 256  # patches whose tractions on grids are held at once
 FINER_PIECE = 16  # the same on twice the elements
-# Estimated relative error of a peak above which the patch is solved again on twice the elements, and the number of
-# elements for which it holds; it falls with the area of an element. Stresses have narrow ridges where sliding begins,
-# which carry the peaks of such patches. Their search therefore takes finer rules and steps.
+# Estimated relative error of a peak above which the patch is solved again on twice the elements,
+# and the number of elements for which it holds; it falls with the area of an element. Stresses have
+# narrow ridges where sliding begins, which carry the peaks of such patches. Their search therefore
+# takes finer rules and steps.
 REFINED_ERROR = 1.5e-2
 REFINED_AT = 28
 CHANGE_WEIGHT = 1.6  # weight of the change by elements where it alone decides
-REFINED_SHARE = 0.5  # share of the error that the contact model adds to a peak, below which finer elements gain little
+# share of the error that the contact model adds to a peak, below which finer elements gain little
+REFINED_SHARE = 0.5
 FINER_SEARCH: dict[str, Any] = {"scan": 8, "polish": 24, "step": 0.004}
-# The highest stress may lie at the spin pole, where the elements do not resolve a small adhesion area, and the change
-# with the elements does not show it. A formula gives this stress (`kalker.extrapolation.pole_stress`). If it exceeds
-# the peak found by more than POLE_SPREAD, which is the error of the formula, the peak is too low by up to POLE_WEIGHT
-# times the rest. This holds for adhesion areas below SMALL_SHARE of the patch. Measured on 443 rolling designs, see
+# The highest stress may lie at the spin pole, where the elements do not resolve a small adhesion
+# area, and the change with the elements does not show it. A formula gives this stress
+# (`kalker.extrapolation.pole_stress`). If it exceeds the peak found by more than POLE_SPREAD, which
+# is the error of the formula, the peak is too low by up to POLE_WEIGHT times the rest. This holds
+# for adhesion areas below SMALL_SHARE of the patch. Measured on 443 rolling designs, see
 # tests/roller/test_tolerance.py.
 POLE_SPREAD = 0.04
 POLE_WEIGHT = 1.6
@@ -46,7 +50,9 @@ UNSEEN_ERROR = 3e-4  # relative error of peaks under tractions on elements that 
 
 
 def refined_above(elements: int) -> float:
-    """Return the estimated relative error of a peak above which a patch of `elements` along an axis is solved again."""
+    """Return the estimated relative error of a peak above which a patch of `elements` along an axis
+    is solved again.
+    """
     return REFINED_ERROR * (REFINED_AT / elements) ** 2
 
 
@@ -56,7 +62,9 @@ def _pieces(count: int, size: int = PIECE) -> list[slice]:
 
 
 def mirrored(fields: np.ndarray | None, rows: np.ndarray) -> np.ndarray | None:
-    """Replace the fields (m, 2, ny, nx) of `rows` by their mirror images in x, in place, and return the fields."""
+    """Replace the fields (m, 2, ny, nx) of `rows` by their mirror images in x, in place, and return
+    the fields.
+    """
     if fields is not None and rows.any():
         image = fields[rows][..., ::-1]
         np.negative(image[:, 0], out=image[:, 0])
@@ -68,7 +76,9 @@ class EllipseStresses(PatchStresses):
     """Stresses below the ellipses of a block, by plane waves and rays (`halfspace.ellipse`)."""
 
     def rows(self, slip: Slip | None = None) -> np.ndarray:
-        """Return the records of the existing patches that the half-space kernels take, see `patch_rows`."""
+        """Return the records of the existing patches that the half-space kernels take, see
+        `patch_rows`.
+        """
         results = self.results
         good = results.good
         if slip is None:
@@ -87,7 +97,9 @@ class EllipseStresses(PatchStresses):
         return not (self.results.scene.model.full_sliding or self.results.scene.frictionless)
 
     def _shares(self, flat: np.ndarray, ask: Callable[..., Any]) -> Any:
-        """Return the tractions of the existing patches `flat` by `ask`, a method of the contact model."""
+        """Return the tractions of the existing patches `flat` by `ask`, a method of the contact
+        model.
+        """
         results = self.results
         own = results.scene.mirror.source(flat)
         slides = results.slides_along[own] != 0
@@ -96,12 +108,16 @@ class EllipseStresses(PatchStresses):
         shares = ask(patch, slip, np.where(slides, 0.0, friction), rows)
         if shares is None:
             return None
-        return *(mirrored(part.astype(FIELD, copy=False), own != flat) for part in shares[:2]), *shares[2:]
+        return *(
+            mirrored(part.astype(FIELD, copy=False), own != flat) for part in shares[:2]
+        ), *shares[2:]
 
     def fields(self, flat: np.ndarray) -> tuple[np.ndarray | None, np.ndarray | None]:
-        """Return the traction over its bound on grids over the existing patches `flat` (m,), and on coarser grids.
+        """Return the traction over its bound on grids over the existing patches `flat` (m,), and on
+        coarser grids.
 
-        The first is None where full sliding needs no grid, the second where the model has no coarser grid.
+        The first is None where full sliding needs no grid, the second where the model has no
+        coarser grid.
         """
         results = self.results
         if not self._gridded:
@@ -120,14 +136,20 @@ class EllipseStresses(PatchStresses):
         numbers = np.flatnonzero(searched)
         for rows in _pieces(numbers.size):
             flat = numbers[rows]
-            parts.append(lower_bounds(patches[rows], self.poisson_ratio[flat], self.fields(flat)[0]))
+            parts.append(
+                lower_bounds(patches[rows], self.poisson_ratio[flat], self.fields(flat)[0])
+            )
         return np.concatenate(parts) * self.results.patch.max_pressure[searched][:, None]
 
     def peaks(self, searched: np.ndarray) -> Peak:
-        """Return the peak stresses; contact 2 is searched as its mirror image, so that mirrored cases agree."""
+        """Return the peak stresses; contact 2 is searched as its mirror image, so that mirrored
+        cases agree.
+        """
         results = self.results
         second = np.repeat([False, True], results.scene.n)
-        patches = self.rows(replace(results.slip, sine=np.abs(results.slip.sine)))[searched[results.good]]
+        patches = self.rows(replace(results.slip, sine=np.abs(results.slip.sine)))[
+            searched[results.good]
+        ]
         ratios = self.poisson_ratio[searched]
         if self._gridded:
             peak = self._search_grids(patches, ratios, np.flatnonzero(searched), second[searched])
@@ -135,10 +157,15 @@ class EllipseStresses(PatchStresses):
             peak = self._search(patches, ratios)
         second = second[searched]
         pressure = results.patch.max_pressure[searched][:, None]
-        return replace(peak, stress=peak.stress * pressure, x=np.where(second, -1.0, 1.0)[:, None] * peak.x)
+        return replace(
+            peak, stress=peak.stress * pressure, x=np.where(second, -1.0, 1.0)[:, None] * peak.x
+        )
 
-    def _search_grids(self, patches: np.ndarray, ratios: np.ndarray, flat: np.ndarray, second: np.ndarray) -> Peak:
-        """Search patches under tractions on grids, and again on twice the elements where the error is large.
+    def _search_grids(
+        self, patches: np.ndarray, ratios: np.ndarray, flat: np.ndarray, second: np.ndarray
+    ) -> Peak:
+        """Search patches under tractions on grids, and again on twice the elements where the error
+        is large.
 
         `flat` are the numbers of the patches; the `second` are searched as their mirror images.
         """
@@ -155,13 +182,17 @@ class EllipseStresses(PatchStresses):
         settings = replace(settings, seeds=seeds, finalists=max(settings.finalists, FINALISTS))
         for piece in _pieces(flat.size):
             fields, coarse = (mirrored(part, second[piece]) for part in self.fields(flat[piece]))
-            # doubtful peaks of the exact theory are searched again; a third climb finds no higher peaks of the others
+            # doubtful peaks of the exact theory are searched again; a third climb finds no higher
+            # peaks of the others
             few = elements <= REFINED_AT and coarse is not None
             effort = settings
             if few:
                 effort = replace(settings, finalists=FINALISTS)
-            peak.put(piece, find_peaks(patches[piece], ratios[piece], effort, fields, coarse, bool(own)))
-        # a model with an error of its own gains nothing from elements where the search alone is rough
+            peak.put(
+                piece, find_peaks(patches[piece], ratios[piece], effort, fields, coarse, bool(own))
+            )
+        # a model with an error of its own gains nothing from elements where the search alone is
+        # rough
         if own:
             doubt = (CHANGE_WEIGHT * peak.change).max(axis=1)
             size = PIECE
@@ -181,13 +212,22 @@ class EllipseStresses(PatchStresses):
             finer.error[:] = np.maximum(finer.error, goal[rows, None])
             peak.put(rows[converged], finer.take(converged))
             results.refined[flat[rows[converged]]] = True
-        peak.error[:] = np.fmax(peak.error, self._missed_at_pole(peak, flat)[:, None]) + UNSEEN_ERROR
+        peak.error[:] = (
+            np.fmax(peak.error, self._missed_at_pole(peak, flat)[:, None]) + UNSEEN_ERROR
+        )
         return peak
 
     def _on_twice_the_elements(
-        self, patches: np.ndarray, ratios: np.ndarray, flat: np.ndarray, second: np.ndarray, settings: PeakSettings
+        self,
+        patches: np.ndarray,
+        ratios: np.ndarray,
+        flat: np.ndarray,
+        second: np.ndarray,
+        settings: PeakSettings,
     ) -> tuple[Peak, np.ndarray]:
-        """Return the peaks under tractions on twice the elements, and whether these converged, (m,)."""
+        """Return the peaks under tractions on twice the elements, and whether these converged,
+        (m,).
+        """
         model = self.results.scene.model
         none = np.zeros(len(flat), bool)
         shares = self._shares(flat, model.finer_shares)
@@ -195,15 +235,21 @@ class EllipseStresses(PatchStresses):
             return Peak.empty(len(flat)), none
         fields, coarse = (mirrored(part, second) for part in shares[:2])
         converged = shares[2]
-        return find_peaks(patches, ratios, settings, fields, coarse, bool(model.peak_error)), converged
+        return find_peaks(
+            patches, ratios, settings, fields, coarse, bool(model.peak_error)
+        ), converged
 
     def _missed_at_pole(self, peak: Peak, flat: np.ndarray) -> np.ndarray:
-        """Return by how much the peaks of patches `flat` may be too low at the spin pole, (m,), see `POLE_SPREAD`."""
+        """Return by how much the peaks of patches `flat` may be too low at the spin pole, (m,), see
+        `POLE_SPREAD`.
+        """
         patch, slip, friction, rows = self.results.of(flat)
         model = self.results.scene.model
         stress = model.pole_stress(patch, slip, friction, rows)
         higher = stress / peak.stress.min(axis=1) - 1.0 - POLE_SPREAD
-        missed = np.flatnonzero((higher > 0.0) & (friction > LITTLE_FRICTION) & (self.results.slides_along[flat] == 0))
+        missed = np.flatnonzero(
+            (higher > 0.0) & (friction > LITTLE_FRICTION) & (self.results.slides_along[flat] == 0)
+        )
         out = np.zeros(len(flat))
         if missed.size:
             out[missed] = POLE_WEIGHT * higher[missed]
@@ -213,12 +259,16 @@ class EllipseStresses(PatchStresses):
         return out
 
     def _search(self, patches: np.ndarray, ratios: np.ndarray) -> Peak:
-        """Search patches in full sliding; those without a slip field are searched once for each ellipticity."""
+        """Search patches in full sliding; those without a slip field are searched once for each
+        ellipticity.
+        """
         settings = self.options.settings.peak
         patches, length = normalised_patches(patches)
         first = number = np.arange(len(patches))
         if self.options.shortcuts:
-            first, number = distinct_rows(np.hstack([patches.view((float, patches.itemsize // 8)), ratios]))
+            first, number = distinct_rows(
+                np.hstack([patches.view((float, patches.itemsize // 8)), ratios])
+            )
         peak = find_peaks(patches[first], ratios[first], settings).take(number)
         scale = length[:, None]
         return replace(peak, x=peak.x * scale, y=peak.y * scale, z=peak.z * scale)
@@ -229,11 +279,15 @@ class EllipseStresses(PatchStresses):
 
     @cached_property
     def _field(self) -> Callable[[int], np.ndarray]:
-        """Return `_field_of` with a memory for one patch: the sections ask for each patch four times."""
+        """Return `_field_of` with a memory for one patch: the sections ask for each patch four
+        times.
+        """
         return lru_cache(maxsize=1)(self._field_of)
 
     def _field_of(self, flat: int) -> np.ndarray:
-        """Return the traction over its bound on the grid on which the peak was found, (2, ny, nx)."""
+        """Return the traction over its bound on the grid on which the peak was found, (2, ny,
+        nx).
+        """
         results = self.results
         number = np.array([flat])
         refined = results.refined[results.scene.mirror.source(number)][0]

@@ -1,6 +1,8 @@
-"""The stages of a solution up to the tractions; each stage takes the `StageResults` so far and adds its quantities.
+"""The stages of a solution up to the tractions; each stage takes the `StageResults` so far and adds
+its quantities.
 
-The stages that compute stresses stand in `stages.stress`; friction power, life and warnings stand in `stages.outcome`.
+The stages that compute stresses stand in `stages.stress`; friction power, life and warnings stand
+in `stages.outcome`.
 """
 
 from __future__ import annotations
@@ -29,25 +31,37 @@ from trackroller.roller.stages.scene import Scene, StageResults, surface_tractio
 from trackroller.roller.stop import stops_at
 
 SIGN_CONVENTIONS = (
-    "contact frame: x lateral, y in the rolling direction, z into the body; friction forces act on the roller; "
+    "contact frame: x lateral, y in the rolling direction, z into the body; friction forces "
+    "act on the roller; "
     "motor_force < 0 drives, > 0 brakes; contact 1 at +x_R, contact 2 at -x_R"
 )
 MM_PER_S = 1000.0 / 60.0  # mm/s for 1 m/min
-FINITE = {"normal_force", "lateral_force", "driving_force", "spin_moment", "max_pressure", "peak_stress"}
+FINITE = {
+    "normal_force",
+    "lateral_force",
+    "driving_force",
+    "spin_moment",
+    "max_pressure",
+    "peak_stress",
+}
 
 
-def prepare(table: CaseTable, options: Options, across: int = 1, near: Boxes | None = None) -> Scene:
+def prepare(
+    table: CaseTable, options: Options, across: int = 1, near: Boxes | None = None
+) -> Scene:
     """Compute curvatures, Hertz shape, contact model and loads of a block.
 
-    Rollers on Hertzian patches are solved with r_A as the unit of length, and what enters the solution is rounded. So
-    rollers that differ in size alone have the same stresses, bit for bit. Unrounded, their inputs would differ in the
-    last digits, which changes a peak stress by up to 1e-3.
+    Rollers on Hertzian patches are solved with r_A as the unit of length, and what enters the
+    solution is rounded. So rollers that differ in size alone have the same stresses, bit for bit.
+    Unrounded, their inputs would differ in the last digits, which changes a peak stress by up to
+    1e-3.
 
     Parameters
     ----------
     table : n cases that share their friction law
     options : contact model, normal problem, slip terms, accuracy and shortcuts
-    across, near : factor on the elements across solved patches and boxes to start from, see `models.model_of`
+    across, near : factor on the elements across solved patches and boxes to start from, see
+        `models.model_of`
     """
     alpha, r_a, k_x, k_y = contact_geometry(vars(table))
     unit = np.ones(len(table))  # drawn profiles are in mm
@@ -62,7 +76,8 @@ def prepare(table: CaseTable, options: Options, across: int = 1, near: Boxes | N
     turning = None
     if "curve" in options.slip_terms:
         turning = turning_of(curve, guide, np.cos(alpha))
-        # a contact beyond the axis of a concave guide cannot turn with it: its shape is NaN, and the row fails
+        # a contact beyond the axis of a concave guide cannot turn with it: its shape is NaN, and
+        # the row fails
         hertz = replace(hertz, lateral=np.where(np.isnan(turning), np.nan, hertz.lateral))
     law = law_of(None)
     if len(table):
@@ -88,7 +103,10 @@ def prepare(table: CaseTable, options: Options, across: int = 1, near: Boxes | N
         twins = is_mirror_symmetric(table)
     else:
         twins = np.zeros(len(table), bool)
-    turned = np.array([inclined(str(text)) for text in table.guide_profile]).reshape(-1, 2) * [1.0, -1.0]
+    turned = np.array([inclined(str(text)) for text in table.guide_profile]).reshape(-1, 2) * [
+        1.0,
+        -1.0,
+    ]
     inclination = None
     if turned.any():
         inclination = turned
@@ -98,8 +116,8 @@ def prepare(table: CaseTable, options: Options, across: int = 1, near: Boxes | N
 def forces(results: StageResults) -> None:
     """Add the forces of both contacts and the resulting moments, eqs (8)-(14).
 
-    Where the resultant of the pressure lies beside the nominal point of contact, its offset adds F_N x_p to the tilting
-    moment, and in full slip F_A x_p is the spin moment.
+    Where the resultant of the pressure lies beside the nominal point of contact, its offset adds
+    F_N x_p to the tilting moment, and in full slip F_A x_p is the spin moment.
     """
     f = results.balance.forces
     b = results.balance
@@ -125,7 +143,9 @@ def forces(results: StageResults) -> None:
     v["drilling_torque"] = (m[:, 0] - m[:, 1]) * loads.sine
     tilting = h_n * (n[:, 0] - n[:, 1]) + h_t * (t[:, 0] + t[:, 1])
     v["tilting_moment"] = tilting + (n * offset).sum(axis=1)
-    v["yaw_moment"] = -((m[:, 0] + m[:, 1]) * loads.cosine + (a[:, 0] - a[:, 1]) * loads.rolling_radius * loads.sine)
+    v["yaw_moment"] = -(
+        (m[:, 0] + m[:, 1]) * loads.cosine + (a[:, 0] - a[:, 1]) * loads.rolling_radius * loads.sine
+    )
     v["transmitted_force"] = a[:, 0] + a[:, 1]
     v["drive_torque"] = v["drilling_torque"] + v["transmitted_force"] * loads.rolling_radius
 
@@ -135,8 +155,8 @@ def force_error(results: StageResults, options: Options) -> None:
 
     Models without an estimate give the measured bound.
 
-    An error of the ratio F_T/F_N of one contact changes F_N of both contacts by eqs (7), (9). The relative change is
-    largest in a contact near lift-off.
+    An error of the ratio F_T/F_N of one contact changes F_N of both contacts by eqs (7), (9). The
+    relative change is largest in a contact near lift-off.
     """
     scene = results.scene
     v = results.values
@@ -153,18 +173,26 @@ def force_error(results: StageResults, options: Options) -> None:
         used = np.hypot(v["lateral_force"], v["driving_force"]) / capacity
         of_load = _load_error(results, error * scene.loads.friction[:, None])
         error = error + np.sqrt(used) * of_load
-    for name, estimate in (("force_error_estimate", error), ("normal_force_error_estimate", of_load)):
+    for name, estimate in (
+        ("force_error_estimate", error),
+        ("normal_force_error_estimate", of_load),
+    ):
         estimate = np.where(known[:, None], 0.0, estimate)
         v[name] = np.where(np.isfinite(v["lateral_force"]), estimate, np.nan)
 
 
 def _load_error(results: StageResults, of_ratio: np.ndarray) -> np.ndarray:
-    """Return the relative errors of F_N that errors (n, 2) of the ratios F_T/F_N cause by eqs (7), (9), (n, 2)."""
+    """Return the relative errors of F_N that errors (n, 2) of the ratios F_T/F_N cause by eqs (7),
+    (9), (n, 2).
+    """
     v = results.values
     loads = results.scene.loads
     normal = v["normal_force"]
     one, two = (v["lateral_force"] / normal).T
-    own = np.stack([own_change(loads.sine, loads.cosine, two), own_change(loads.sine, loads.cosine, -one)], axis=1)
+    own = np.stack(
+        [own_change(loads.sine, loads.cosine, two), own_change(loads.sine, loads.cosine, -one)],
+        axis=1,
+    )
     wedge = np.abs(determinant(loads.sine, loads.cosine, one, two))
     return (own * of_ratio + (of_ratio * normal)[:, ::-1] / normal) / wedge[:, None]
 
@@ -185,7 +213,8 @@ def contact(results: StageResults, options: Options) -> None:
     pole_x, pole_y = _spin_pole(results, options)
     v["spin_pole_lateral"] = results.by_contact(pole_x)
     v["spin_pole_rolling"] = results.by_contact(pole_y)
-    # mu p_max is exact where the whole patch slides under a constant friction law, and a bound elsewhere
+    # mu p_max is exact where the whole patch slides under a constant friction law, and a bound
+    # elsewhere
     v["max_shear"] = results.by_contact(results.friction * patch.max_pressure)
     if model.full_sliding or results.scene.frictionless:
         v["stick_area_fraction"] = results.by_contact(np.where(results.good, 0.0, np.nan))
@@ -196,10 +225,15 @@ def contact(results: StageResults, options: Options) -> None:
 
 
 def _close_fit(results: StageResults, options: Options) -> None:
-    """Add a/R and the errors of Hertz's theory that follow from it; NaN for patches that are no ellipses."""
+    """Add a/R and the errors of Hertz's theory that follow from it; NaN for patches that are no
+    ellipses.
+    """
     v = results.values
     scene = results.scene
-    radii = scene.table.guide_profile_radius / scene.unit, scene.table.roller_profile_radius / scene.unit
+    radii = (
+        scene.table.guide_profile_radius / scene.unit,
+        scene.table.roller_profile_radius / scene.unit,
+    )
     ratio = close_fit.conformity(v["semi_axis_lateral"], *radii)
     v["conformity"] = ratio
     if options.normal != "hertz":
@@ -213,28 +247,37 @@ def _spin_pole(results: StageResults, options: Options) -> tuple[np.ndarray, np.
     patch = results.patch
     pole_x = results.slip.pole_lateral
     with np.errstate(invalid="ignore"):
-        pole_y = np.nan_to_num(pole_rolling(pole_x - patch.centre, patch.semi_axis_lateral, patch.semi_axis_rolling))
+        pole_y = np.nan_to_num(
+            pole_rolling(pole_x - patch.centre, patch.semi_axis_lateral, patch.semi_axis_rolling)
+        )
     if options.spin_model == "concentric":
         pole_y = np.zeros_like(pole_y)
     return pole_x, np.where(np.isfinite(pole_x), pole_y, np.nan)
 
 
 def steep_friction(results: StageResults, options: Options) -> None:
-    """Flag cases whose friction law falls too steeply for a unique solution, see `friction_laws.steepness`.
+    """Flag cases whose friction law falls too steeply for a unique solution, see
+    `friction_laws.steepness`.
 
-    Most rollers without a balance fail for this reason. A failed roller has no patch; its forces without friction give
-    an estimate.
+    Most rollers without a balance fail for this reason. A failed roller has no patch; its forces
+    without friction give an estimate.
     """
     scene = results.scene
     table = scene.table
     loads = scene.loads
     if not loads.falling or not scene.model.elastic:
         return
-    plain = 0.5 * (np.abs(loads.radial_force) / loads.cosine + np.abs(loads.axial_force) / loads.sine)
+    plain = 0.5 * (
+        np.abs(loads.radial_force) / loads.cosine + np.abs(loads.axial_force) / loads.sine
+    )
     failed = results.regime == eq.FAILED
     root = np.cbrt(plain)
-    pressure = np.where(failed, loads.shape.pressure * root, np.max(results.values["max_pressure"], axis=1))
-    half = np.where(failed, loads.shape.rolling * root, np.min(results.values["semi_axis_rolling"], axis=1))
+    pressure = np.where(
+        failed, loads.shape.pressure * root, np.max(results.values["max_pressure"], axis=1)
+    )
+    half = np.where(
+        failed, loads.shape.rolling * root, np.min(results.values["semi_axis_rolling"], axis=1)
+    )
     steep = steepness(
         law_of(table.friction_law[0]),
         loads.friction * pressure,
@@ -248,7 +291,9 @@ def steep_friction(results: StageResults, options: Options) -> None:
 
 
 def _stick_share(results: StageResults) -> np.ndarray:
-    """Return the share of the adhesion area in both patches of each roller [1], 0 in full slip, (n, 2)."""
+    """Return the share of the adhesion area in both patches of each roller [1], 0 in full slip, (n,
+    2).
+    """
     mirror = results.scene.mirror
     rolls = results.good & (results.slides_along == 0)
     share = results.scene.model.stick(*results.of(mirror.to_solve(rolls)))
@@ -262,8 +307,8 @@ def _stick_share(results: StageResults) -> np.ndarray:
 def _largest_shear(results: StageResults) -> np.ndarray:
     """Return the largest |tau| of each existing patch [MPa].
 
-    Under an ellipse the grid misses the largest shear as it misses the largest pressure, which is known: the ratio of
-    the two pressures corrects the shear.
+    Under an ellipse the grid misses the largest shear as it misses the largest pressure, which is
+    known: the ratio of the two pressures corrects the shear.
     """
     t = surface_tractions(results)
     largest = np.max(np.hypot(t.shear_lateral, t.shear_rolling), axis=(1, 2))
@@ -273,7 +318,9 @@ def _largest_shear(results: StageResults) -> np.ndarray:
 
 
 def dissipation(results: StageResults) -> tuple[np.ndarray, np.ndarray]:
-    """Return the friction energy int |tau| |v| per distance, and the work that the pressures supply, (n, 2) [N]."""
+    """Return the friction energy int |tau| |v| per distance, and the work that the pressures
+    supply, (n, 2) [N].
+    """
     per_distance = np.full(2 * results.scene.n, np.nan)
     pressed = np.zeros(2 * results.scene.n)
     rolls = results.good & (results.slides_along == 0)
@@ -288,13 +335,17 @@ def dissipation(results: StageResults) -> tuple[np.ndarray, np.ndarray]:
 
 
 def friction_work(results: StageResults, options: Options) -> None:
-    """Add the friction energy per distance travelled, its estimated error, and the energy balance."""
+    """Add the friction energy per distance travelled, its estimated error, and the energy
+    balance.
+    """
     v = results.values
     model = results.scene.model
     v["friction_energy_per_distance"], pressed = dissipation(results)
     _energy_balance(results, v["friction_energy_per_distance"], pressed)
     forces = v["driving_force"].T.reshape(-1), v["spin_moment"].T.reshape(-1)
-    factor = results.by_contact(error_of_work(results.patch, results.slip, results.friction, *forces))
+    factor = results.by_contact(
+        error_of_work(results.patch, results.slip, results.friction, *forces)
+    )
     # elements lose energy where nearly all sticks; in full sliding the difference is the model's
     lost = 0.0
     if model.elastic:
@@ -305,15 +356,16 @@ def friction_work(results: StageResults, options: Options) -> None:
 
 
 def _energy_balance(results: StageResults, local: np.ndarray, pressed: np.ndarray) -> None:
-    """Add the dissipation that the resultants imply, and the difference between the local dissipation and the work.
+    """Add the dissipation that the resultants imply, and the difference between the local
+    dissipation and the work.
 
-    The resultants dissipate -(xi F_A + phi M_R). The motor puts in, less the work of the transmitted force per
-    distance, -F_Motor - (1 + xi) (F_A1 + F_A2); the balance of the drive torque makes this equal to the sum over both
-    contacts. Where the roller turns with the guide's curve, the drilling torque (M_R1 - M_R2) sin(alpha) works on that
-    turning too; the support that leads the roller round the curve supplies this work. On unlike materials the
-    pressures supply `pressed` [N].
-    ASSUME: the drive supplies no part of the work of the pressures; the torque of pressures that shear shifts is not in
-    the balance of the drive torque.
+    The resultants dissipate -(xi F_A + phi M_R). The motor puts in, less the work of the
+    transmitted force per distance, -F_Motor - (1 + xi) (F_A1 + F_A2); the balance of the drive
+    torque makes this equal to the sum over both contacts. Where the roller turns with the guide's
+    curve, the drilling torque (M_R1 - M_R2) sin(alpha) works on that turning too; the support that
+    leads the roller round the curve supplies this work. On unlike materials the pressures supply
+    `pressed` [N]. ASSUME: the drive supplies no part of the work of the pressures; the torque of
+    pressures that shear shifts is not in the balance of the drive torque.
     """
     v = results.values
     loads = results.scene.loads
@@ -329,7 +381,9 @@ def _energy_balance(results: StageResults, local: np.ndarray, pressed: np.ndarra
 
 
 def settle(results: StageResults) -> None:
-    """Take the mark of convergence from rolling rows with a force, a pressure or a peak that is no finite number."""
+    """Take the mark of convergence from rolling rows with a force, a pressure or a peak that is no
+    finite number.
+    """
     v = results.values
     rolls = results.regime == eq.ROLLING
     for name in FINITE & v.keys():

@@ -1,4 +1,6 @@
-"""The contact model of a block of cases, on Hertz's ellipses or on patches solved for the drawn cross-sections."""
+"""The contact model of a block of cases, on Hertz's ellipses or on patches solved for the drawn
+cross-sections.
+"""
 
 from __future__ import annotations
 
@@ -8,7 +10,12 @@ from typing import Any
 
 import numpy as np
 
-from trackroller.contact.drawn_profiles import gap, has_details, smoothed_otherwise, treats_sides_alike
+from trackroller.contact.drawn_profiles import (
+    gap,
+    has_details,
+    smoothed_otherwise,
+    treats_sides_alike,
+)
 from trackroller.contact.friction_laws import FrictionLaw
 from trackroller.contact.hertz import contact_modulus
 from trackroller.contact.models import contact_model
@@ -23,7 +30,9 @@ from trackroller.roller.options import Options
 
 
 def bodies(table: CaseTable) -> tuple[np.ndarray, ...]:
-    """Return Young's modulus [MPa] and Poisson's ratio of the roller, then of the guide, each (n,)."""
+    """Return Young's modulus [MPa] and Poisson's ratio of the roller, then of the guide, each
+    (n,).
+    """
     roller, guide = table.roller, table.guide
     return roller.youngs_modulus, roller.poisson_ratio, guide.youngs_modulus, guide.poisson_ratio
 
@@ -59,12 +68,20 @@ def model_of(
     name = options.contact_model
     settings = options.settings
     terms = options.slip_terms
-    return contact_model(name, settings, elastic, options.spin_model, law, travel_speed, terms, patches)
+    return contact_model(
+        name, settings, elastic, options.spin_model, law, travel_speed, terms, patches
+    )
 
 
 def _gaps(table: CaseTable, rolling_radius: np.ndarray) -> GapOf:
     alpha = np.deg2rad(table.contact_angle)
-    radii = (table.guide_profile_radius, table.roller_profile_radius, alpha, rolling_radius, table.guide_curve_radius)
+    radii = (
+        table.guide_profile_radius,
+        table.roller_profile_radius,
+        alpha,
+        rolling_radius,
+        table.guide_curve_radius,
+    )
     columns = np.stack(radii, axis=1).tolist()
 
     def gaps(row: int, side: int):
@@ -90,9 +107,11 @@ def _patches(
 
 
 def finer_across(table: CaseTable, options: Options) -> np.ndarray:
-    """Return the factor on the elements across that ridges of the pressures need in each case, (n,) of int.
+    """Return the factor on the elements across that ridges of the pressures need in each case, (n,)
+    of int.
 
-    The loads are those of the balance without friction. Cases with Hertzian patches have the factor 1.
+    The loads are those of the balance without friction. Cases with Hertzian patches have the factor
+    1.
     """
     out = np.ones(len(table), int)
     if options.normal == "hertz":
@@ -104,7 +123,10 @@ def finer_across(table: CaseTable, options: Options) -> np.ndarray:
     tilt = table.axial_force / np.sin(alpha)
     known: dict[tuple, int] = {}
     for row in range(len(table)):
-        if not (has_details(str(table.guide_profile[row])) or has_details(str(table.roller_profile[row]))):
+        if not (
+            has_details(str(table.guide_profile[row]))
+            or has_details(str(table.roller_profile[row]))
+        ):
             continue
         for side, load in ((1, mean[row] - tilt[row]), (2, mean[row] + tilt[row])):
             if load <= 0.0:
@@ -114,20 +136,26 @@ def finer_across(table: CaseTable, options: Options) -> np.ndarray:
             if (key, scaled) not in known:
                 try:
                     known[key, scaled] = Family(make(), _elements(options)).finer_across(scaled)
-                except ShapeError:  # the patches of this case cannot be solved, which the solution reports
+                except ShapeError:
+                    # the patches of this case cannot be solved, which the solution reports
                     known[key, scaled] = 1
             out[row] = max(out[row], known[key, scaled])
     return out
 
 
-CHANGED = 0.1  # change of the largest pressure, as a share, from which on the smoothing of points is told
+# change of the largest pressure, as a share, from which on the smoothing of points is told
+CHANGED = 0.1
 
 
-def depends_on_smoothing(table: CaseTable, options: Options, across: int, normal_force: np.ndarray) -> np.ndarray:
-    """Return where the pressure changes by more than `CHANGED` with the smoothing of measured points, (n,).
+def depends_on_smoothing(
+    table: CaseTable, options: Options, across: int, normal_force: np.ndarray
+) -> np.ndarray:
+    """Return where the pressure changes by more than `CHANGED` with the smoothing of measured
+    points, (n,).
 
-    Both profiles are smoothed more, and then less, see `smoothed_otherwise`. The patches of all smoothings are found
-    on the elements of accuracy "preview", by interpolation between lattice loads.
+    Both profiles are smoothed more, and then less, see `smoothed_otherwise`. The patches of all
+    smoothings are found on the elements of accuracy "preview", by interpolation between lattice
+    loads.
 
     Parameters
     ----------
@@ -146,7 +174,9 @@ def depends_on_smoothing(table: CaseTable, options: Options, across: int, normal
     as_given = _largest_pressures(table, options, across, normal_force)
     for guide, roller in others:
         columns = {"guide_profile": guide or given[0], "roller_profile": roller or given[1]}
-        texts: dict[str, Any] = {name: np.full(len(table), text, dtype=object) for name, text in columns.items()}
+        texts: dict[str, Any] = {
+            name: np.full(len(table), text, dtype=object) for name, text in columns.items()
+        }
         try:
             other = _largest_pressures(replace(table, **texts), options, across, normal_force)
         except ShapeError:  # no contact with this smoothing
@@ -157,8 +187,12 @@ def depends_on_smoothing(table: CaseTable, options: Options, across: int, normal
     return out
 
 
-def _largest_pressures(table: CaseTable, options: Options, across: int, normal_force: np.ndarray) -> np.ndarray:
-    """Return the largest pressures under normal forces (n, 2) [N], interpolated between lattice loads, (n, 2) [MPa]."""
+def _largest_pressures(
+    table: CaseTable, options: Options, across: int, normal_force: np.ndarray
+) -> np.ndarray:
+    """Return the largest pressures under normal forces (n, 2) [N], interpolated between lattice
+    loads, (n, 2) [MPa].
+    """
     rows = np.tile(np.arange(len(table)), 2)
     side = np.repeat([1.0, -1.0], len(table))
     radius = contact_geometry(vars(table)).rolling_radius

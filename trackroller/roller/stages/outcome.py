@@ -30,9 +30,12 @@ if TYPE_CHECKING:
     from trackroller.roller.options import Options
 
 LIFE_CONVENTIONS = (
-    "S-N curve N = N_k (sigma/sigma_D)^-k through (N_Rm, R_m) and (N_k, sigma_D); the peak von Mises stress is taken "
-    "as the amplitude (as published), or through the points of a material; below sigma_D: elementary continues the "
-    "curve, haibach uses the slope 2k - 1, a second exponent of the material takes their place, unlimited gives inf; "
+    "S-N curve N = N_k (sigma/sigma_D)^-k through (N_Rm, R_m) and (N_k, sigma_D); the peak "
+    "von Mises stress is taken "
+    "as the amplitude (as published), or through the points of a material; below sigma_D: "
+    "elementary continues the "
+    "curve, haibach uses the slope 2k - 1, a second exponent of the material takes their "
+    "place, unlimited gives inf; "
     "no life (NaN) in full slip and where the peak stress exceeds R_m; roller: one overrolling "
     "per revolution; guide: overrollings per hour are the user's input"
 )
@@ -48,16 +51,24 @@ def finish(table: CaseTable, block: Block, options: Options) -> None:
 
 
 def solved_of(
-    table: CaseTable, values: dict[str, np.ndarray], options: Options, regime: np.ndarray | None = None
+    table: CaseTable,
+    values: dict[str, np.ndarray],
+    options: Options,
+    regime: np.ndarray | None = None,
 ) -> SolvedRollers:
     """Return cases, materials and results as the limits receive them."""
     fields = [field.name for field in dataclasses.fields(table.roller)]
     names = [name for name in fields if name not in TEXTS or name == "sn_points"]
     return SolvedRollers(
         {name: getattr(table, name) for name in (*PARAMETERS, *MAPPING_FIELDS)},
-        {name: np.array([getattr(body, name) for body in (table.roller, table.guide)]).T for name in names},
+        {
+            name: np.array([getattr(body, name) for body in (table.roller, table.guide)]).T
+            for name in names
+        },
         values,
-        rolling_radius(table.axis_distance, table.guide_profile_radius, np.deg2rad(table.contact_angle)),
+        rolling_radius(
+            table.axis_distance, table.guide_profile_radius, np.deg2rad(table.contact_angle)
+        ),
         vars(options),
         regime=regime,
         unworn_gap=partial(_unworn_gap, table),
@@ -68,7 +79,8 @@ def solved_of(
 def _ends(table: CaseTable) -> dict[str, np.ndarray]:
     """Return the ends of the ranges of placeholders as `SolvedRollers` has them.
 
-    A value whose place in its range is given has no range, and a given factor replaces that of the wear coefficient.
+    A value whose place in its range is given has no range, and a given factor replaces that of the
+    wear coefficient.
     """
     given = ~np.isnan(table.placeholder_position)
     out = {}
@@ -78,15 +90,24 @@ def _ends(table: CaseTable) -> dict[str, np.ndarray]:
         is_fixed = given
         if name == "wear_coefficient":
             is_fixed = given | ~np.isnan(table.wear_coefficient_factor)
-        columns = [np.array([ends.get(name, (1.0, 1.0)) for ends in materials])[place] for materials, place in bodies]
+        columns = [
+            np.array([ends.get(name, (1.0, 1.0)) for ends in materials])[place]
+            for materials, place in bodies
+        ]
         out[name] = np.where(is_fixed[:, None, None], 1.0, np.stack(columns, axis=1))
     return {name: shares for name, shares in out.items() if np.any(shares != 1.0)}
 
 
 def to_compute(solved: SolvedRollers, options: Options) -> tuple[Limit, ...]:
-    """Return the limits to compute: those named among the outputs, and those of the verdict that a case serves."""
+    """Return the limits to compute: those named among the outputs, and those of the verdict that a
+    case serves.
+    """
     candidates = computed(options.outputs, options.not_checked, options.life_criterion)
-    return tuple(own for own in candidates if own.group in options.outputs or own.verdict is None or own.served(solved))
+    return tuple(
+        own
+        for own in candidates
+        if own.group in options.outputs or own.verdict is None or own.served(solved)
+    )
 
 
 def of_patches(limits: Iterable[Limit]) -> tuple[Limit, ...]:
@@ -95,7 +116,9 @@ def of_patches(limits: Iterable[Limit]) -> tuple[Limit, ...]:
 
 
 def _unworn_gap(table: CaseTable, case: int, contact: int, lateral: np.ndarray) -> np.ndarray:
-    """Return the gap of the undeformed profiles at lateral places of one contact of a case, see `SolvedRollers`."""
+    """Return the gap of the undeformed profiles at lateral places of one contact of a case, see
+    `SolvedRollers`.
+    """
     alpha = float(np.deg2rad(table.contact_angle[case]))
     axis = float(table.axis_distance[case])
     guide_radius = float(table.guide_profile_radius[case])
@@ -112,8 +135,12 @@ def _unworn_gap(table: CaseTable, case: int, contact: int, lateral: np.ndarray) 
     return between.lateral(lateral)
 
 
-def limits(table: CaseTable, v: dict[str, np.ndarray], options: Options, regime: np.ndarray) -> None:
-    """Add the results of the limits asked for to the results `v`, and the verdict if it is asked for."""
+def limits(
+    table: CaseTable, v: dict[str, np.ndarray], options: Options, regime: np.ndarray
+) -> None:
+    """Add the results of the limits asked for to the results `v`, and the verdict if it is asked
+    for.
+    """
     solved = solved_of(table, v, options, regime)
     computed_limits = to_compute(solved, options)
     on_patches = of_patches(computed_limits)  # see `patch_limits`
@@ -124,7 +151,12 @@ def limits(table: CaseTable, v: dict[str, np.ndarray], options: Options, regime:
     if any(limit.moves(solved) for limit in computed_limits):
         places += [_at_end(solved, computed_limits, end) for end in (0, 1)]
         for end, place in zip(("low", "high"), places[1:], strict=True):
-            names = [result.name for limit in computed_limits for result in limit.results if result.end == end]
+            names = [
+                result.name
+                for limit in computed_limits
+                for result in limit.results
+                if result.end == end
+            ]
             v |= {name: place.values[name] for name in names}
     if verdict.GROUP in options.outputs:
         names = list(LIMITS)
@@ -133,7 +165,9 @@ def limits(table: CaseTable, v: dict[str, np.ndarray], options: Options, regime:
         for i, limit in enumerate(counted):
             if limit not in computed_limits:
                 known[i] = _nothing(limit)
-        v |= verdict.verdict(places, known, [names.index(limit.name) for limit in counted], len(names))
+        v |= verdict.verdict(
+            places, known, [names.index(limit.name) for limit in counted], len(names)
+        )
     for name in [name for name in v if name.startswith("_") and name != BEYOND_TABLE]:
         del v[name]
 
@@ -144,7 +178,9 @@ def _nothing(limit: Limit) -> Limit:
 
 
 def _at_end(solved: SolvedRollers, limits: tuple[Limit, ...], end: int) -> SolvedRollers:
-    """Return the rollers and their results with the placeholders at the worse (0) or the better (1) end."""
+    """Return the rollers and their results with the placeholders at the worse (0) or the better (1)
+    end.
+    """
     values = dict(solved.values)
     moved = solved.at_end(end)
     on_patches = of_patches(limits)
@@ -158,9 +194,11 @@ def _at_end(solved: SolvedRollers, limits: tuple[Limit, ...], end: int) -> Solve
 
 
 def patch_limits(results: StageResults, options: Options, limits: tuple[Limit, ...]) -> None:
-    """Add the results of the limits that need the tractions of the patches, or what these limits share.
+    """Add the results of the limits that need the tractions of the patches, or what these limits
+    share.
 
-    Limits that rest on placeholders are also computed at both ends of their ranges, as `_0_NAME` and `_1_NAME`.
+    Limits that rest on placeholders are also computed at both ends of their ranges, as `_0_NAME`
+    and `_1_NAME`.
     """
     scene = results.scene
     own = of_patches(limits)
@@ -175,7 +213,9 @@ def patch_limits(results: StageResults, options: Options, limits: tuple[Limit, .
         own |= {name: own[name] * scene.unit[:, None, None] for name in ("x", "y")}
         return RollerTractions(**own, mirrored=scene.mirror.symmetric)
 
-    solved = dataclasses.replace(solved_of(scene.table, results.values, options, results.regime), tractions=fields)
+    solved = dataclasses.replace(
+        solved_of(scene.table, results.values, options, results.regime), tractions=fields
+    )
     for limit in own:
         if limit.moves(solved):
             for end in (0, 1):
@@ -188,7 +228,9 @@ def patch_limits(results: StageResults, options: Options, limits: tuple[Limit, .
 
 
 def split_pole(table: CaseTable, v: dict[str, np.ndarray]) -> np.ndarray:
-    """Return True where the slip of the sliding model vanishes away from its spin pole, (n,); see `pole_split`."""
+    """Return True where the slip of the sliding model vanishes away from its spin pole, (n,); see
+    `pole_split`.
+    """
     alpha = np.deg2rad(table.contact_angle)
     split = [
         pole_split(
@@ -205,10 +247,11 @@ def split_pole(table: CaseTable, v: dict[str, np.ndarray]) -> np.ndarray:
 
 
 def outlives_groove(table: CaseTable, block: Block, options: Options) -> np.ndarray:
-    """Return True where the own life of a body, in travel of the roller, exceeds the run-in distance, (n, 2).
+    """Return True where the own life of a body, in travel of the roller, exceeds the run-in
+    distance, (n, 2).
 
-    The life is that to the first limit among those that are computed: a body that breaks has none, and a second model
-    of an end does not shorten it. A life that is not known exceeds nothing.
+    The life is that to the first limit among those that are computed: a body that breaks has none,
+    and a second model of an end does not shorten it. A life that is not known exceeds nothing.
     """
     v = block.values
     solved = solved_of(table, v, options, block.regime)
@@ -219,13 +262,18 @@ def outlives_groove(table: CaseTable, block: Block, options: Options) -> np.ndar
 
 
 def validity(table: CaseTable, block: Block, options: Options) -> None:
-    """Set the validity flags where the assumptions of the model do not hold, see `parameters.validity`."""
+    """Set the validity flags where the assumptions of the model do not hold, see
+    `parameters.validity`.
+    """
     v = block.values
     bit = {name: 1 << i for i, name in enumerate(VALIDITY)}
     r_g = table.guide_profile_radius
     alpha = np.deg2rad(table.contact_angle)
     r_a = rolling_radius(table.axis_distance, r_g, alpha)
-    radii = [[table.roller_profile_radius, r_a / np.cos(alpha)], [r_g, table.guide_curve_radius / np.cos(alpha)]]
+    radii = [
+        [table.roller_profile_radius, r_a / np.cos(alpha)],
+        [r_g, table.guide_curve_radius / np.cos(alpha)],
+    ]
     a = np.max(v["semi_axis_lateral"], axis=1)
     b = np.max(v["semi_axis_rolling"], axis=1)
     lateral, rolling = np.abs(radii).transpose(1, 2, 0)  # of both bodies, (n, 2)
@@ -236,13 +284,17 @@ def validity(table: CaseTable, block: Block, options: Options) -> None:
     body = np.zeros((len(table), 2), dtype=np.int32)
 
     def warn(name: str, condition: np.ndarray) -> None:
-        """Set a flag where the condition holds: (n,) of the pair of bodies, or (n, 2) of each body."""
+        """Set a flag where the condition holds: (n,) of the pair of bodies, or (n, 2) of each
+        body.
+        """
         if condition.ndim == 1:
             condition = condition[:, None]
         body[:] |= np.where(condition, bit[name], 0).astype(np.int32)
 
     with np.errstate(invalid="ignore"):
-        too_wide = (a[:, None] > widest[:, None] * lateral) | (a[:, None] > close_fit.PLAIN * rolling)
+        too_wide = (a[:, None] > widest[:, None] * lateral) | (
+            a[:, None] > close_fit.PLAIN * rolling
+        )
         too_large = too_wide | (b[:, None] > close_fit.PLAIN * np.minimum(lateral, rolling))
         warn("half_space", too_large)
         close = a > close_fit.PLAIN * np.min(lateral, axis=1)
@@ -256,7 +308,8 @@ def validity(table: CaseTable, block: Block, options: Options) -> None:
             knee = np.stack([table.roller.fatigue_limit, table.guide.fatigue_limit], axis=1)
             warn("static", np.any(v["peak_stress"] > strength[:, None, :], axis=1))
             amplitude = v.get("fatigue_stress", v["peak_stress"])
-            warn("deep_life", np.all(amplitude < knee[:, None, :], axis=1))  # the worse contact sets the life
+            # the worse contact sets the life
+            warn("deep_life", np.all(amplitude < knee[:, None, :], axis=1))
         if "heat_utilisation" in v:
             warn("overheated", np.any(v["heat_utilisation"] > 1.0, axis=1))
         if "run_in_distance" in v:

@@ -1,4 +1,6 @@
-"""Interface of the stress stages to the patches of a block: bounds and places of peaks, and stresses at points."""
+"""Interface of the stress stages to the patches of a block: bounds and places of peaks, and
+stresses at points.
+"""
 
 from __future__ import annotations
 
@@ -30,7 +32,9 @@ class PatchStresses:
         self.poisson_ratio = np.concatenate([nu, nu])
 
     def bounds(self, searched: np.ndarray) -> np.ndarray:
-        """Return a lower bound of the peak stress below the m patches `searched` (2 n,), (m, 2) [MPa]."""
+        """Return a lower bound of the peak stress below the m patches `searched` (2 n,), (m, 2)
+        [MPa].
+        """
         raise NotImplementedError
 
     def peaks(self, searched: np.ndarray) -> Peak:

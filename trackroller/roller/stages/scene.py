@@ -1,7 +1,8 @@
-"""Hold a block of cases on its way through the stages: inputs (`Scene`) and results (`StageResults`).
+"""Hold a block of cases on its way through the stages: inputs (`Scene`) and results
+(`StageResults`).
 
-Arrays have the case as first axis (n,), then contact (2) and body (2: roller, guide). Flat arrays (2 n,) hold contact 1
-of all cases, then contact 2.
+Arrays have the case as first axis (n,), then contact (2) and body (2: roller, guide). Flat arrays
+(2 n,) hold contact 1 of all cases, then contact 2.
 """
 
 from __future__ import annotations
@@ -20,7 +21,8 @@ from trackroller.roller.distinct_contacts import Mirror
 
 JAMMING = validity_bit("jamming")
 _LENGTHS = {"mm": 1, "mm2": 2, "N": 2, "J m-1": 2, "N mm": 3}  # N = MPa mm2, J m-1 = N
-POWER = {v.name: _LENGTHS[v.units] for v in VARIABLES.values() if v.units in _LENGTHS}  # of the unit of length
+# of the unit of length
+POWER = {v.name: _LENGTHS[v.units] for v in VARIABLES.values() if v.units in _LENGTHS}
 
 
 @dataclass(frozen=True)
@@ -30,8 +32,9 @@ class Scene:
     Attributes
     ----------
     table, loads, model : the cases, the input of the equilibrium, and the contact model
-    unit : unit of length in which each roller is solved, (n,) [mm]. In the loads, the patches and all results of the
-        stages, mm stands for this unit and N for MPa unit^2, until `StageResults.in_mm`
+    unit : unit of length in which each roller is solved, (n,) [mm]. In the loads, the patches and
+        all results of the stages, mm stands for this unit and N for MPa unit^2, until
+        `StageResults.in_mm`
     mirror : marks rollers whose two contacts are mirror images
     frictionless : True if all cases have zero friction, so that no tractions are computed
     n : number of cases
@@ -58,10 +61,14 @@ class Scene:
     def contacts(self, balance: eq.Equilibrium) -> tuple[Patch, Slip]:
         """Return the ellipses and the slip of both contacts in an equilibrium, arrays (2 n,)."""
         both = np.tile(np.arange(self.n), 2)
-        ellipse, slip = self.loads.contacts(balance.normal_force.T.reshape(-1), np.tile(balance.shift, 2), both)
+        ellipse, slip = self.loads.contacts(
+            balance.normal_force.T.reshape(-1), np.tile(balance.shift, 2), both
+        )
         return ellipse, self.kinematics(slip, both)
 
-    def law(self, patch: Patch, slip: Slip, friction: np.ndarray, rows: np.ndarray, fine: bool) -> Resultants:
+    def law(
+        self, patch: Patch, slip: Slip, friction: np.ndarray, rows: np.ndarray, fine: bool
+    ) -> Resultants:
         """Return the resultants on the roller; this is the contact law of the equilibrium."""
         resultants = self.model.law(patch, self.kinematics(slip, rows), friction, rows, fine)
         if self.inclined is None:
@@ -106,10 +113,14 @@ class StageResults:
 
     @classmethod
     def start(cls, scene: Scene, balance: eq.Equilibrium) -> StageResults:
-        """Make patches and slips from the normal forces and rolling radius shifts of the equilibrium."""
+        """Make patches and slips from the normal forces and rolling radius shifts of the
+        equilibrium.
+        """
         both = np.tile(np.arange(scene.n), 2)
         ellipse, slip = scene.contacts(balance)
-        friction = scene.loads.friction * np.where(balance.regime == eq.FULL_SLIP, scene.loads.at_high_speed, 1.0)
+        friction = scene.loads.friction * np.where(
+            balance.regime == eq.FULL_SLIP, scene.loads.at_high_speed, 1.0
+        )
         patch = scene.model.settled(ellipse, slip, friction[both], both)
         # the friction law of each patch has to hold beside the balance of the roller
         unmet, met = scene.model.state(scene.n)
@@ -154,14 +165,23 @@ class StageResults:
         return values
 
     def full(self, flat_good: np.ndarray) -> np.ndarray:
-        """Return values of the existing patches for all patches, NaN for the others, shape (n, 2, ...)."""
+        """Return values of the existing patches for all patches, NaN for the others, shape (n, 2,
+        ...).
+        """
         out = np.full((2 * self.scene.n, *flat_good.shape[1:]), np.nan)
         out[self.good] = flat_good
         return self.by_contact(out)
 
     def of(self, patches: np.ndarray) -> tuple[Patch, Slip, np.ndarray, np.ndarray]:
-        """Return patch, slip, friction and roller numbers of the patches `patches`, as contact models take them."""
-        return self.patch.take(patches), self.slip.take(patches), self.friction[patches], self.rows[patches]
+        """Return patch, slip, friction and roller numbers of the patches `patches`, as contact
+        models take them.
+        """
+        return (
+            self.patch.take(patches),
+            self.slip.take(patches),
+            self.friction[patches],
+            self.rows[patches],
+        )
 
     def flag(self, name: str, condition: np.ndarray) -> None:
         """Set the validity flag `name` where the condition (n,) holds."""
@@ -169,7 +189,9 @@ class StageResults:
 
 
 def surface_tractions(results: StageResults) -> SurfaceTractions:
-    """Return the tractions of the existing patches on a grid; they are computed at the first call."""
+    """Return the tractions of the existing patches on a grid; they are computed at the first
+    call.
+    """
     if results.surface is None:
         good = results.good
         mirror = results.scene.mirror
@@ -185,7 +207,9 @@ def surface_tractions(results: StageResults) -> SurfaceTractions:
         results.surface = replace(
             t,
             shear_lateral=np.where(full, 0.0, t.shear_lateral),
-            shear_rolling=np.where(full, along[:, None, None] * mu[:, None, None] * t.pressure, t.shear_rolling),
+            shear_rolling=np.where(
+                full, along[:, None, None] * mu[:, None, None] * t.pressure, t.shear_rolling
+            ),
             slip_lateral=np.where(full, np.nan, t.slip_lateral),
             slip_rolling=np.where(full, np.nan, t.slip_rolling),
             stick=t.stick & ~full,

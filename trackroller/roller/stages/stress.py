@@ -1,4 +1,6 @@
-"""The stages of a solution that compute stresses: stop conditions, peaks and fields below the surface."""
+"""The stages of a solution that compute stresses: stop conditions, peaks and fields below the
+surface.
+"""
 
 from __future__ import annotations
 
@@ -22,10 +24,14 @@ def stresses_of(results: StageResults, options: Options) -> PatchStresses:
 
 
 def stop(results: StageResults, options: Options) -> None:
-    """Mark the cases for which the condition of `stop_if` already holds; the following stages leave them out."""
+    """Mark the cases for which the condition of `stop_if` already holds; the following stages leave
+    them out.
+    """
     if options.stop_if is None:
         return
-    for comparison in sorted(parse_condition(options.stop_if), key=lambda part: compared(part) == PEAK):
+    for comparison in sorted(
+        parse_condition(options.stop_if), key=lambda part: compared(part) == PEAK
+    ):
         name = compared(comparison)
         if name == PEAK:  # the last ones, because its bound takes longest
             value = peak_bound(results, options)
@@ -59,7 +65,10 @@ def peak_stress(results: StageResults, options: Options) -> None:
         "peak_x": (peak.x, -1.0),
         "peak_y": (peak.y, 1.0),
         "peak_z": (peak.z, 1.0),
-        "error_estimate": (peak.error + results.scene.model.peak_error * results.friction[solved][:, None], 1.0),
+        "error_estimate": (
+            peak.error + results.scene.model.peak_error * results.friction[solved][:, None],
+            1.0,
+        ),
     }
     for name, (value, sign) in quantities.items():
         full = np.full((2 * results.scene.n, 2), np.nan)
@@ -76,7 +85,12 @@ def subsurface(results: StageResults, options: Options) -> None:
     n = results.scene.n
     v = results.values
     depths = (m + 1) // 2
-    sizes: dict[str, tuple[int, ...]] = {"xz_x": (m,), "xz_z": (depths,), "yz_y": (m,), "yz_z": (depths,)}
+    sizes: dict[str, tuple[int, ...]] = {
+        "xz_x": (m,),
+        "xz_z": (depths,),
+        "yz_y": (m,),
+        "yz_z": (depths,),
+    }
     sizes |= {"von_mises_xz": (depths, m), "von_mises_yz": (depths, m)}
     for name, size in sizes.items():
         v[name] = np.full((n, 2, 2, *size), np.nan)
@@ -90,7 +104,11 @@ def subsurface(results: StageResults, options: Options) -> None:
 
 
 def _sections(
-    results: StageResults, options: Options, stresses: PatchStresses, flat: int, place: tuple[int, int, int]
+    results: StageResults,
+    options: Options,
+    stresses: PatchStresses,
+    flat: int,
+    place: tuple[int, int, int],
 ) -> None:
     """Fill the two sections through the peak at `place`: number of the case, contact and body."""
     v = results.values
@@ -104,7 +122,10 @@ def _sections(
     sign = 1.0
     if body == 1 and options.stress_bodies == "both":
         sign = -1.0
-    planes = {"xz": (across, np.full(m, v["peak_y"][place])), "yz": (np.full(m, v["peak_x"][place]), along)}
+    planes = {
+        "xz": (across, np.full(m, v["peak_y"][place])),
+        "yz": (np.full(m, v["peak_x"][place]), along),
+    }
     for plane, (xs, ys) in planes.items():
         points = [np.tile(xs, depth.size), np.tile(ys, depth.size), np.repeat(depth, m)]
         stress = stresses.at(flat, np.stack(points, axis=1), body, sign)

@@ -46,7 +46,9 @@ def case_columns(known: Any) -> tuple[str, ...]:
     return (*PARAMETERS, *MATERIAL_FIELDS, *(name for name in MAPPING_FIELDS if name in known))
 
 
-def draw(config: StudyFile, factors: Mapping[str, Any], table: Path, grown: tuple[int, ...] = ()) -> Design:
+def draw(
+    config: StudyFile, factors: Mapping[str, Any], table: Path, grown: tuple[int, ...] = ()
+) -> Design:
     """Draw the design of a study.
 
     Parameters
@@ -54,7 +56,8 @@ def draw(config: StudyFile, factors: Mapping[str, Any], table: Path, grown: tupl
     config : what the study file says
     factors : all factors, lists of contact models included
     table : the CSV of cases; without a meaning for other designs
-    grown : number of samples (of each design point) to which `until` has grown the sample; by default that of the file
+    grown : number of samples (of each design point) to which `until` has grown the sample; by
+        default that of the file
 
     Returns
     -------
@@ -76,7 +79,9 @@ def draw(config: StudyFile, factors: Mapping[str, Any], table: Path, grown: tupl
     if "groups" in method.takes and config.analysis.groups:
         options["groups"] = config.analysis.groups
     if method.proposes:
-        options["conditions"] = scattered({name: parse(name, spec) for name, spec in factors.items()}, config.roles)
+        options["conditions"] = scattered(
+            {name: parse(name, spec) for name, spec in factors.items()}, config.roles
+        )
         options["population"] = config.budget.generation
     base = {k: v for k, v in config.base.items() if isinstance(v, float)}
     samples = max(grown, default=config.samples)
@@ -98,21 +103,27 @@ def build(config: StudyFile, design: Design, materials: MaterialDatabase) -> xr.
 
     Returns
     -------
-    Dataset with dimension `case`: one variable a parameter (friction coefficients as numbers, materials by name).
-    Coordinates along `case`: models that vary, and auxiliary factors of expressions. The places of the design stand
-    as `trackroller.study.design.stored` says.
+    Dataset with dimension `case`: one variable a parameter (friction coefficients as numbers,
+    materials by name). Coordinates along `case`: models that vary, and auxiliary factors of
+    expressions. The places of the design stand as `trackroller.study.design.stored` says.
     """
     n = design.size or 1
     columns, friction = columns_of(config.base, design.columns, n, materials)
     places, attrs = stored(design)
     pair = design.columns.get("material_pair")
-    return dataset_of(columns, pair, places, {"study_name": config.name, "seed": config.seed, **attrs, **friction})
+    return dataset_of(
+        columns, pair, places, {"study_name": config.name, "seed": config.seed, **attrs, **friction}
+    )
 
 
 def dataset_of(
-    columns: dict[str, np.ndarray], pair: np.ndarray | None, places: Mapping[str, Any], attrs: Mapping[str, Any]
+    columns: dict[str, np.ndarray],
+    pair: np.ndarray | None,
+    places: Mapping[str, Any],
+    attrs: Mapping[str, Any],
 ) -> xr.Dataset:
-    """Return columns (n,) as a data set of cases: fields of a case as variables, other columns as coordinates.
+    """Return columns (n,) as a data set of cases: fields of a case as variables, other columns as
+    coordinates.
 
     Parameters
     ----------
@@ -124,11 +135,21 @@ def dataset_of(
     data = {}
     n = len(columns["radial_force"])
     for name, parameter in PARAMETERS.items():
-        meta = {"units": parameter.units, "long_name": parameter.long_name, "symbol": parameter.symbol}
+        meta = {
+            "units": parameter.units,
+            "long_name": parameter.long_name,
+            "symbol": parameter.symbol,
+        }
         data[name] = ("case", columns.pop(name), meta)
     for name in case_columns(columns)[len(PARAMETERS) :]:
-        data[name] = ("case", _mapped(str, object, columns.pop(name)), {"long_name": name.replace("_", " ")})
-    coords: dict[str, Any] = {"case": ("case", np.arange(n), {"long_name": "case number", "units": "1"})}
+        data[name] = (
+            "case",
+            _mapped(str, object, columns.pop(name)),
+            {"long_name": name.replace("_", " ")},
+        )
+    coords: dict[str, Any] = {
+        "case": ("case", np.arange(n), {"long_name": "case number", "units": "1"})
+    }
     if pair is not None:
         columns["material_pair"] = pair
     for name, values in columns.items():
@@ -141,7 +162,8 @@ def dataset_of(
 def columns_of(
     given: Mapping[str, Any], varying: Mapping[str, np.ndarray], n: int, materials: MaterialDatabase
 ) -> tuple[dict[str, np.ndarray], dict[str, str]]:
-    """Return every case field and further factor as a column of n values, and the attribute of `_friction`.
+    """Return every case field and further factor as a column of n values, and the attribute of
+    `_friction`.
 
     Parameters
     ----------
@@ -161,7 +183,8 @@ def columns_of(
         kind: type = float
         if isinstance(value, str) or value is None:
             kind = object
-        columns[name] = np.broadcast_to(np.array(value, dtype=kind), n)  # a shared value takes no memory
+        # a shared value takes no memory
+        columns[name] = np.broadcast_to(np.array(value, dtype=kind), n)
     columns |= varying
     if "material_pair" in columns:
         pairs = columns.pop("material_pair")
@@ -179,7 +202,9 @@ def columns_of(
 def _mapped(function: Callable[..., Any], dtype: type, *columns: np.ndarray) -> np.ndarray:
     """Return a function of the rows of columns (n,). It is computed once if no column varies."""
     if all(column.strides == (0,) for column in columns):
-        return np.broadcast_to(np.array(function(*(column[0] for column in columns)), dtype=dtype), len(columns[0]))
+        return np.broadcast_to(
+            np.array(function(*(column[0] for column in columns)), dtype=dtype), len(columns[0])
+        )
     return np.array([function(*row) for row in zip(*columns, strict=True)], dtype=dtype)
 
 
@@ -187,10 +212,14 @@ def _number(value: Any) -> float:
     return math.nan if value is None else float(value)
 
 
-def _friction(materials: MaterialDatabase, columns: dict[str, np.ndarray]) -> tuple[np.ndarray, dict[str, str]]:
-    """Return friction coefficients as numbers; the pair of materials decides where there is a level or nothing.
+def _friction(
+    materials: MaterialDatabase, columns: dict[str, np.ndarray]
+) -> tuple[np.ndarray, dict[str, str]]:
+    """Return friction coefficients as numbers; the pair of materials decides where there is a level
+    or nothing.
 
-    The second value is an attribute that records the coefficients taken from the database (JSON), empty without one.
+    The second value is an attribute that records the coefficients taken from the database (JSON),
+    empty without one.
     """
     values = columns["friction_coefficient"]
     if values.dtype != object:

@@ -1,8 +1,10 @@
-"""The cases of a study of a carriage: each loaded roller in each load case; and the results of its worst roller.
+"""The cases of a study of a carriage: each loaded roller in each load case; and the results of its
+worst roller.
 
-A row of such a design is a carriage. Statics gives the loads of its rollers, and each loaded roller in each load case
-is a case of its own, which is solved as any other. The results of a row are those of the worst roller, whose life to
-the first limit is the shortest; its damage adds up over the load cases, see `trackroller.carriage.lives`.
+A row of such a design is a carriage. Statics gives the loads of its rollers, and each loaded roller
+in each load case is a case of its own, which is solved as any other. The results of a row are those
+of the worst roller, whose life to the first limit is the shortest; its damage adds up over the load
+cases, see `trackroller.carriage.lives`.
 """
 
 from __future__ import annotations
@@ -39,9 +41,11 @@ ROLLER = "carriage_roller"
 LOAD_CASE = "load_case"
 SHARE = "share"
 HOURS = "hours_per_km"
-REASONS = "carriage_reasons"  # attribute: JSON, why the rollers do not hold the carriage, by the number of its row
+# attribute: JSON, why the rollers do not hold the carriage, by the number of its row
+REASONS = "carriage_reasons"
 STIFF = (*GEOMETRY, *MATERIAL_FIELDS)  # on these parameters the stiffness of the contacts depends
-DIGITS = 8  # of a force: the last digits depend on the processor, and a case is known by its numbers
+# of a force: the last digits depend on the processor, and a case is known by its numbers
+DIGITS = 8
 
 
 def given_by(whole: Carriage) -> tuple[str, ...]:
@@ -56,11 +60,21 @@ def given_by(whole: Carriage) -> tuple[str, ...]:
 def common_values(whole: Carriage) -> dict[str, Any]:
     """Return the parameters that all rollers of a carriage share, without their loads."""
     stated = [roller.case.as_dict() for roller in whole.rollers if roller.case is not None]
-    shared = {name: value for name, value in stated[0].items() if all(other[name] == value for other in stated[1:])}
-    return {name: value for name, value in shared.items() if name not in given_by(whole) and value not in (None, "")}
+    shared = {
+        name: value
+        for name, value in stated[0].items()
+        if all(other[name] == value for other in stated[1:])
+    }
+    return {
+        name: value
+        for name, value in shared.items()
+        if name not in given_by(whole) and value not in (None, "")
+    }
 
 
-def expanded(config: StudyFile, design: Design, materials: MaterialDatabase, whole: Carriage) -> xr.Dataset:
+def expanded(
+    config: StudyFile, design: Design, materials: MaterialDatabase, whole: Carriage
+) -> xr.Dataset:
     """Return the cases of a study of a carriage.
 
     Parameters
@@ -77,9 +91,10 @@ def expanded(config: StudyFile, design: Design, materials: MaterialDatabase, who
     Returns
     -------
     xarray.Dataset
-        As `trackroller.study.design.build.build` returns it, a case for each loaded roller in each load case.
-        Coordinates along `case`: row of the design, names of roller and load case, share of the travel, and hours that
-        the whole carriage travels for a km. The attribute `REASONS` says why a row has no cases.
+        As `trackroller.study.design.build.build` returns it, a case for each loaded roller in each
+        load case. Coordinates along `case`: row of the design, names of roller and load case, share
+        of the travel, and hours that the whole carriage travels for a km. The attribute `REASONS`
+        says why a row has no cases.
     """
     places, reasons = _loads(design, whole)
     number = places["roller"]
@@ -93,7 +108,9 @@ def expanded(config: StudyFile, design: Design, materials: MaterialDatabase, who
             continue
         rows = places["row"][own]
         given = {name: values[rows] for name, values in design.columns.items()}
-        base = {name: v for name, v in roller.case.as_dict().items() if v is not None and v != ""} | config.base
+        base = {
+            name: v for name, v in roller.case.as_dict().items() if v is not None and v != ""
+        } | config.base
         columns, friction = columns_of(base, given, len(own), materials)
         for name in LOADS:
             columns[name] = places[name][own]
@@ -102,26 +119,48 @@ def expanded(config: StudyFile, design: Design, materials: MaterialDatabase, who
         hours.append(hours_per_km(shares, places["speeds"][own], velocity))
         columns["velocity"] = np.where(np.isnan(speed), velocity, 60 * speed)
         if np.isfinite(whole.stroke):
-            columns[OVERROLLINGS] = overrollings_per_hour(places["passes"][own], columns["velocity"])
+            columns[OVERROLLINGS] = overrollings_per_hour(
+                places["passes"][own], columns["velocity"]
+            )
         parts.append(dataset_of(columns, given.get("material_pair"), {}, friction))
         order.append(own)
     if not parts:
         first = next(iter(reasons.values()), "no roller carries load")
-        raise InputError("carriage", whole.name, "a carriage that its rollers hold in a row of the design", "", first)
+        raise InputError(
+            "carriage",
+            whole.name,
+            "a carriage that its rollers hold in a row of the design",
+            "",
+            first,
+        )
     sort = np.argsort(np.concatenate(order))
-    cases = xr.concat([part.drop_vars("case") for part in parts], "case", combine_attrs="override").isel(case=sort)
+    cases = xr.concat(
+        [part.drop_vars("case") for part in parts], "case", combine_attrs="override"
+    ).isel(case=sort)
     words = {"long_name": "case number", "units": "1"}
     coords: dict[str, Any] = {
         "case": ("case", np.arange(len(sort)), words),
         ROW: ("case", places["row"], {"long_name": "row of the design", "units": "1"}),
-        ROLLER: ("case", _names([r.name for r in whole.rollers], number), {"long_name": "roller of the carriage"}),
+        ROLLER: (
+            "case",
+            _names([r.name for r in whole.rollers], number),
+            {"long_name": "roller of the carriage"},
+        ),
         LOAD_CASE: (
             "case",
             _names([case.name for case in whole.cases], places["load_case"]),
             {"long_name": "load case of the carriage"},
         ),
-        SHARE: ("case", shares[places["load_case"]], {"long_name": "share of the travel", "units": "1"}),
-        HOURS: ("case", np.concatenate(hours)[sort], {"long_name": "hours of travel for a km", "units": "h km-1"}),
+        SHARE: (
+            "case",
+            shares[places["load_case"]],
+            {"long_name": "share of the travel", "units": "1"},
+        ),
+        HOURS: (
+            "case",
+            np.concatenate(hours)[sort],
+            {"long_name": "hours of travel for a km", "units": "h km-1"},
+        ),
     }
     attrs = {"study_name": config.name, "seed": config.seed, REASONS: json.dumps(reasons)}
     return cases.assign_coords(coords).assign_attrs(attrs)
@@ -143,17 +182,23 @@ def _loads(design: Design, whole: Carriage) -> tuple[dict[str, np.ndarray], dict
         key = tuple(design.columns[name][row] for name in (*fields, *stiff))
         if key not in loads:
             given = dict(zip((*fields, *stiff), key, strict=True))
-            loads[key] = _statics(whole, *({name: given[name] for name in names} for names in (fields, stiff)))
+            loads[key] = _statics(
+                whole, *({name: given[name] for name in names} for names in (fields, stiff))
+            )
         if isinstance(loads[key], str):
             reasons[row] = loads[key]
             continue
         for name, values in loads[key].items():
             columns.setdefault(name, []).append(values)
         columns.setdefault("row", []).append(np.full(len(loads[key]["roller"]), row))
-    return {name: np.concatenate(values) for name, values in columns.items()} or {"roller": np.empty(0, int)}, reasons
+    return {name: np.concatenate(values) for name, values in columns.items()} or {
+        "roller": np.empty(0, int)
+    }, reasons
 
 
-def _statics(whole: Carriage, fields: Mapping[str, float], stiff: Mapping[str, Any]) -> dict[str, np.ndarray] | str:
+def _statics(
+    whole: Carriage, fields: Mapping[str, float], stiff: Mapping[str, Any]
+) -> dict[str, np.ndarray] | str:
     """Return the loads of the loaded rollers of one carriage, or why its rollers do not hold it."""
     given = {name: value for name, value in stiff.items() if name != "material_pair"}
     given |= dict(zip(MATERIAL_FIELDS, stiff.get("material_pair", ()), strict=False))
@@ -167,11 +212,22 @@ def _statics(whole: Carriage, fields: Mapping[str, float], stiff: Mapping[str, A
         return str(error)
     unsettled = ds["load_case"].values[~ds["converged"].values]
     if unsettled.size:
-        return f"case {', '.join(unsettled)}: no forces of the rollers fulfil all conditions of an equilibrium"
+        return (
+            f"case {', '.join(unsettled)}: no forces of the rollers fulfil all conditions of "
+            "an equilibrium"
+        )
     i, j = np.nonzero(ds["radial_force"].values < 0)
     speeds = ds["speed"].values
-    forces = {name: _rounded(ds[name].values[i, j]) for name in LOADS} | {"passes": passes_per_km(own)[j]}
-    return {"load_case": i, "roller": j, "speed": speeds[i], "speeds": np.tile(speeds, (len(i), 1)), **forces}
+    forces = {name: _rounded(ds[name].values[i, j]) for name in LOADS} | {
+        "passes": passes_per_km(own)[j]
+    }
+    return {
+        "load_case": i,
+        "roller": j,
+        "speed": speeds[i],
+        "speeds": np.tile(speeds, (len(i), 1)),
+        **forces,
+    }
 
 
 def _with_values(roller: MountedRoller, values: Mapping[str, Any]) -> MountedRoller:
@@ -189,7 +245,11 @@ def _rounded(values: np.ndarray) -> np.ndarray:
 
 
 def of_worst_rollers(
-    config: StudyFile, design: Design, materials: MaterialDatabase, cases: xr.Dataset, solved: xr.Dataset
+    config: StudyFile,
+    design: Design,
+    materials: MaterialDatabase,
+    cases: xr.Dataset,
+    solved: xr.Dataset,
 ) -> tuple[xr.Dataset, xr.Dataset]:
     """Return a row for each carriage: its parameters and results are those of its worst roller.
 
@@ -205,11 +265,11 @@ def of_worst_rollers(
     Returns
     -------
     tuple of xarray.Dataset
-        Cases and results along `case`, a row for each row of the design. Lives add up the damage of all load cases of
-        the worst roller. Its other results, and its loads, are those of the load case that uses most of its life;
-        utilisations are the largest ones. `case` is the number of this case, -1 for a row without one. A roller that
-        does not roll in a load case is the worst one. A row that the rollers do not hold has the regime lift-off, and
-        its `reason` says why.
+        Cases and results along `case`, a row for each row of the design. Lives add up the damage of
+        all load cases of the worst roller. Its other results, and its loads, are those of the load
+        case that uses most of its life; utilisations are the largest ones. `case` is the number of
+        this case, -1 for a row without one. A roller that does not roll in a load case is the worst
+        one. A row that the rollers do not hold has the regime lift-off, and its `reason` says why.
     """
     names, rollers = np.unique(cases[ROLLER].values.astype(str), return_inverse=True)
     group = cases[ROW].values * len(names) + rollers
@@ -218,10 +278,10 @@ def of_worst_rollers(
     row = cases[ROW].values[lives.first]
     order = np.lexsort((lives.rank, row))
     worst = order[np.unique(row[order], return_index=True)[1]]  # the first one of each row
-    place = np.full(design.size, -1)
-    place[row[worst]] = lives.ruling[worst]
-    has_worst = place >= 0
-    shown = lives.solved.isel(case=np.maximum(place, 0)).copy(deep=True)
+    worst_case = np.full(design.size, -1)
+    worst_case[row[worst]] = lives.ruling[worst]
+    has_worst = worst_case >= 0
+    shown = lives.solved.isel(case=np.maximum(worst_case, 0)).copy(deep=True)
     for name, values in lives.summed.items():
         full = shown[name].values
         full[row[worst]] = values[worst]
@@ -231,15 +291,20 @@ def of_worst_rollers(
     plain = build(config, design, materials)
     for name in (*PARAMETERS, *MATERIAL_FIELDS):
         if name in cases and not np.array_equal(cases[name].values, plain[name].values):
-            values = cases[name].values[np.maximum(place, 0)]
+            values = cases[name].values[np.maximum(worst_case, 0)]
             missing: Any = plain[name].values
             if values.dtype.kind == "f":
                 missing = np.nan
             plain[name] = ("case", np.where(has_worst, values, missing), plain[name].attrs)
-    for name, label in ((ROLLER, "worst roller"), (LOAD_CASE, "load case that uses most of its life")):
-        values = np.where(has_worst, cases[name].values[np.maximum(place, 0)], "")
-        plain = plain.assign_coords({f"worst_{name.removeprefix('carriage_')}": ("case", values, {"long_name": label})})
-    return plain.assign_coords(case=place), shown.assign_coords(case=place)
+    for name, label in (
+        (ROLLER, "worst roller"),
+        (LOAD_CASE, "load case that uses most of its life"),
+    ):
+        values = np.where(has_worst, cases[name].values[np.maximum(worst_case, 0)], "")
+        plain = plain.assign_coords(
+            {f"worst_{name.removeprefix('carriage_')}": ("case", values, {"long_name": label})}
+        )
+    return plain.assign_coords(case=worst_case), shown.assign_coords(case=worst_case)
 
 
 def _without_results(shown: xr.Dataset, rows: np.ndarray, reasons: list[str]) -> None:
@@ -255,4 +320,6 @@ def _without_results(shown: xr.Dataset, rows: np.ndarray, reasons: list[str]) ->
         variable.values = values
     shown["regime"][rows] = REGIMES.index("lift_off")
     if "reason" in shown:
-        shown["reason"].values = np.where(rows, np.array(reasons, dtype=object), shown["reason"].values)
+        shown["reason"].values = np.where(
+            rows, np.array(reasons, dtype=object), shown["reason"].values
+        )

@@ -23,7 +23,13 @@ from trackroller.roller.output_names import PARTS
 from trackroller.study.design.levels import short
 
 CASE_FIELDS = (*PARAMETERS, *MATERIAL_FIELDS, *MAPPING_FIELDS)
-GEOMETRY = ("axis_distance", "guide_profile_radius", "roller_profile_radius", "guide_curve_radius", "contact_angle")
+GEOMETRY = (
+    "axis_distance",
+    "guide_profile_radius",
+    "roller_profile_radius",
+    "guide_curve_radius",
+    "contact_angle",
+)
 OPTION_FACTORS = {option.name: option.values for option in OPTIONS.values() if option.factor}
 RESERVED = frozenset(  # names of the data set of a study that a factor of its own cannot have
     (
@@ -41,7 +47,8 @@ RESERVED = frozenset(  # names of the data set of a study that a factor of its o
         "level",
     )
 )
-_PART_OF_RESULT = re.compile(r"(?:(?:roller|guide)_)?(\w+?)(?:_roller|_guide|_[12])*")  # of a contact or a body
+# of a contact or a body
+_PART_OF_RESULT = re.compile(r"(?:(?:roller|guide)_)?(\w+?)(?:_roller|_guide|_[12])*")
 _NAME = re.compile(r"[^\x00-/:-@\[-^`{-\x7f][^\x00-\x1f/\x7f\x85\u2028\u2029]*")
 MAX_NAME = 200  # bytes; netCDF allows 255
 MAX_LEVELS = 1_000_000
@@ -49,12 +56,14 @@ FACTOR_NAMES = (*CASE_FIELDS, "material_pair", *OPTION_FACTORS)
 
 
 def check_own_name(name: str, where: str) -> None:
-    """Refuse a name of a study's own factor that the data set of results cannot have, or uses for something else.
+    """Refuse a name of a study's own factor that the data set of results cannot have, or uses for
+    something else.
 
     Raises
     ------
     InputError
-        If `name` is no factor of the program, and is the name of a result or none that netCDF files allow.
+        If `name` is no factor of the program, and is the name of a result or none that netCDF files
+        allow.
     """
     if name in FACTOR_NAMES:
         return
@@ -68,7 +77,8 @@ def check_own_name(name: str, where: str) -> None:
         size = 0
     if not 0 < size <= MAX_NAME or not _NAME.fullmatch(name):
         allowed = (
-            f"a name that results can have: at most {MAX_NAME} bytes, without '/' and line breaks, and a letter, "
+            f"a name that results can have: at most {MAX_NAME} bytes, without '/' and line "
+            "breaks, and a letter, "
             "a figure or '_' at its beginning"
         )
         shown = name
@@ -119,7 +129,9 @@ def base_value(key: Any, value: Any, section: str = "base") -> Any:
     known = (*CASE_FIELDS, "material_pair")
     if key in (*OPTIONS, "duty"):
         remedy = f"Write {key}: {value} on a line of its own that is not indented."
-        raise InputError(f"{section}.{key}", value, "parameters of the roller", remedy, "is a key of the study")
+        raise InputError(
+            f"{section}.{key}", value, "parameters of the roller", remedy, "is a key of the study"
+        )
     if key not in known:
         raise unknown_field(section, str(key), (*known, *ALIASES, *RADII), OPTIONS)
     return field_value(key, value, f"{section}.{key}")
@@ -185,12 +197,16 @@ def _number(parameter: Parameter, value: Any, where: str) -> Any:
     if math.isnan(number) or not parameter.accepts(number):
         remedy = parameter.remedy(number, value)
         if isinstance(value, list):
-            remedy = f"Give several values under factors: {{{parameter.name}: {{values: {value}}}}}."
+            remedy = (
+                f"Give several values under factors: {{{parameter.name}: {{values: {value}}}}}."
+            )
         raise InputError(where, value, parameter.allowed(), remedy)
     return number
 
 
-def factor(key: Any, spec: Any, factors: Mapping[Any, Any], on_carriage: bool = False) -> dict[str, Any]:
+def factor(
+    key: Any, spec: Any, factors: Mapping[Any, Any], on_carriage: bool = False
+) -> dict[str, Any]:
     """Check the dictionary of a factor.
 
     Parameters
@@ -217,7 +233,10 @@ def factor(key: Any, spec: Any, factors: Mapping[Any, Any], on_carriage: bool = 
     if own and not (isinstance(key, str) and key.isidentifier() and _used(key, factors)):
         raise _unused(str(key), factors, on_carriage)
     if isinstance(spec, Mapping):
-        spec = {kind: _entries(key, kind, value, f"{where}.{kind}", parameter) for kind, value in spec.items()}
+        spec = {
+            kind: _entries(key, kind, value, f"{where}.{kind}", parameter)
+            for kind, value in spec.items()
+        }
     checked = parse(key, spec)
     if checked.text and not own:
         refuse_results(checked.text, f"{where}.expression", factors)
@@ -236,17 +255,25 @@ def _used(name: str, factors: Mapping[Any, Any]) -> bool:
 
 def _in_expressions(factors: Mapping[Any, Any]) -> set[str]:
     """Return the names that the expressions of factors use."""
-    texts = [s["expression"] for s in factors.values() if isinstance(s, Mapping) and "expression" in s]
-    return set().union(*(expressions.names(text, "factors") for text in texts if isinstance(text, str)))
+    texts = [
+        s["expression"] for s in factors.values() if isinstance(s, Mapping) and "expression" in s
+    ]
+    return set().union(
+        *(expressions.names(text, "factors") for text in texts if isinstance(text, str))
+    )
 
 
 def _unused(name: str, factors: Mapping[Any, Any], on_carriage: bool) -> InputError:
-    """Return the error for a factor that is no parameter, no field of the carriage and no name of an expression."""
+    """Return the error for a factor that is no parameter, no field of the carriage and no name of
+    an expression.
+    """
     fields: tuple[str, ...] = ()
     if on_carriage:
         fields = (*OF_WHOLE, *OF_LOAD_CASE)
     if on_carriage and field_of(f"{PREFIX}{name}"):
-        allowed = f"parameters of a roller, and fields of the carriage, whose names begin with {PREFIX}"
+        allowed = (
+            f"parameters of a roller, and fields of the carriage, whose names begin with {PREFIX}"
+        )
         return InputError("factors", name, allowed, f"Write {PREFIX}{name}.", "is not known")
     error = unknown_field("factors", name, (*FACTOR_NAMES, *fields, *ALIASES, *RADII), OPTIONS)
     used = _in_expressions(factors)
@@ -295,12 +322,18 @@ def _entries(key: str, kind: Any, value: Any, where: str, parameter: Parameter |
         unit = parameter.unit
     numbers = []
     for place, entry in enumerate(value):
-        if place == 1 and kind in ("lognormal", "weibull"):  # a number without unit beside the median or scale
+        # a number without unit beside the median or scale
+        if place == 1 and kind in ("lognormal", "weibull"):
             numbers.append(_to_float(entry, "-", where, False))
         else:
             is_deviation = place == 1 and kind in ("normal", "truncnormal")
             numbers.append(_to_float(entry, unit, where, is_deviation))
-    if kind in LISTS and len(numbers) == 3 and isinstance(numbers[2], (int, float)) and not numbers[2] <= MAX_LEVELS:
+    if (
+        kind in LISTS
+        and len(numbers) == 3
+        and isinstance(numbers[2], (int, float))
+        and not numbers[2] <= MAX_LEVELS
+    ):
         # a mistyped number of levels would fill the memory
         raise InputError(where, numbers[2], f"at most {MAX_LEVELS} levels of a factor")
     return numbers
@@ -314,7 +347,9 @@ def _refuse_equal_names(key: str, levels: list[Any], where: str) -> None:
     names = [short(key, text) for text in given]
     for name in names:
         if names.count(name) > 1:
-            raise InputError(f"{where}.name", name, "a name of its own for each level", "Rename one of them.")
+            raise InputError(
+                f"{where}.name", name, "a name of its own for each level", "Rename one of them."
+            )
 
 
 def _to_float(value: Any, unit: str | None, where: str, difference: bool) -> Any:

@@ -1,6 +1,7 @@
 """Double the sample of a study with the key `until`, and find the size to which it has grown.
 
-The study file states the first look. How far the sample has grown stands in the plan of the study's folder.
+The study file states the first look. How far the sample has grown stands in the plan of the study's
+folder.
 """
 
 from __future__ import annotations
@@ -12,7 +13,8 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from trackroller.study.file.study import Study
 
-SAME = ("factors", "rank_correlations", "method", "seed", "inner", "samples")  # keys that a grown sample shares
+# keys that a grown sample shares
+SAME = ("factors", "rank_correlations", "method", "seed", "inner", "samples")
 
 
 def doubled(study: Study, unsure: Collection[int] | None = None) -> Study:

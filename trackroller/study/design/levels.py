@@ -1,7 +1,8 @@
 """Short texts for the values of a factor, such as a friction law or a drawn profile.
 
-In the columns of a result such a value is a whole mapping. Its short text states everything the mapping holds, or
-carries a mark computed from it, so that two levels of a factor never have the same text.
+In the columns of a result such a value is a whole mapping. Its short text states everything the
+mapping holds, or carries a mark computed from it, so that two levels of a factor never have the
+same text.
 """
 
 from __future__ import annotations
@@ -55,7 +56,9 @@ def short(name: str, value: Any) -> str:
 
 
 def _first_entries(mapping: Mapping[str, Any]) -> str:
-    """Return the first word and the first number of a mapping, such as 'ball, dynamic rating 600'."""
+    """Return the first word and the first number of a mapping, such as 'ball, dynamic rating
+    600'.
+    """
     words = [str(value) for value in mapping.values() if isinstance(value, str)]
     numbers = {key: value for key, value in mapping.items() if isinstance(value, (int, float))}
     first = sorted(numbers, key=lambda key: (key[:1].isupper(), key))[:1]
@@ -63,7 +66,9 @@ def _first_entries(mapping: Mapping[str, Any]) -> str:
 
 
 def entries(mapping: Mapping[str, Any]) -> str:
-    """Return the entries of a mapping as text, such as 'kind ball, rows 2'; keys in capitals come last."""
+    """Return the entries of a mapping as text, such as 'kind ball, rows 2'; keys in capitals come
+    last.
+    """
     keys = sorted(mapping, key=lambda key: (key[:1].isupper(), key))
     return ", ".join(f"{key} {_entry(mapping[key])}".replace("_", " ") for key in keys)
 
@@ -114,7 +119,9 @@ def _law(law: Mapping[str, Any]) -> str:
 
 
 def _profile(profile: Mapping[str, Any]) -> str:
-    form = next((key for key in ("arc", "parabola", "arcs", "points", "file") if key in profile), "")
+    form = next(
+        (key for key in ("arc", "parabola", "arcs", "points", "file") if key in profile), ""
+    )
     if form in ("arc", "parabola", "arcs") and "name" in profile:
         return str(profile["name"])
     if not form:
@@ -126,7 +133,11 @@ def _profile(profile: Mapping[str, Any]) -> str:
     elif form == "file":
         words = f"drawn {profile['file']}"
     else:  # the mark distinguishes drawn shapes, and smoothed or worn ones from others
-        plain = "name" in profile and profile.get("frame") == "section" and not {"smooth", "worn"} & set(profile)
+        plain = (
+            "name" in profile
+            and profile.get("frame") == "section"
+            and not {"smooth", "worn"} & set(profile)
+        )
         if plain:
             words = profile["name"]
         else:

@@ -37,7 +37,8 @@ def table(path: Any, used: Collection[str] = ()) -> dict[str, np.ndarray]:
 
     Raises
     ------
-    InputError : no such file, a line of another length, or a cell that is empty, not clear or of another kind
+    InputError : no such file, a line of another length, or a cell that is empty, not clear or of
+        another kind
     """
     wrong = Collector()
     if used:  # an expression writes a name without its blanks
@@ -63,19 +64,24 @@ def table(path: Any, used: Collection[str] = ()) -> dict[str, np.ndarray]:
 
 
 def _without_blanks(name: str) -> str:
-    """Return the name of a column as results have it: xarray marks no coordinate with a blank in its name."""
+    """Return the name of a column as results have it: xarray marks no coordinate with a blank in
+    its name.
+    """
     return "_".join(name.split())
 
 
 def genes(path: Any) -> np.ndarray:
     """Read the designs of a search, one row of genes each, shape (designs, choices).
 
-    The program writes this file, and nothing in it is doubtful: designs of 0 and 3 may sum up without being a total.
+    The program writes this file, and nothing in it is doubtful: designs of 0 and 3 may sum up
+    without being a total.
     """
     try:
         return np.loadtxt(path, delimiter=",", skiprows=1, ndmin=2)
     except ValueError as error:
-        raise InputError("table", str(path), "designs as a search writes them", "Run the search again.") from error
+        raise InputError(
+            "table", str(path), "designs as a search writes them", "Run the search again."
+        ) from error
 
 
 def table_lines(path: Path) -> list[int]:
@@ -85,11 +91,15 @@ def table_lines(path: Path) -> list[int]:
 
 def read_cases(path: Path, wrong: Collector, used: Collection[str] = ()) -> UserTable:
     """Return the table of the cases of a study, whatever its size; see `read_table`."""
-    return read_table(path, "table", "case", wrong, used, content=read_bytes(path, "table", math.inf))
+    return read_table(
+        path, "table", "case", wrong, used, content=read_bytes(path, "table", math.inf)
+    )
 
 
 def _check_names(cases: UserTable, used: Collection[str], path: Any) -> None:
-    """Refuse further columns of a table that look like a parameter, and a table with further columns only."""
+    """Refuse further columns of a table that look like a parameter, and a table with further
+    columns only.
+    """
     further = [name for name in cases.names if name not in FACTOR_NAMES and name not in used]
     wrong = Collector()
     for name in further:
@@ -98,7 +108,9 @@ def _check_names(cases: UserTable, used: Collection[str], path: Any) -> None:
             check_own_name(name, "table column")
             if name in RADII:
                 remedy = f'Add factors: {{axis_distance: {{expression: "{AXIS_DISTANCE}"}}}}.'
-                raise InputError("table column", name, "a parameter, or a column that an expression uses", remedy)
+                raise InputError(
+                    "table column", name, "a parameter, or a column that an expression uses", remedy
+                )
             if nearest(bare, FACTOR_NAMES) or len(further) == len(cases.names):
                 raise unknown_name("table column", bare, FACTOR_NAMES)
             if cases.all(cases.names.index(name), is_number):
@@ -109,7 +121,9 @@ def _check_names(cases: UserTable, used: Collection[str], path: Any) -> None:
 
 
 def _check_meaning(name: str, bare: str, unit: str, names: Collection[str]) -> None:
-    """Refuse a column of numbers that nothing uses, and whose head speaks of a parameter that no column gives."""
+    """Refuse a column of numbers that nothing uses, and whose head speaks of a parameter that no
+    column gives.
+    """
     words = set(bare.lower().replace("_", " ").split())
     # "axial load" means axial_force rather than radial_force, the first one that `load` stands for
     meant = sorted(contained(bare, PARAMETERS), key=lambda one: not words & set(one.split("_")))
@@ -118,9 +132,15 @@ def _check_meaning(name: str, bare: str, unit: str, names: Collection[str]) -> N
             in_unit(1.0, unit, "N", name)
             meant = ["radial_force", "axial_force", "motor_force"]
     if meant and meant[0] not in names:
-        wrong = "is a column of numbers that nothing would use, though its name speaks of a parameter"
-        remedy = f"If {listing(meant, 'or')} is meant, write this name; remove the column otherwise."
-        raise InputError("table column", name, "a parameter, or a column that an expression uses", remedy, wrong)
+        wrong = (
+            "is a column of numbers that nothing would use, though its name speaks of a parameter"
+        )
+        remedy = (
+            f"If {listing(meant, 'or')} is meant, write this name; remove the column otherwise."
+        )
+        raise InputError(
+            "table column", name, "a parameter, or a column that an expression uses", remedy, wrong
+        )
 
 
 def _numbers_of(name: str, cells: Mapping[int, str]) -> np.ndarray | None:
@@ -157,4 +177,6 @@ def _cells_of(name: str, cells: Mapping[int, str], path: Any, wrong: Collector) 
             values.append(_value_of(name, cell))
         except InputError as error:
             wrong.errors += [one.at(path, number) for one in error.errors]
-    return column(values, name in PARAMETERS and not any(isinstance(value, str) for value in values))
+    return column(
+        values, name in PARAMETERS and not any(isinstance(value, str) for value in values)
+    )

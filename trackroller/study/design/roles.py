@@ -23,7 +23,8 @@ def check_words(value: Any) -> Any:
 
 
 def check_roles(given: Mapping[str, str], factors: Mapping[str, Any], design: str) -> None:
-    """Check that the key `roles` names factors, and agrees with the arrays of an inner/outer design.
+    """Check that the key `roles` names factors, and agrees with the arrays of an inner/outer
+    design.
 
     Parameters
     ----------
@@ -44,22 +45,36 @@ def check_roles(given: Mapping[str, str], factors: Mapping[str, Any], design: st
         if name not in factors:
             raise unknown_name(where, name, [n for n in factors if n not in OPTION_FACTORS])
         factor = factors[name]
-        if not METHODS[design].points or factor.kind == "expression" or (role == "condition") == factor.scatter:
+        if (
+            not METHODS[design].points
+            or factor.kind == "expression"
+            or (role == "condition") == factor.scatter
+        ):
             continue
         if factor.scatter:
             allowed = "condition: the factor scatters in the inner array"
-            raise InputError(where, role, allowed, "Give it as a list of values, or remove the line.")
+            raise InputError(
+                where, role, allowed, "Give it as a list of values, or remove the line."
+            )
         allowed = f"choice: the lists of {design} are design points"
-        raise InputError(where, role, allowed, f"Write scatter: true beside the list of factors.{name}.")
+        raise InputError(
+            where, role, allowed, f"Write scatter: true beside the list of factors.{name}."
+        )
 
 
 def scattered(factors: Mapping[str, Factor], given: Mapping[str, str]) -> tuple[str, ...]:
-    """Return the factors of a search for designs that vary as conditions; the others are its choices.
+    """Return the factors of a search for designs that vary as conditions; the others are its
+    choices.
 
-    Factors with a bell-shaped distribution are among them whatever role is given: nobody chooses such a value.
+    Factors with a bell-shaped distribution are among them whatever role is given: nobody chooses
+    such a value.
     """
     roles = roles_of(factors, factors, given)
-    return tuple(n for n, f in factors.items() if f.varies and (f.kind in BELLS or roles.get(n) == "condition"))
+    return tuple(
+        n
+        for n, f in factors.items()
+        if f.varies and (f.kind in BELLS or roles.get(n) == "condition")
+    )
 
 
 def roles_of(
@@ -76,9 +91,9 @@ def roles_of(
 
     Returns
     -------
-    Name -> `choice` or `condition`. A bell-shaped distribution states scatter: a condition. A factor of the study's
-    own, such as a ratio, has the role of the parameter that is computed from it, and is a choice if several are and one
-    of them is a choice.
+    Name -> `choice` or `condition`. A bell-shaped distribution states scatter: a condition. A
+    factor of the study's own, such as a ratio, has the role of the parameter that is computed from
+    it, and is a choice if several are and one of them is a choice.
     """
     fed: dict[str, list[str]] = {}
     for other, factor in factors.items():

@@ -1,10 +1,11 @@
 """From the factors of a study to the rows of a design.
 
-A method of `trackroller.methods` first draws places: quantiles in the unit cube, codes of a classical design, or
-indices of listed values. The places are then mapped through the distribution of each factor, so that every method takes
-every factor. The values of a list are equally likely in random samples (lhs, sobol, saltelli), unless they have
-weights. In Morris trajectories they are random pairs of different values, and in response-surface designs they are
-crossed with all other rows.
+A method of `trackroller.methods` first draws places: quantiles in the unit cube, codes of a
+classical design, or indices of listed values. The places are then mapped through the distribution
+of each factor, so that every method takes every factor. The values of a list are equally likely in
+random samples (lhs, sobol, saltelli), unless they have weights. In Morris trajectories they are
+random pairs of different values, and in response-surface designs they are crossed with all other
+rows.
 """
 
 from __future__ import annotations
@@ -40,20 +41,21 @@ def sample(
     ----------
     factors : name -> dictionary as described in `trackroller.methods.factor`
     method : one of `METHODS`
-    n : rows (lhs, sobol), trajectories (morris), base samples (saltelli, rounded up to a power of two; the design has
-        n (2 k + 2) rows, or n (k + 2) without second order), samples per design point (inner_outer). The other
-        methods have their own number
+    n : rows (lhs, sobol), trajectories (morris), base samples (saltelli, rounded up to a power of
+        two; the design has n (2 k + 2) rows, or n (k + 2) without second order), samples per design
+        point (inner_outer). The other methods have their own number
     seed : the same seed gives the same design
     base : values that expressions may use besides the factors
     used : names that constraints use, which may be further columns of a table
-    options : second_order (saltelli, default true), groups (saltelli: groups of factors whose columns are exchanged
-        together; the design has n (2 g + 2) or n (g + 2) rows for g groups, single factors included), levels (morris,
-        default 4), table (path of the CSV), inner (inner_outer: sobol, the default, or lhs), point_samples
-        (inner_outer: samples of each design point),
-        rank_correlations (lhs, sobol, inner_outer: see `trackroller.methods.correlation`), conditions and
-        population (optimise: factors that are no choices, and designs of the first generation), table (optimise: CSV
-        of the genes of the designs instead), replicates (independent samples of n / replicates each, which
-        take turns: sample i belongs to replicate i % replicates)
+    options : second_order (saltelli, default true), groups (saltelli: groups of factors whose
+        columns are exchanged together; the design has n (2 g + 2) or n (g + 2) rows for g groups,
+        single factors included), levels (morris, default 4), table (path of the CSV), inner
+        (inner_outer: sobol, the default, or lhs), point_samples (inner_outer: samples of each
+        design point), rank_correlations (lhs, sobol, inner_outer: see
+        `trackroller.methods.correlation`), conditions and population (optimise: factors that are no
+        choices, and designs of the first generation), table (optimise: CSV of the genes of the
+        designs instead), replicates (independent samples of n / replicates each, which take turns:
+        sample i belongs to replicate i % replicates)
 
     Returns
     -------
@@ -61,19 +63,29 @@ def sample(
 
     Raises
     ------
-    InputError : unknown method or option, a factor the method cannot take, a value outside its bounds
+    InputError : unknown method or option, a factor the method cannot take, a value outside its
+        bounds
     """
     settings = _settings(method, options)
     drawn_by = METHODS[method]
     if drawn_by.observed:
-        in_factors = {name for spec in factors.values() for name in expressions.names(spec.get("expression", "0"))}
+        in_factors = {
+            name
+            for spec in factors.values()
+            for name in expressions.names(spec.get("expression", "0"))
+        }
         columns = table(settings["table"], {*in_factors, *used})
         free, unit = of_columns(columns)
         meta: dict[str, Any] = {}
         parsed = {name: parse(name, spec) for name, spec in factors.items() if name not in columns}
         for name in (name for name, factor in parsed.items() if factor.kind != "expression"):
             allowed = "factors as columns of the table"
-            raise InputError(f"factors.{name}", factors[name], allowed, "Only expressions may stand beside a table.")
+            raise InputError(
+                f"factors.{name}",
+                factors[name],
+                allowed,
+                "Only expressions may stand beside a table.",
+            )
     else:
         parsed = {name: parse(name, spec) for name, spec in factors.items()}
         free = {k: f for k, f in parsed.items() if f.varies}
@@ -107,7 +119,9 @@ def _settings(method: str, options: Mapping[str, Any]) -> dict[str, Any]:
     for key in options.keys() - settings.keys():
         having = those_that_take(key)
         if having:
-            raise InputError(key, options[key], f"an option of design {' and '.join(having)}", "Remove the key.")
+            raise InputError(
+                key, options[key], f"an option of design {' and '.join(having)}", "Remove the key."
+            )
         raise unknown_name("design option", key, settings)
     return {**settings, **options}
 
@@ -134,8 +148,14 @@ def _derived(
     """Evaluate the expressions, each after the expressions that it needs."""
     texts = {name: f.text for name, f in parsed.items() if f.kind == "expression"}
     defaults = {name: p.default for name, p in PARAMETERS.items()}
-    known = {name: _compared(value) for name, value in {**defaults, **base, **columns}.items() if name not in texts}
-    needs = graphlib.TopologicalSorter({name: expressions.names(text) & {*texts} for name, text in texts.items()})
+    known = {
+        name: _compared(value)
+        for name, value in {**defaults, **base, **columns}.items()
+        if name not in texts
+    }
+    needs = graphlib.TopologicalSorter(
+        {name: expressions.names(text) & {*texts} for name, text in texts.items()}
+    )
     out: dict[str, np.ndarray] = {}
     try:
         order = list(needs.static_order())
@@ -149,13 +169,21 @@ def _derived(
         bad = int(np.isnan(out[name]).sum())
         if bad:
             wrong = f"is not a number in {bad} of {rows} rows"
-            raise InputError(f"factors.{name}.expression", texts[name], "a number in each row", wrong=wrong)
+            raise InputError(
+                f"factors.{name}.expression", texts[name], "a number in each row", wrong=wrong
+            )
     return out
 
 
 def _compared(value: Any) -> Any:
-    """Return a column for expressions, in which a pair of materials is the text 'roller / guide'."""
-    pairs = isinstance(value, np.ndarray) and value.dtype == object and any(isinstance(v, tuple) for v in value)
+    """Return a column for expressions, in which a pair of materials is the text 'roller /
+    guide'.
+    """
+    pairs = (
+        isinstance(value, np.ndarray)
+        and value.dtype == object
+        and any(isinstance(v, tuple) for v in value)
+    )
     return readable(value) if pairs else value
 
 
@@ -175,4 +203,6 @@ def _check_bounds(columns: Mapping[str, np.ndarray], parsed: Mapping[str, Factor
             kind = parsed[name].kind if name in parsed else "table"
             wrong = f"lies outside, as {int((~good).sum())} of {good.size} rows do"
             allowed = PARAMETERS[name].allowed()
-            raise InputError(f"factors.{name}", float(values[~good][0]), allowed, remedies.get(kind, ""), wrong)
+            raise InputError(
+                f"factors.{name}", float(values[~good][0]), allowed, remedies.get(kind, ""), wrong
+            )

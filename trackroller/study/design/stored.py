@@ -1,8 +1,9 @@
 """Store a design in a data set of cases, and read it back; nothing is drawn again.
 
-Places (quantiles, codes or numbers of levels) of random and classical designs stand in the coordinate `design_place`.
-Those of a grid and of a table follow from the values themselves. The attribute `design_meta` holds the numbers of the
-method as JSON, such as the groups of a Saltelli design.
+Places (quantiles, codes or numbers of levels) of random and classical designs stand in the
+coordinate `design_place`. Those of a grid and of a table follow from the values themselves. The
+attribute `design_meta` holds the numbers of the method as JSON, such as the groups of a Saltelli
+design.
 """
 
 from __future__ import annotations
@@ -42,9 +43,15 @@ def stored(design: Design) -> tuple[dict[str, Any], dict[str, Any]]:
     attrs = {"design": design.method.name, META: json.dumps(meta)}
     if design.method.follows:
         return {}, attrs
-    words = {"long_name": "place in the design: quantile, code, or number of the listed value", "units": "1"}
+    words = {
+        "long_name": "place in the design: quantile, code, or number of the listed value",
+        "units": "1",
+    }
     names = np.array(list(design.factors), dtype=object)
-    return {PLACE: (("case", FACTOR), design.unit, words), FACTOR: (FACTOR, names, {"long_name": "factor"})}, attrs
+    return {
+        PLACE: (("case", FACTOR), design.unit, words),
+        FACTOR: (FACTOR, names, {"long_name": "factor"}),
+    }, attrs
 
 
 def restored(ds: xr.Dataset, parsed: Mapping[str, Factor], dims: tuple[str, ...]) -> Design:
@@ -67,16 +74,28 @@ def restored(ds: xr.Dataset, parsed: Mapping[str, Factor], dims: tuple[str, ...]
     known = str(ds.attrs.get("design", ""))
     meta = json.loads(ds.attrs.get(META, "null"))
     if known not in METHODS or meta is None:
-        raise InputError("study", sorted(map(str, ds.attrs)), f"results with the attributes design and {META}", REMEDY)
+        raise InputError(
+            "study",
+            sorted(map(str, ds.attrs)),
+            f"results with the attributes design and {META}",
+            REMEDY,
+        )
     method = METHODS[known]
     names = meta.pop("columns")
     size = meta.pop("size")
     rows = int(np.prod([ds.sizes[d] for d in dims]))
     if rows != max(size, 1):
-        raise InputError("study", f"{rows} rows", f"the {size} rows of its design {known}", "Gather the study again.")
+        raise InputError(
+            "study",
+            f"{rows} rows",
+            f"the {size} rows of its design {known}",
+            "Gather the study again.",
+        )
     if method.observed:
         columns = {name: _column(ds, name, dims) for name in names}
-        free, unit = of_columns({name: values for name, values in columns.items() if name not in parsed})
+        free, unit = of_columns(
+            {name: values for name, values in columns.items() if name not in parsed}
+        )
         return Design(columns, free, method, unit, meta)
     free = {name: factor for name, factor in parsed.items() if factor.varies}
     if method.crossed:
@@ -84,8 +103,12 @@ def restored(ds: xr.Dataset, parsed: Mapping[str, Factor], dims: tuple[str, ...]
     else:
         unit = flat(ds, PLACE, dims)
         if [str(name) for name in ds[FACTOR].values] != list(free):
-            raise InputError("study", list(map(str, ds[FACTOR].values)), f"the factors {', '.join(free)}", REMEDY)
-    levels = {name: method.values(factor, unit[:, j]) for j, (name, factor) in enumerate(free.items())}
+            raise InputError(
+                "study", list(map(str, ds[FACTOR].values)), f"the factors {', '.join(free)}", REMEDY
+            )
+    levels = {
+        name: method.values(factor, unit[:, j]) for j, (name, factor) in enumerate(free.items())
+    }
     _check_values(ds, free, levels, dims)
     columns = {}
     for name in names:
@@ -99,7 +122,10 @@ def restored(ds: xr.Dataset, parsed: Mapping[str, Factor], dims: tuple[str, ...]
 
 
 def _check_values(
-    ds: xr.Dataset, free: Mapping[str, Factor], levels: Mapping[str, np.ndarray], dims: tuple[str, ...]
+    ds: xr.Dataset,
+    free: Mapping[str, Factor],
+    levels: Mapping[str, np.ndarray],
+    dims: tuple[str, ...],
 ) -> None:
     """Refuse rows whose numbers are not those that the design draws."""
     for name, values in levels.items():
@@ -109,7 +135,8 @@ def _check_values(
 
 
 def solved_part(design: Design, rows: np.ndarray) -> Design:
-    """Return the design of some rows: a smaller random sample, otherwise a table, which needs no structure.
+    """Return the design of some rows: a smaller random sample, otherwise a table, which needs no
+    structure.
 
     Parameters
     ----------
@@ -120,7 +147,8 @@ def solved_part(design: Design, rows: np.ndarray) -> Design:
     """
     columns = {name: values[rows] for name, values in design.columns.items()}
     if design.method.subset:
-        meta = {key: value for key, value in design.meta.items() if key != "replicates"}  # they are not complete
+        # they are not complete
+        meta = {key: value for key, value in design.meta.items() if key != "replicates"}
         return Design(columns, design.factors, design.method, design.unit[rows], meta)
     free, unit = of_columns({name: columns[name] for name in design.factors})
     return Design(columns, free, METHODS["table"], unit, {"rank_correlations": ()})

@@ -57,7 +57,11 @@ def _check_options(study: Study) -> None:
     if shaped and "hertz" in levels("normal"):
         allowed = f"halfspace, because {' and '.join(shaped)} may leave no circle"
         raise InputError("normal", "hertz", allowed, "Write normal: halfspace.")
-    given = {name: value for name, value in config.base.items() if name in FIELDS and name not in study.not_given}
+    given = {
+        name: value
+        for name, value in config.base.items()
+        if name in FIELDS and name not in study.not_given
+    }
     for where, values in (("base.", given), ("factors.", study.factors)):
         check_used(other_than_default(values), config.outputs, config.not_checked, where)
     check_used({"duty": config.duty}, config.outputs, config.not_checked)
@@ -74,31 +78,47 @@ def cross_check(study: Study) -> None:
 
     Raises
     ------
-    InputError : keys contradict each other, or the design, the materials or the geometry cannot be what they say
+    InputError : keys contradict each other, or the design, the materials or the geometry cannot be
+        what they say
     """
     config = study.config
     for name in OPTION_FACTORS:
         if name in config.factors and not isinstance(getattr(config, name), str):
-            raise InputError(name, getattr(config, name), "", "Keep one.", wrong="stands among the factors too")
+            raise InputError(
+                name, getattr(config, name), "", "Keep one.", wrong="stands among the factors too"
+            )
     both = {*study.factors, *config.base} & {"material_pair"}
     single = {*study.factors, *config.base} & set(MATERIAL_FIELDS)
     if both and single:
-        raise InputError("material_pair", sorted(single), "the pair or the single materials, not both")
+        raise InputError(
+            "material_pair", sorted(single), "the pair or the single materials, not both"
+        )
     doubled = set(config.base) & set(study.factors)
     if doubled:
         name = min(doubled)
         raise InputError(
-            f"base.{name}", config.base[name], "", "Remove one of them.", wrong=f"stands beside a factor {name}"
+            f"base.{name}",
+            config.base[name],
+            "",
+            "Remove one of them.",
+            wrong=f"stands beside a factor {name}",
         )
     if not config.method.proposes and config.method.observed != (config.table is not None):
         remedy = "Write 'table: cases.csv' too, with your file."
         if config.table:
             remedy = "Write 'design: table' too."
-        raise InputError("table", config.table, "design: table and the path of a CSV or Excel file together", remedy)
+        raise InputError(
+            "table",
+            config.table,
+            "design: table and the path of a CSV or Excel file together",
+            remedy,
+        )
     config.method.check(study.parsed)
     several = [name for name in OPTION_FACTORS if name in study.factors]
     if config.method.proposes and several:
-        raise InputError(several[0], study.factors[several[0]]["values"], "one model: a search compares designs")
+        raise InputError(
+            several[0], study.factors[several[0]]["values"], "one model: a search compares designs"
+        )
     for name in study.factors:
         check_own_name(name, f"factors.{name}")
     wrong = Collector()
@@ -108,7 +128,13 @@ def cross_check(study: Study) -> None:
         check(config, study.parsed, columns)
         check_search(config, study.parsed)
         check_until(config)
-    for checked in (_check_roles, _check_parts, _check_options, _check_correlations, _check_materials):
+    for checked in (
+        _check_roles,
+        _check_parts,
+        _check_options,
+        _check_correlations,
+        _check_materials,
+    ):
         with wrong.part():
             checked(study)
     wrong.check()
@@ -142,7 +168,10 @@ def _check_parts(study: Study) -> None:
 
 
 def _check_groups(
-    config: Any, groups: Mapping[str, tuple[str, ...]], free: Mapping[str, Factor], specs: Mapping[str, Any]
+    config: Any,
+    groups: Mapping[str, tuple[str, ...]],
+    free: Mapping[str, Factor],
+    specs: Mapping[str, Any],
 ) -> None:
     names = list(free)
     grouped = set()
@@ -158,10 +187,14 @@ def _check_groups(
         for name in members:
             if name not in free:
                 if name in specs:
-                    raise InputError(where, name, "factors that vary and are not computed by an expression")
+                    raise InputError(
+                        where, name, "factors that vary and are not computed by an expression"
+                    )
                 raise unknown_name(where, name, names)
             if name in grouped:
-                raise InputError(where, name, "each factor in one group", "Remove it from one of the groups.")
+                raise InputError(
+                    where, name, "each factor in one group", "Remove it from one of the groups."
+                )
             grouped.add(name)
 
 
@@ -173,7 +206,9 @@ def _check_category(config: Any, name: str, free: Mapping[str, Factor]) -> None:
             own = f"{config.design} with analysis.groups"
         else:
             own = config.design
-        raise InputError(where, name, f"design {listing(those_with('conditional'), 'or')}, not {own}")
+        raise InputError(
+            where, name, f"design {listing(those_with('conditional'), 'or')}, not {own}"
+        )
     if name not in free:
         raise unknown_name(where, name, [n for n, f in free.items() if f.discrete])
     if not free[name].discrete or len(free[name].levels) > MOST_LEVELS:
@@ -183,7 +218,9 @@ def _check_category(config: Any, name: str, free: Mapping[str, Factor]) -> None:
 
 
 def _check_correlations(study: Study) -> None:
-    """Refuse rank correlations that the design or the factors cannot have, before anything is drawn."""
+    """Refuse rank correlations that the design or the factors cannot have, before anything is
+    drawn.
+    """
     config = study.config
     check_design(config.rank_correlations, config.design)
     random = {n: f for n, f in study.parsed.items() if f.kind != "expression"}
@@ -191,7 +228,8 @@ def _check_correlations(study: Study) -> None:
 
 
 def _check_materials(study: Study) -> None:
-    """Check that the database has every material of a study, with the scatter that its analysis needs.
+    """Check that the database has every material of a study, with the scatter that its analysis
+    needs.
 
     Parameters
     ----------
@@ -208,7 +246,9 @@ def _check_materials(study: Study) -> None:
 def named_materials(
     base: Mapping[str, Any], factors: Mapping[str, Any], database: MaterialDatabase
 ) -> dict[str, dict[str, Material]]:
-    """Return the materials of each body by name; raise the errors of all names that the database lacks together."""
+    """Return the materials of each body by name; raise the errors of all names that the database
+    lacks together.
+    """
     wrong = Collector()
     named: dict[str, dict[str, Material]] = {body: {} for body in BODIES}
     for where, body, name in _names_of_materials(base, factors):
@@ -218,7 +258,9 @@ def named_materials(
     return named
 
 
-def _names_of_materials(base: Mapping[str, Any], factors: Mapping[str, Any]) -> Iterator[tuple[str, str, str]]:
+def _names_of_materials(
+    base: Mapping[str, Any], factors: Mapping[str, Any]
+) -> Iterator[tuple[str, str, str]]:
     """Yield each name of a material with the key of the study file and the body.
 
     Entries of another form are left out: they are refused elsewhere.
@@ -236,7 +278,11 @@ def _names_of_materials(base: Mapping[str, Any], factors: Mapping[str, Any]) -> 
             names: Sequence[Any] = (entry,)
             if isinstance(entry, (list, tuple)):
                 names = entry
-            yield from ((where, body, name) for body, name in zip(bodies, names, strict=False) if isinstance(name, str))
+            yield from (
+                (where, body, name)
+                for body, name in zip(bodies, names, strict=False)
+                if isinstance(name, str)
+            )
 
 
 def check_cells(study: Study) -> None:
@@ -249,7 +295,8 @@ def check_cells(study: Study) -> None:
         table = read_cases(study.table_path, Collector())
         for name in (name for name in table.names if name in known):
             cells = {line: row[table.names.index(name)] for line, row in table.lines.items()}
-            for cell, line in {cell: line for line, cell in reversed(cells.items())}.items():  # its first line
+            # its first line
+            for cell, line in {cell: line for line, cell in reversed(cells.items())}.items():
                 for material in _materials_in(cell, name):
                     try:
                         study.materials.material(material, name)
@@ -259,7 +306,9 @@ def check_cells(study: Study) -> None:
 
 
 def _materials_in(cell: str, name: str) -> list[str]:
-    """Return the names of materials in a cell, those of both bodies in the column `material_pair`."""
+    """Return the names of materials in a cell, those of both bodies in the column
+    `material_pair`.
+    """
     names = [cell]
     if name == "material_pair":
         names = cell.split("/")
@@ -279,11 +328,14 @@ def check_geometry(study: Study) -> None:
 
     Notes
     -----
-    Relative curvatures are monotonic in each of the quantities, so the ends of a range decide. Expressions, tables and
-    the rollers of a carriage are checked on the whole design before anything is solved.
+    Relative curvatures are monotonic in each of the quantities, so the ends of a range decide.
+    Expressions, tables and the rollers of a carriage are checked on the whole design before
+    anything is solved.
     """
     config = study.config
-    needs_rows = config.method.observed or any(factor.kind == "expression" for factor in study.parsed.values())
+    needs_rows = config.method.observed or any(
+        factor.kind == "expression" for factor in study.parsed.values()
+    )
     if needs_rows or config.carriage is not None:
         design = study.design()
         problems = list(geometry_problems({name: design[name].values for name in GEOMETRY}))
@@ -316,5 +368,7 @@ def _ends(study: Study, name: str) -> list[float]:
     if factor.kind == "truncnormal":
         low, high = factor.numbers[-2:]
     if low < 0 < high and PARAMETERS[name].nonzero:
-        raise InputError(f"factors.{name}", [low, high], PARAMETERS[name].allowed(), wrong="holds 0")
+        raise InputError(
+            f"factors.{name}", [low, high], PARAMETERS[name].allowed(), wrong="holds 0"
+        )
     return [low, high]

@@ -44,7 +44,9 @@ def check_name(name: Any) -> str:
     if isinstance(name, (int, float)) and not isinstance(name, bool):
         name = str(name)
     if isinstance(name, str) and DEVICE.fullmatch(name):
-        raise InputError("name", name, "the name of a folder", "Add a word to it.", "is a device of Windows")
+        raise InputError(
+            "name", name, "the name of a folder", "Add a word to it.", "is a device of Windows"
+        )
     if not isinstance(name, str) or not NAME.fullmatch(name) or ".." in name or name.endswith("."):
         raise InputError(
             "name",
@@ -60,8 +62,10 @@ Correlations = Annotated[tuple[tuple[str, str, float], ...], BeforeValidator(che
 Roles = Annotated[dict[str, str], BeforeValidator(check_words)]
 Goals = Annotated[dict[str, str], BeforeValidator(directions)]
 DUTY_MEANING = (
-    "hours_per_day and days_per_year of travel: lives in years beside hours; or strokes_per_day, stroke [m] (one way), "
-    "days_per_year and rollers_on_rail, which give hours and guide_overrollings_per_hour by the velocity"
+    "hours_per_day and days_per_year of travel: lives in years beside hours; or "
+    "strokes_per_day, stroke [m] (one way), "
+    "days_per_year and rollers_on_rail, which give hours and guide_overrollings_per_hour by "
+    "the velocity"
 )
 Duty = Annotated[dict[str, float] | None, BeforeValidator(checked_duty)]
 Comparisons = Annotated[tuple[str, ...], AfterValidator(comparisons)]
@@ -77,27 +81,45 @@ _ENDS: dict[str, Any] = {
 Requirements = Annotated[
     dict[str, Requirement],
     PlainSerializer(written),
-    WithJsonSchema({"type": "object", "additionalProperties": {"anyOf": [_ENDS, {"type": ["number", "string"]}]}}),
+    WithJsonSchema(
+        {
+            "type": "object",
+            "additionalProperties": {"anyOf": [_ENDS, {"type": ["number", "string"]}]},
+        }
+    ),
 ]
 
 
 class _Design(BaseModel):
     """Keys of a study file that state its name, its cases and its design."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True, title="trackroller study", ser_json_inf_nan="constants")
+    model_config = ConfigDict(
+        extra="forbid", frozen=True, title="trackroller study", ser_json_inf_nan="constants"
+    )
 
     name: Name = Field(description="names the results folder; letters, digits, '.', '_', '-'")
     description: str = Field("", description="one sentence at the head of the report")
     base: dict[str, Any] = Field({}, description="values of all cases")
     carriage: dict[str, Any] | None = Field(
-        None, description="carriage file whose rollers are solved under its loads; its fields are factors, too"
+        None,
+        description="carriage file whose rollers are solved under its loads; its fields are "
+        "factors, too",
     )
-    factors: dict[str, dict[str, Any]] = Field({}, description="what varies: a list or a distribution for each factor")
-    design: str = Field("grid", alias="method", description="how the factors are combined; `design` is its other name")
-    samples: int = Field(1024, ge=1, le=10_000_000, description="number of rows, trajectories or base samples")
+    factors: dict[str, dict[str, Any]] = Field(
+        {}, description="what varies: a list or a distribution for each factor"
+    )
+    design: str = Field(
+        "grid",
+        alias="method",
+        description="how the factors are combined; `design` is its other name",
+    )
+    samples: int = Field(
+        1024, ge=1, le=10_000_000, description="number of rows, trajectories or base samples"
+    )
     seed: int = Field(1, ge=0, le=2**32 - 2, description="the same seed gives the same design")
     table: str | None = Field(
-        None, description="for design table: CSV file or workbook (.xlsx) of cases beside the study file"
+        None,
+        description="for design table: CSV file or workbook (.xlsx) of cases beside the study file",
     )
     rank_correlations: Correlations = Field(
         (), description="lhs, sobol, inner_outer: [factor, factor, Spearman rank correlation] each"
@@ -116,7 +138,8 @@ _TYPES: dict[str, Any] = {
     "condition": str | None,
     "switch": bool,
 }
-WHOLE = tuple(name for name, (key, _) in study_keys().items() if key.kind is int)  # keys with a whole number
+# keys with a whole number
+WHOLE = tuple(name for name, (key, _) in study_keys().items() if key.kind is int)
 IN_STUDY = tuple(option for option in OPTIONS.values() if "study" in option.files)
 _WithKeys = create_model(
     "_WithKeys",
@@ -126,20 +149,25 @@ _WithKeys = create_model(
         for name, (key, method) in study_keys().items()
     },
 )
-_TYPES_OF_OPTIONS: dict[str, Any] = {option.name: _TYPES.get(option.kind, str) for option in IN_STUDY}
+_TYPES_OF_OPTIONS: dict[str, Any] = {
+    option.name: _TYPES.get(option.kind, str) for option in IN_STUDY
+}
 _TYPES_OF_OPTIONS |= {option.name: str | tuple[str, ...] for option in IN_STUDY if option.factor}
 _WithOptions = create_model(
     "_WithOptions",
     __base__=_WithKeys,
     **{  # type: ignore[call-overload]
-        option.name: (_TYPES_OF_OPTIONS[option.name], Field(option.default, description=option.meaning))
+        option.name: (
+            _TYPES_OF_OPTIONS[option.name],
+            Field(option.default, description=option.meaning),
+        )
         for option in IN_STUDY
     },
 )
 
 
 class StudyFile(_WithOptions):  # type: ignore[misc, valid-type]
-    """Content of a study file; see the descriptions of its fields. The options are those of `OPTIONS`."""
+    """Content of a study file; its fields have descriptions, and `OPTIONS` the options."""
 
     analysis: Analysis = Field(
         default_factory=lambda: Analysis.model_validate({}), description="what is analysed, and how"
@@ -147,26 +175,42 @@ class StudyFile(_WithOptions):  # type: ignore[misc, valid-type]
     duty: Duty = Field(None, description=DUTY_MEANING)
     requirement: Requirements = Field(
         {},
-        description="what is wanted of outputs: min, max, and probability, the share of the conditions that have to "
+        description="what is wanted of outputs: min, max, and probability, the share of the "
+        "conditions that have to "
         "meet it; `analysis.target` is its other name",
     )
     own: Annotated[dict[str, str], BeforeValidator(own_expressions)] = Field(
         {}, description="outputs of the study's own: name and expression of results and inputs"
     )
-    question: str | None = Field(None, description="what the study asks; follows from its keys if it is left out")
-    roles: Roles = Field({}, description="who sets a factor: choice (the designer) or condition (the use)")
-    goals: Annotated[dict[str, str], BeforeValidator(partial(directions, key="goals", least=1))] = Field(
-        {}, description="optimise: results or choices, each max or min; worst (default), mean, b10, probability of one"
+    question: str | None = Field(
+        None, description="what the study asks; follows from its keys if it is left out"
+    )
+    roles: Roles = Field(
+        {}, description="who sets a factor: choice (the designer) or condition (the use)"
+    )
+    goals: Annotated[dict[str, str], BeforeValidator(partial(directions, key="goals", least=1))] = (
+        Field(
+            {},
+            description="optimise: results or choices, each max or min; worst (default), mean, "
+            "b10, probability of one",
+        )
     )
     budget: Budget = Field(
-        default_factory=lambda: Budget.model_validate({}), description="optimise: how long the search goes on"
+        default_factory=lambda: Budget.model_validate({}),
+        description="optimise: how long the search goes on",
     )
     until: Until | None = Field(
-        None, description="the sample grows by doublings until intervals are narrow, or cases or hours are spent"
+        None,
+        description="the sample grows by doublings until intervals are narrow, or cases or hours "
+        "are spent",
     )
-    pareto: Goals = Field({}, description="goals of the Pareto set: outputs or factors, each max or min")
+    pareto: Goals = Field(
+        {}, description="goals of the Pareto set: outputs or factors, each max or min"
+    )
     constraints: Comparisons = Field((), description="comparisons that an allowed design must meet")
-    chunk_size: int | None = Field(None, ge=1, le=1_000_000, description="cases in each job; chosen if not given")
+    chunk_size: int | None = Field(
+        None, ge=1, le=1_000_000, description="cases in each job; chosen if not given"
+    )
 
     @property
     def method(self) -> Method:
@@ -179,7 +223,9 @@ class StudyFile(_WithOptions):  # type: ignore[misc, valid-type]
         option = OPTIONS[info.field_name]
         if isinstance(value, (list, tuple)) and (option.factor or option.required):
             if not value or any(value.count(word) > 1 for word in value):
-                raise InputError(option.name, list(value), "a list without repetition that is not empty")
+                raise InputError(
+                    option.name, list(value), "a list without repetition that is not empty"
+                )
             if option.factor:
                 words = tuple(option.check(word) for word in value)
                 return words[0] if len(words) == 1 else words
@@ -193,7 +239,9 @@ class StudyFile(_WithOptions):  # type: ignore[misc, valid-type]
     def _whole(cls, value: Any, info: Any) -> Any:
         for one in value if isinstance(value, (list, tuple)) else (value,):
             if isinstance(one, (bool, str, bytes, np.bool_)):
-                raise InputError(info.field_name, value, "a whole number", "Write digits without quotes.")
+                raise InputError(
+                    info.field_name, value, "a whole number", "Write digits without quotes."
+                )
         return value
 
     @field_validator("requirement", mode="before")

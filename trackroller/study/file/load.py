@@ -49,8 +49,13 @@ EXAMPLES = {  # of keys that are mappings or lists
     "requirement": "{roller_life_hours: {min: 500}}",
     "own": "{heat_per_force: friction_power_2 / normal_force_2}",
 }
-ROOMS = {"analysis": Analysis.model_fields, "until": Until.model_fields, "budget": Budget.model_fields}
-OTHER_NAMES = {"design": "method", "analysis.target": "requirement"}  # keys that have two names, and today's name
+ROOMS = {
+    "analysis": Analysis.model_fields,
+    "until": Until.model_fields,
+    "budget": Budget.model_fields,
+}
+# keys that have two names, and today's name
+OTHER_NAMES = {"design": "method", "analysis.target": "requirement"}
 
 
 def _translated(detail: Mapping[str, Any]) -> InputError:
@@ -60,31 +65,42 @@ def _translated(detail: Mapping[str, Any]) -> InputError:
         return context
     where = ".".join(str(part) for part in detail["loc"]) or "study"
     if detail["type"] == "extra_forbidden":
-        place = str(detail["loc"][0])
+        room_name = str(detail["loc"][0])
         name = str(detail["loc"][-1])
-        if len(detail["loc"]) > 1 and place in ROOMS:
-            return unknown_name(place, name, ROOMS[place])
+        if len(detail["loc"]) > 1 and room_name in ROOMS:
+            return unknown_name(room_name, name, ROOMS[room_name])
         return unknown_name("study key", where, StudyFile.model_fields)
     if detail["type"] == "missing":
         *room, key = (str(part) for part in detail["loc"])
         if room:
-            return InputError(where, None, f"this key, in {room[-1]}", f"Add {key}: ... to {room[-1]}.")
+            return InputError(
+                where, None, f"this key, in {room[-1]}", f"Add {key}: ... to {room[-1]}."
+            )
         return InputError(where, None, "this key, in every study", f"Add a line '{key}: ...'.")
     allowed = detail["msg"].replace("Input should be ", "")
     if detail["type"] == "model_type":
         allowed = f"a mapping with {', '.join(ROOMS[where])}"
-    for word, plain in (("dictionary", "mapping of names to values"), ("tuple", "list"), ("string", "text")):
+    for word, plain in (
+        ("dictionary", "mapping of names to values"),
+        ("tuple", "list"),
+        ("string", "text"),
+    ):
         allowed = allowed.replace(f"valid {word}", plain)
     remedy = ""
     if where in EXAMPLES:
         remedy = f"For example {where}: {EXAMPLES[where]}."
     if where == "table" and isinstance(detail.get("input"), (list, dict)):
-        remedy = "Write the table to a file, as frame.to_csv('cases.csv', index=False), and give the path: cases.csv."
+        remedy = (
+            "Write the table to a file, as frame.to_csv('cases.csv', index=False), and give "
+            "the path: cases.csv."
+        )
     return InputError(where, detail.get("input"), allowed, remedy)
 
 
 def with_present_keys(data: Mapping[str, Any]) -> dict[str, Any]:
-    """Return a study file with today's name of each key in `OTHER_NAMES`; refuse a key that is given by both names."""
+    """Return a study file with today's name of each key in `OTHER_NAMES`; refuse a key that is
+    given by both names.
+    """
     out = dict(data)
     if "design" in out:
         _refuse_both("design", "method", out)
@@ -129,7 +145,9 @@ def _renamed(error: InputError, names: Mapping[str, str]) -> InputError:
 
 
 def checked_keys(data: Mapping[str, Any]) -> StudyFile:
-    """Return the keys of a study file, each checked by itself; raise `InputError` if one is wrong."""
+    """Return the keys of a study file, each checked by itself; raise `InputError` if one is
+    wrong.
+    """
     wrong = Collector()
     data = study_with_radii(with_present_keys(data), wrong)
     with wrong.part():
@@ -141,20 +159,25 @@ def checked_keys(data: Mapping[str, Any]) -> StudyFile:
         errors = error.errors()
         unknown = [str(one["loc"][-1]) for one in errors if one["type"] == "extra_forbidden"]
         for one in errors:
-            if one["type"] != "missing" or not any(nearest(name, map(str, one["loc"][-1:])) for name in unknown):
+            if one["type"] != "missing" or not any(
+                nearest(name, map(str, one["loc"][-1:])) for name in unknown
+            ):
                 wrong.errors += _translated(one).errors
         naming = ("outputs", "analysis", "requirement", "duty", "carriage", "own")
         if not {one["loc"][0] for one in errors} & {*naming}:
             with wrong.part():
                 analysed = {key: data[key] for key in naming if key in data}
-                check_analysed(StudyFile.model_validate({"name": "without-the-other-keys"} | analysed))
+                check_analysed(
+                    StudyFile.model_validate({"name": "without-the-other-keys"} | analysed)
+                )
         wrong.check()
         raise
     return config
 
 
 def _by_strokes(data: Mapping[str, Any]) -> Mapping[str, Any]:
-    """Return a study file whose duty is in hours, and whose guide has the overrollings of the strokes.
+    """Return a study file whose duty is in hours, and whose guide has the overrollings of the
+    strokes.
 
     Raises
     ------
@@ -171,7 +194,9 @@ def _by_strokes(data: Mapping[str, Any]) -> Mapping[str, Any]:
     }
     for key, remedy in remedies.items():
         if data.get(key) is not None:
-            raise InputError("duty.stroke", duty["stroke"], "hours_per_day", remedy, f"stands beside a {key}")
+            raise InputError(
+                "duty.stroke", duty["stroke"], "hours_per_day", remedy, f"stands beside a {key}"
+            )
     for name in ("velocity", OVERROLLINGS):
         if name in _mapping(data.get("factors")):
             wrong = "varies beside the strokes of the duty"
@@ -179,7 +204,9 @@ def _by_strokes(data: Mapping[str, Any]) -> Mapping[str, Any]:
             raise InputError(f"factors.{name}", None, "one velocity", remedy, wrong)
     velocity = None
     if base.get("velocity") is not None:
-        velocity = number_in(base["velocity"], "base.velocity", "a velocity > 0 [m/min]", 1e-9, 1e9, "m/min")
+        velocity = number_in(
+            base["velocity"], "base.velocity", "a velocity > 0 [m/min]", 1e-9, 1e9, "m/min"
+        )
     in_time, given = of_roller(duty, velocity, base.get(OVERROLLINGS))
     return {**data, "duty": in_time, "base": base | given}
 
@@ -211,20 +238,31 @@ def complete(study: Study) -> Study:
     return replace(study, config=config.model_copy(update=update), not_given=tuple(values))
 
 
-def _on_carriage(study: Study, whole: Carriage, names: set[str]) -> tuple[dict[str, Any], dict[str, Any]]:
-    """Return the keys that a study takes from its carriage, and the values of parameters that no file gives.
+def _on_carriage(
+    study: Study, whole: Carriage, names: set[str]
+) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Return the keys that a study takes from its carriage, and the values of parameters that no
+    file gives.
 
-    The key `base` takes what all rollers share, `roles` the roles of the fields, and `duty` that of the carriage.
+    The key `base` takes what all rollers share, `roles` the roles of the fields, and `duty` that of
+    the carriage.
     """
     config = study.config
     wrong = Collector()
     for name in sorted(names & {*given_by(whole)}):
         allowed = "parameters that the carriage does not give"
-        wrong.errors.append(InputError(name, None, allowed, "Remove it: statics gives it.", "stands beside a carriage"))
+        wrong.errors.append(
+            InputError(
+                name, None, allowed, "Remove it: statics gives it.", "stands beside a carriage"
+            )
+        )
     if config.method.observed:
         allowed = "a design of factors, because a table lists loads of rollers"
-        wrong.errors.append(InputError("design", config.design, allowed, "Write factors in place of the table."))
-    fields = [name for name in study.factors if field_of(name)]  # in their order: a file is written the same again
+        wrong.errors.append(
+            InputError("design", config.design, allowed, "Write factors in place of the table.")
+        )
+    # in their order: a file is written the same again
+    fields = [name for name in study.factors if field_of(name)]
     with wrong.part():
         check_fields(whole, fields)
     _check_rollers(config, whole, wrong)
@@ -235,11 +273,15 @@ def _on_carriage(study: Study, whole: Carriage, names: set[str]) -> tuple[dict[s
     if duty is None:
         duty = whole.duty
     if whole.duty is not None and duty != whole.duty:
-        wrong.errors.append(InputError("duty", config.duty, "the duty of the carriage", "Remove one of them."))
+        wrong.errors.append(
+            InputError("duty", config.duty, "the duty of the carriage", "Remove one of them.")
+        )
     speeds = [name for name in fields if "carriage_speed" in name]
     if math.isfinite(whole.stroke) and speeds:
         remedy = "Write hours_per_day in place of the strokes."
-        wrong.errors.append(InputError(f"factors.{speeds[0]}", None, "one speed", remedy, "varies beside strokes"))
+        wrong.errors.append(
+            InputError(f"factors.{speeds[0]}", None, "one speed", remedy, "varies beside strokes")
+        )
     wrong.check()
     of_study = set(names)
     if "material_pair" in names:
@@ -257,7 +299,9 @@ def _on_carriage(study: Study, whole: Carriage, names: set[str]) -> tuple[dict[s
 
 
 def _check_rollers(config: StudyFile, whole: Carriage, wrong: Collector) -> None:
-    """Add the errors of rollers without a file, and of files with other options than the study has."""
+    """Add the errors of rollers without a file, and of files with other options than the
+    study has.
+    """
     checked: set[tuple[str, str]] = set()
     for roller in whole.rollers:
         field = f"carriage.rollers.{roller.name}.roller"
@@ -280,13 +324,20 @@ def _check_option(config: StudyFile, key: str, value: Any, where: str) -> None:
     if key == "outputs" or stated == listed:
         return
     allowed = f"the option of the study, {stated}"
-    raise InputError(where, value, allowed, f"Write {key}: {value} in the study, or remove it from the roller's file.")
+    raise InputError(
+        where,
+        value,
+        allowed,
+        f"Write {key}: {value} in the study, or remove it from the roller's file.",
+    )
 
 
 def parse_study(
     data: Mapping[str, Any], path: Path | None = None, database: Any = None, planned: bool = False
 ) -> Study:
-    """Return the study of a mapping with the keys of a study file; raise `InputError` if an entry is wrong."""
+    """Return the study of a mapping with the keys of a study file; raise `InputError` if an entry
+    is wrong.
+    """
     with _as_written(data), noted_reads() as inputs:
         inputs |= {path: ("limit", digest) for path, digest in digests().items()}
         wrong = Collector()
@@ -309,7 +360,9 @@ def parse_study(
     return study
 
 
-def load_study(path: str | Path | Mapping[str, Any], database: Any = None, planned: bool = False) -> Study:
+def load_study(
+    path: str | Path | Mapping[str, Any], database: Any = None, planned: bool = False
+) -> Study:
     """Read and check a study file.
 
     Parameters
@@ -319,7 +372,8 @@ def load_study(path: str | Path | Mapping[str, Any], database: Any = None, plann
     database : MaterialDatabase, optional
         Materials. Default: the built-in database, changed and extended by the user's own file.
     planned : bool
-        The geometry of every case is checked already; a job of a cluster need not draw the whole design for it.
+        The geometry of every case is checked already; a job of a cluster need not draw the whole
+        design for it.
 
     Returns
     -------
@@ -329,13 +383,14 @@ def load_study(path: str | Path | Mapping[str, Any], database: Any = None, plann
     Raises
     ------
     InputError
-        If the file is missing or is not YAML, a key or name is unknown, a value is out of bounds, or the geometry
-        contradicts itself. The error names field, value, what is allowed and the nearest known name.
+        If the file is missing or is not YAML, a key or name is unknown, a value is out of bounds,
+        or the geometry contradicts itself. The error names field, value, what is allowed and the
+        nearest known name.
 
     Examples
     --------
-    >>> text = "{name: fit, factors: {roller_profile_radius: {values: [-6.5, -8]}}, contact_model: kalker}"
-    >>> characters = Path("study.yaml").write_text(text)
+    >>> factors = "factors: {roller_profile_radius: {values: [-6.5, -8]}}"
+    >>> characters = Path("study.yaml").write_text(f"{{name: fit, {factors}}}")
     >>> load_study("study.yaml").design().sizes["case"]
     2
     """

@@ -1,4 +1,6 @@
-"""JSON schema of a study file, for editors and documentation; `python -m trackroller.study.file.schema` writes it."""
+"""JSON schema of a study file, for editors and documentation; `python -m
+trackroller.study.file.schema` writes it.
+"""
 
 from __future__ import annotations
 
@@ -18,7 +20,10 @@ FILE = Path(__file__).resolve().parents[3] / "workflow" / "schemas" / "study.sch
 
 
 def _factor() -> dict[str, Any]:
-    kinds: dict[str, Any] = {"values": {"type": "array", "minItems": 1}, "expression": {"type": "string"}}
+    kinds: dict[str, Any] = {
+        "values": {"type": "array", "minItems": 1},
+        "expression": {"type": "string"},
+    }
     numbers = {**DISTRIBUTIONS, "linspace": 3, "logspace": 3}
     kinds |= {kind: {"type": "array", "minItems": n, "maxItems": n} for kind, n in numbers.items()}
     weights = {"type": "array", "items": {"type": "number", "exclusiveMinimum": 0}, "minItems": 1}
@@ -40,14 +45,20 @@ def _option(option: Option) -> dict[str, Any]:
         return {"anyOf": [words, several | {"minItems": 1}]}
     if option.kind == "words":
         return several | ({"minItems": 1} if option.required else {})
-    by_quantity = {"type": "object", "properties": dict.fromkeys(QUANTITIES, number), "additionalProperties": False}
+    by_quantity = {
+        "type": "object",
+        "properties": dict.fromkeys(QUANTITIES, number),
+        "additionalProperties": False,
+    }
     accuracy: dict[str, Any] = {"anyOf": [words, number, by_quantity | {"minProperties": 1}]}
     single: dict[str, dict[str, Any]] = {"word": words, "accuracy": accuracy, "number": number}
     return single.get(option.kind, {})
 
 
 def schema() -> dict[str, Any]:
-    """Return the schema: pydantic's, with the names and bounds of the parameters and options filled in."""
+    """Return the schema: pydantic's, with the names and bounds of the parameters and options filled
+    in.
+    """
     whole = StudyFile.model_json_schema()
     properties = whole["properties"]
     properties["name"]["pattern"] = f"^{NAME.pattern}$"
@@ -56,7 +67,10 @@ def schema() -> dict[str, Any]:
         base[name] = {"description": f"{parameter.allowed()}; {parameter.meaning}"}
     pair = {"type": "array", "items": {"type": "string"}, "minItems": 2, "maxItems": 2}
     base |= {name: {"type": "string"} for name in MATERIAL_FIELDS} | {"material_pair": pair}
-    base |= {name: {"type": ["object", "string", "null"], "description": text} for name, text in MAPPING_FIELDS.items()}
+    base |= {
+        name: {"type": ["object", "string", "null"], "description": text}
+        for name, text in MAPPING_FIELDS.items()
+    }
     properties["base"] |= {"properties": base, "additionalProperties": False}
     named = {name: _factor() for name in (*base, *OPTION_FACTORS)}
     for name in named.keys() & PARAMETERS.keys():

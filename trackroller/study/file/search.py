@@ -27,12 +27,20 @@ class Budget(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
 
     designs: int = Field(
-        640, ge=1, le=1_000_000, description="largest number of designs of the search; polishing and checks come on top"
+        640,
+        ge=1,
+        le=1_000_000,
+        description="largest number of designs of the search; polishing and checks come on top",
     )
     population: int | None = Field(
-        None, ge=4, le=10_000, description="designs of a generation; default a twentieth of the designs, 8 to 32"
+        None,
+        ge=4,
+        le=10_000,
+        description="designs of a generation; default a twentieth of the designs, 8 to 32",
     )
-    hours: float | None = Field(None, gt=0, description="time of solving on one core, all runs together")
+    hours: float | None = Field(
+        None, gt=0, description="time of solving on one core, all runs together"
+    )
 
     @property
     def generation(self) -> int:
@@ -41,7 +49,9 @@ class Budget(BaseModel):
 
 
 def judged_by(goal: str) -> tuple[str, str]:
-    """Split a goal of a search into its statistic over the conditions and its result; a plain name is its `worst`."""
+    """Split a goal of a search into its statistic over the conditions and its result; a plain name
+    is its `worst`.
+    """
     kind, output = statistic(goal, JUDGED_BY)
     return kind or "worst", output
 
@@ -51,15 +61,24 @@ def check_search(config: Any, factors: Mapping[str, Factor]) -> None:
     if not config.method.proposes:
         if config.question == "best":
             remedy = "Write method: optimise and goals, or question: decide."
-            raise InputError("question", config.question, "another question: only a search finds the best", remedy)
+            raise InputError(
+                "question",
+                config.question,
+                "another question: only a search finds the best",
+                remedy,
+            )
         if config.goals:
             remedy = "Use design: optimise, or name the goals under pareto."
             raise InputError("goals", config.design, "design: optimise", remedy)
         return
     if config.pareto:
-        raise InputError("pareto", list(config.pareto), "goals, in design optimise", "Rename the key to goals.")
+        raise InputError(
+            "pareto", list(config.pareto), "goals, in design optimise", "Rename the key to goals."
+        )
     if len({judged_by(goal) for goal in config.goals}) < len(config.goals):
-        raise InputError("goals", list(config.goals), "each result once with a statistic", "Remove one of them.")
+        raise InputError(
+            "goals", list(config.goals), "each result once with a statistic", "Remove one of them."
+        )
     known = names_of_outputs(config)
     free = [*known, *factors, *PARAMETERS]
     for goal in config.goals:
@@ -70,10 +89,14 @@ def check_search(config: Any, factors: Mapping[str, Factor]) -> None:
             raise InputError("samples", None, allowed, "Write samples: 32, for example.")
 
 
-def _check_goal(config: Any, goal: str, factors: Mapping[str, Factor], free: list[str], known: list[str]) -> None:
+def _check_goal(
+    config: Any, goal: str, factors: Mapping[str, Factor], free: list[str], known: list[str]
+) -> None:
     kind, output = judged_by(goal)
     if kind == "worst":
         known = free
     check_statistic(config, ("goals", goal), kind, output, known)
     if output in factors and not factors[output].numeric:
-        raise InputError("goals", goal, "a result or factor with one number a case", "Names have no order.")
+        raise InputError(
+            "goals", goal, "a result or factor with one number a case", "Names have no order."
+        )

@@ -38,10 +38,10 @@ class Study:
     path : path of the study file
     database : its materials, None for those of the program and of the user
     inputs : the files that were read for it
-    not_given : parameters that the study file does not name; `config.base` holds the values used for them, which are
-        those of the paper's example
-    grown : number of samples to which the key `until` has grown the sample, one for each design point of an
-        inner/outer design; empty at the first look
+    not_given : parameters that the study file does not name; `config.base` holds the values used
+        for them, which are those of the paper's example
+    grown : number of samples to which the key `until` has grown the sample, one for each design
+        point of an inner/outer design; empty at the first look
     """
 
     config: StudyFile
@@ -68,13 +68,21 @@ class Study:
 
     @property
     def samples(self) -> int:
-        """Return the number of samples, at the design point with most of them: as stated, or as grown by `until`."""
+        """Return the number of samples, at the design point with most of them: as stated, or as
+        grown by `until`.
+        """
         return max(self.grown, default=int(self.config.samples))
 
     @property
     def friction_laws(self) -> list[Any]:
-        """Return the friction laws of the study file as it states them; None and "" stand for constant friction."""
-        return list(self.factors.get("friction_law", {}).get("values", [self.config.base.get("friction_law")]))
+        """Return the friction laws of the study file as it states them; None and "" stand for
+        constant friction.
+        """
+        return list(
+            self.factors.get("friction_law", {}).get(
+                "values", [self.config.base.get("friction_law")]
+            )
+        )
 
     @cached_property
     def parsed(self) -> dict[str, Factor]:
@@ -90,7 +98,9 @@ class Study:
 
     @cached_property
     def materials(self) -> MaterialDatabase:
-        """Return the material database: the built-in one, changed and extended by the user's file."""
+        """Return the material database: the built-in one, changed and extended by the user's
+        file.
+        """
         if self.database is None:
             return load_database()
         database: MaterialDatabase = self.database
@@ -98,12 +108,18 @@ class Study:
 
     @property
     def decides(self) -> bool:
-        """Return whether results decide which cases follow; with a table of its designs a search is at its end."""
-        return self.config.until is not None or (self.config.method.proposes and self.config.table is None)
+        """Return whether results decide which cases follow; with a table of its designs a search is
+        at its end.
+        """
+        return self.config.until is not None or (
+            self.config.method.proposes and self.config.table is None
+        )
 
     @property
     def table_path(self) -> Path:
-        """Return the path of the CSV of cases; a relative path starts from the folder of the study file."""
+        """Return the path of the CSV of cases; a relative path starts from the folder of the study
+        file.
+        """
         table = Path(str(self.config.table))
         if self.path is None:
             return table
@@ -112,7 +128,9 @@ class Study:
     @property
     def options(self) -> dict[str, Any]:
         """Return the keyword arguments of `solve` that are not factors."""
-        return {o.name: getattr(self.config, o.name) for o in IN_STUDY if o.name not in self.factors}
+        return {
+            o.name: getattr(self.config, o.name) for o in IN_STUDY if o.name not in self.factors
+        }
 
     def merged(self, table: str | None = None) -> str:
         """Return the study as YAML with every default written out.
@@ -132,11 +150,14 @@ class Study:
 
     @cached_property
     def _text(self) -> str:
-        return write_yaml(self.as_dict())  # kept: planning, solving and gathering ask for it several times
+        # kept: planning, solving and gathering ask for it several times
+        return write_yaml(self.as_dict())
 
     @cached_property
     def drawn(self) -> Design:
-        """Return the drawn design; it is kept, because reading a CSV of a million cases takes seconds."""
+        """Return the drawn design; it is kept, because reading a CSV of a million cases takes
+        seconds.
+        """
         return build.draw(self.config, self.factors, self.table_path, self.grown)
 
     def doubts(self) -> list[str]:
@@ -149,7 +170,11 @@ class Study:
                 names += entry
             else:
                 names += str(entry).split(" / ")
-        names += [name for field in MATERIAL_FIELDS for name in set(np.ravel(values.get(field, ())).tolist())]
+        names += [
+            name
+            for field in MATERIAL_FIELDS
+            for name in set(np.ravel(values.get(field, ())).tolist())
+        ]
         return doubts(values, map(self.materials.material, dict.fromkeys(names)))
 
     def design(self) -> xr.Dataset:
@@ -158,11 +183,16 @@ class Study:
         Returns
         -------
         xarray.Dataset
-            Dimension `case`, one variable a parameter, materials by name. The attributes hold the study file and the
-            options that `solve` takes for these cases. A study of a carriage has a case for each loaded roller in each
-            load case, see `trackroller.study.design.carriage_cases`.
+            Dimension `case`, one variable a parameter, materials by name. The attributes hold the
+            study file and the options that `solve` takes for these cases. A study of a carriage has
+            a case for each loaded roller in each load case, see
+            `trackroller.study.design.carriage_cases`.
         """
-        attrs = {"study": self.merged(), "options": json.dumps(self.options), NOT_GIVEN: json.dumps(self.not_given)}
+        attrs = {
+            "study": self.merged(),
+            "options": json.dumps(self.options),
+            NOT_GIVEN: json.dumps(self.not_given),
+        }
         if self.carriage is not None:
             cases = carriage_cases.expanded(self.config, self.drawn, self.materials, self.carriage)
         else:

@@ -1,4 +1,5 @@
-"""Check the key `until` of a study file, with which a sample grows by itself until its intervals are narrow.
+"""Check the key `until` of a study file, with which a sample grows by itself until its intervals
+are narrow.
 
 until: {half_width: 0.03, of: [roller_life_hours], at_most: 200000, hours: 8}
 """
@@ -24,33 +25,52 @@ class Until(BaseModel):
     half_width: float = Field(
         gt=0,
         lt=10,
-        description="half width of the 95 % intervals: of shares of variance (saltelli, sobol), of mu* over the "
+        description="half width of the 95 % intervals: of shares of variance (saltelli, sobol), "
+        "of mu* over the "
         "output's range (morris), of log10 B10 or a probability (inner_outer)",
     )
     of: tuple[str, ...] = Field(
-        description="outputs; in inner_outer lives, b10(..) of a life or probability(..) of a requirement"
+        description="outputs; in inner_outer lives, b10(..) of a life or probability(..) of a "
+        "requirement"
     )
     at_most: int = Field(200_000, ge=1, le=10_000_000, description="largest number of cases")
-    hours: float | None = Field(None, gt=0, description="time of solving on one core, all runs together")
-    replicates: int = Field(16, ge=8, le=64, description="independent samples, whose scatter gives the intervals")
+    hours: float | None = Field(
+        None, gt=0, description="time of solving on one core, all runs together"
+    )
+    replicates: int = Field(
+        16, ge=8, le=64, description="independent samples, whose scatter gives the intervals"
+    )
 
     @field_validator("of", mode="before")
     @classmethod
     def _of(cls, value: Any) -> Any:
         listed = [value] if isinstance(value, str) else value
-        if isinstance(listed, (list, tuple)) and listed and all(isinstance(name, str) for name in listed):
+        if (
+            isinstance(listed, (list, tuple))
+            and listed
+            and all(isinstance(name, str) for name in listed)
+        ):
             return tuple(dict.fromkeys(name.replace(" ", "") for name in listed))
-        raise InputError("until.of", value, "a list of at least one output", "For example of: [roller_life_hours].")
+        raise InputError(
+            "until.of",
+            value,
+            "a list of at least one output",
+            "For example of: [roller_life_hours].",
+        )
 
 
 def check_until(config: Any) -> None:
-    """Check that the design of a study can grow, and that the outputs of `until` have a headline quantity."""
+    """Check that the design of a study can grow, and that the outputs of `until` have a headline
+    quantity.
+    """
     until = config.until
     if until is None:
         return
     for key, method in (("design", config.design), ("inner", config.inner)):
         if method is not None and not METHODS[method].grows:
-            allowed = f"with until: {listing(those_with('grows'), 'or')}, which grow by more samples"
+            allowed = (
+                f"with until: {listing(those_with('grows'), 'or')}, which grow by more samples"
+            )
             if key != "design":
                 allowed = "with until: sobol, whose rows stay as the sample grows"
             remedy = "Choose one of them"
@@ -59,13 +79,22 @@ def check_until(config: Any) -> None:
             raise InputError(key, method, allowed, f"{remedy}, or remove until.")
     if "groups" in config.method.takes and config.analysis.groups:
         groups = list(config.analysis.groups)
-        raise InputError("analysis.groups", groups, "with until: indices of single factors", "Remove groups or until.")
+        raise InputError(
+            "analysis.groups",
+            groups,
+            "with until: indices of single factors",
+            "Remove groups or until.",
+        )
     size, remainder = divmod(config.samples, until.replicates)
     is_power_of_two = size > 0 and size & (size - 1) == 0
     if remainder or not is_power_of_two:
         near = until.replicates << max(0, round(config.samples / until.replicates) - 1).bit_length()
-        allowed = f"with until: the {until.replicates} replicates times a power of two, at the first look"
-        raise InputError("samples", config.samples, allowed, f"Write samples: {near}, or remove the key.")
+        allowed = (
+            f"with until: the {until.replicates} replicates times a power of two, at the first look"
+        )
+        raise InputError(
+            "samples", config.samples, allowed, f"Write samples: {near}, or remove the key."
+        )
     for name in until.of:
         _check_of(config, name, names_of_outputs(config))
 
@@ -80,15 +109,24 @@ def _check_of(config: Any, name: str, known: list[str]) -> None:
         return
     if kind == "probability":
         remedy = f"Add it to requirement, such as {{{output}: {{min: 500}}}}."
-        raise InputError("until.of", name, "the probability of a requirement or of a regime", remedy)
+        raise InputError(
+            "until.of", name, "the probability of a requirement or of a regime", remedy
+        )
     if "(" in output and not points:
         allowed = f"with design {config.design}: results, whose indices count"
-        raise InputError("until.of", name, allowed, "Statistics such as b10(..) need design: inner_outer.")
+        raise InputError(
+            "until.of", name, allowed, "Statistics such as b10(..) need design: inner_outer."
+        )
     if output not in known:
         raise unknown_result("until.of", output, known, config.outputs)
     if points and (kind not in ("", "b10") or not is_life(output)):
-        allowed = "with inner_outer: a life, whose log10 B10 counts, or probability(..) of a requirement or of a regime"
-        raise InputError("until.of", name, allowed, f"For example probability({output}) with requirement.")
+        allowed = (
+            "with inner_outer: a life, whose log10 B10 counts, or probability(..) of a "
+            "requirement or of a regime"
+        )
+        raise InputError(
+            "until.of", name, allowed, f"For example probability({output}) with requirement."
+        )
 
 
 def check_first_look(study: Any) -> None:
@@ -99,4 +137,6 @@ def check_first_look(study: Any) -> None:
     cases = study.drawn.size
     if cases > until.at_most:
         remedy = f"Write at_most: {4 * cases}, for example, or fewer samples."
-        raise InputError("until.at_most", until.at_most, f"at least the {cases} cases of the first look", remedy)
+        raise InputError(
+            "until.at_most", until.at_most, f"at least the {cases} cases of the first look", remedy
+        )

@@ -1,4 +1,6 @@
-"""Read the tables of studies, spectra, tests and logs: which columns are known, and in which units they are read."""
+"""Read the tables of studies, spectra, tests and logs: which columns are known, and in which units
+they are read.
+"""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
 """Read a load spectrum: the loads of a roller during a shift, in blocks.
 
-A spectrum file describes the roller once (`base`), and then its loads in blocks with the distance or the hours of
-travel per shift, or with their shares of the time of travel:
+A spectrum file describes the roller once (`base`), and then its loads in blocks with the distance
+or the hours of travel per shift, or with their shares of the time of travel:
 
     name: sorter
     base: {axis_distance: 21.75, roller_material: PA6, guide_overrollings_per_hour: 120}
@@ -11,8 +11,8 @@ travel per shift, or with their shares of the time of travel:
     life_rule: haibach
     limits: all
 
-`blocks` may also be the name of a CSV file or workbook in the same folder, with one column for each field and one line
-for each block.
+`blocks` may also be the name of a CSV file or workbook in the same folder, with one column for each
+field and one line for each block.
 """
 
 from __future__ import annotations
@@ -54,10 +54,14 @@ from trackroller.tables.user_table import UserTable
 from trackroller.yaml_file import errors_by_line, parse_mapping
 
 # what the use of the roller sets; placeholders and worn profiles are the same in all blocks
-LOAD_FIELDS = tuple(n for n, p in PARAMETERS.items() if p.role == "condition" and n not in OF_LIMITS)
-TRAVEL = {"distance": "m", "hours": "h", "share": "-"}  # what says how long a block lasts, and its unit
+LOAD_FIELDS = tuple(
+    n for n, p in PARAMETERS.items() if p.role == "condition" and n not in OF_LIMITS
+)
+# what says how long a block lasts, and its unit
+TRAVEL = {"distance": "m", "hours": "h", "share": "-"}
 BLOCK_FIELDS = ("name", *TRAVEL, "guide_overrollings", *LOAD_FIELDS)
-OPTIONAL = ("name", "guide_overrollings")  # of a block; an empty load would be that of the paper's example
+# of a block; an empty load would be that of the paper's example
+OPTIONAL = ("name", "guide_overrollings")
 OPTIONS = tuple(option.name for option in SOLVE_OPTIONS.values() if "spectrum" in option.files)
 FILE_FIELDS = (
     "name",
@@ -86,7 +90,8 @@ class Block:
     distance : float
         Distance travelled per shift [m].
     guide_overrollings : float, optional
-        Overrollings of a point of the guide per shift [1]. Default: from the overrollings per hour of the case.
+        Overrollings of a point of the guide per shift [1]. Default: from the overrollings per hour
+        of the case.
     """
 
     name: str
@@ -121,10 +126,11 @@ class Spectrum:
     strokes : mapping, optional
         The strokes that the duty was given in, from which its hours follow.
     groups : tuple of str
-        Groups of outputs of the limits that the key `limits` names; without it, all whose inputs are given are checked.
+        Groups of outputs of the limits that the key `limits` names; without it, all whose inputs
+        are given are checked.
     by_share : bool
-        Whether the blocks state shares of the time of travel. Their distances and overrollings are then those of an
-        hour of travel, which takes the place of the shift.
+        Whether the blocks state shares of the time of travel. Their distances and overrollings are
+        then those of an hour of travel, which takes the place of the shift.
     """
 
     name: str
@@ -140,14 +146,22 @@ class Spectrum:
 
     @property
     def period(self) -> str:
-        """Return what the blocks make up together: a shift, or an hour of travel if they state shares of the time."""
+        """Return what the blocks make up together: a shift, or an hour of travel if they state
+        shares of the time.
+        """
         return "hour" if self.by_share else "shift"
 
     @property
     def not_given(self) -> dict[str, Any]:
-        """Return the parameters that neither `base` nor every block names, with the values of the paper's example."""
+        """Return the parameters that neither `base` nor every block names, with the values of the
+        paper's example.
+        """
         cases = [block.case for block in self.blocks]
-        return {name: value for case in cases for name, value in used_of(case.as_dict(), case.not_given).items()}
+        return {
+            name: value
+            for case in cases
+            for name, value in used_of(case.as_dict(), case.not_given).items()
+        }
 
     @classmethod
     def from_dict(cls, values: Mapping[str, Any]) -> Spectrum:
@@ -156,7 +170,8 @@ class Spectrum:
         Parameters
         ----------
         values : mapping
-            Keys and values of a spectrum file; arrays count as lists, and `blocks` may be a data frame.
+            Keys and values of a spectrum file; arrays count as lists, and `blocks` may be a data
+            frame.
 
         Returns
         -------
@@ -170,17 +185,25 @@ class Spectrum:
         """
         values = mapping_of(values)
         if not isinstance(values, Mapping):
-            raise InputError("spectrum", type(values).__name__, "a mapping with the keys of a spectrum file")
+            raise InputError(
+                "spectrum", type(values).__name__, "a mapping with the keys of a spectrum file"
+            )
         wrong = Collector()
         fields: dict[str, Any] = {}
         with wrong.part():
             check_names("spectrum: key", values, FILE_FIELDS)
         with wrong.part():
-            fields["blocks"], fields["by_share"] = _blocks(values.get("blocks"), values.get("base") or {})
+            fields["blocks"], fields["by_share"] = _blocks(
+                values.get("blocks"), values.get("base") or {}
+            )
         with wrong.part():
-            fields["critical_damage"] = _number("critical_damage", values.get("critical_damage", 1.0), open_lower=True)
+            fields["critical_damage"] = _number(
+                "critical_damage", values.get("critical_damage", 1.0), open_lower=True
+            )
         with wrong.part():
-            fields["failure_probabilities"] = _probabilities(values.get("failure_probabilities", PROBABILITIES))
+            fields["failure_probabilities"] = _probabilities(
+                values.get("failure_probabilities", PROBABILITIES)
+            )
         with wrong.part():
             fields["duty"] = None
             if values.get("duty") is not None:
@@ -196,7 +219,9 @@ class Spectrum:
         with wrong.part():
             fields["name"] = checked_text(str(values.get("name", "spectrum")), "name")
         with wrong.part():
-            fields["description"] = checked_text(str(values.get("description", "")), "description", lines=True)
+            fields["description"] = checked_text(
+                str(values.get("description", "")), "description", lines=True
+            )
         wrong.check()
         if is_of_strokes(fields["duty"]):
             fields |= _by_strokes(fields["duty"], fields["blocks"])
@@ -204,11 +229,15 @@ class Spectrum:
 
 
 def _by_strokes(duty: Mapping[str, float], blocks: Sequence[Block]) -> dict[str, Any]:
-    """Return the duty of a spectrum in hours, and its blocks with the overrollings of the guide by the strokes."""
+    """Return the duty of a spectrum in hours, and its blocks with the overrollings of the guide by
+    the strokes.
+    """
     wrong = Collector()
     for block in blocks:
         with wrong.part():
-            refuse_overrollings(block.guide_overrollings, f"block '{block.name}'.guide_overrollings")
+            refuse_overrollings(
+                block.guide_overrollings, f"block '{block.name}'.guide_overrollings"
+            )
         with wrong.part():
             refuse_overrollings(block.case.guide_overrollings_per_hour, OVERROLLINGS)
         with wrong.part():
@@ -218,11 +247,15 @@ def _by_strokes(duty: Mapping[str, float], blocks: Sequence[Block]) -> dict[str,
     wrong.check()
     travel = sum(block.distance for block in blocks) / 1000.0
     if not travel > 0:
-        raise InputError("blocks", None, "a block with travel", "Give one of them a distance.", "have no travel")
+        raise InputError(
+            "blocks", None, "a block with travel", "Give one of them a distance.", "have no travel"
+        )
     in_time = in_hours(duty, sum(block.hours for block in blocks) / travel)
     passes = passes_per_km(duty) / 1000.0
     given = {"duty": in_time, "strokes": strokes_in(duty)}
-    return given | {"blocks": tuple(replace(b, guide_overrollings=passes * b.distance) for b in blocks)}
+    return given | {
+        "blocks": tuple(replace(b, guide_overrollings=passes * b.distance) for b in blocks)
+    }
 
 
 def load_spectrum(path: Path | str) -> Spectrum:
@@ -265,7 +298,9 @@ def _blocks(given: Any, base: Any) -> tuple[tuple[Block, ...], bool]:
         blocks = _entries(table, path, wrong)
     if not isinstance(blocks, list) or not blocks:
         example = "Write - {name: loaded, distance: 4000, radial_force: -300}."
-        raise InputError("blocks", blocks, "a list of blocks that is not empty, or the name of a table", example)
+        raise InputError(
+            "blocks", blocks, "a list of blocks that is not empty, or the name of a table", example
+        )
     if not isinstance(base, Mapping):
         raise InputError("base", base, "a mapping of case fields to values")
     base = renamed(base)
@@ -283,9 +318,16 @@ def _blocks(given: Any, base: Any) -> tuple[tuple[Block, ...], bool]:
     wrong.check()
     names = Counter(block.name for block in checked).most_common(1)
     if names[0][1] > 1:
-        raise InputError("blocks", names[0][0], "a name of its own for each block", "Rename one of the blocks.")
+        raise InputError(
+            "blocks", names[0][0], "a name of its own for each block", "Rename one of the blocks."
+        )
     if not sum(block.distance for block in checked) > 0:
-        raise InputError("distance", 0.0, "distances of a shift that add up to more than 0 m", "Give distances in m.")
+        raise InputError(
+            "distance",
+            0.0,
+            "distances of a shift that add up to more than 0 m",
+            "Give distances in m.",
+        )
     by_share = ["share" in entry for entry in blocks]
     if any(by_share):
         _check_shares(checked, by_share)
@@ -305,7 +347,12 @@ def _check_shares(blocks: list[Block], by_share: list[bool]) -> None:
     if not all(by_share):
         other = blocks[by_share.index(False)].name
         allowed = "a share in each block, because a share of the time is no part of a shift"
-        raise InputError(f"block '{other}'.share", None, allowed, "Give share in all blocks, or hours in all of them.")
+        raise InputError(
+            f"block '{other}'.share",
+            None,
+            allowed,
+            "Give share in all blocks, or hours in all of them.",
+        )
     whole = sum(block.hours for block in blocks)
     if abs(whole - 1.0) > 1e-6:
         remedy = "Write 0.2 or 20 % for a fifth of the time of travel."
@@ -313,7 +360,9 @@ def _check_shares(blocks: list[Block], by_share: list[bool]) -> None:
 
 
 def _entries(table: UserTable, path: Path | None, wrong: Collector) -> list[dict[str, str]]:
-    """Return the lines of a table as entries of `blocks`; columns that no block can have are left out as errors."""
+    """Return the lines of a table as entries of `blocks`; columns that no block can have are left
+    out as errors.
+    """
     heads = Collector()
     for name in table.names:
         with heads.part():
@@ -322,8 +371,12 @@ def _entries(table: UserTable, path: Path | None, wrong: Collector) -> list[dict
     wrong_lines = {error.line for error in wrong.errors}  # cells that are empty or not clear
     if table.head in wrong_lines or wrong_lines >= {*table.lines}:
         wrong.check()
-    table.lines = {number: line for number, line in table.lines.items() if number not in wrong_lines}
-    return [{n: c for n, c in zip(table.names, line, strict=True) if c} for line in table.lines.values()]
+    table.lines = {
+        number: line for number, line in table.lines.items() if number not in wrong_lines
+    }
+    return [
+        {n: c for n, c in zip(table.names, line, strict=True) if c} for line in table.lines.values()
+    ]
 
 
 def _check_fields(names: Iterable[Any], where: str, values: Mapping[str, Any]) -> None:
@@ -332,7 +385,9 @@ def _check_fields(names: Iterable[Any], where: str, values: Mapping[str, Any]) -
     of_roller = [key for key in names if key in FIELDS and key not in BLOCK_FIELDS]
     for key in of_roller:
         allowed = "a load, because the roller is the same in all blocks of a spectrum"
-        wrong.errors.append(InputError(f"{where}.{key}", values.get(key), allowed, "Give this field under `base`."))
+        wrong.errors.append(
+            InputError(f"{where}.{key}", values.get(key), allowed, "Give this field under `base`.")
+        )
     with wrong.part():
         check_names(f"{where}: field", (key for key in names if key not in of_roller), BLOCK_FIELDS)
     wrong.check()
@@ -340,7 +395,9 @@ def _check_fields(names: Iterable[Any], where: str, values: Mapping[str, Any]) -
 
 def _block(entry: Any, base: Mapping[str, Any], number: int) -> Block:
     if not isinstance(entry, Mapping):
-        raise InputError(f"blocks[{number}]", entry, "a mapping such as {distance: 4000, radial_force: -300}")
+        raise InputError(
+            f"blocks[{number}]", entry, "a mapping such as {distance: 4000, radial_force: -300}"
+        )
     entry = renamed(entry)
     name = checked_text(str(entry.get("name") or f"block {number}"), "name of a block")
     where = f"block '{name}'"
@@ -351,11 +408,21 @@ def _block(entry: Any, base: Mapping[str, Any], number: int) -> Block:
     lasts = [key for key in TRAVEL if key in entry]
     with wrong.part():
         if not lasts and not any(nearest(key, BLOCK_FIELDS) in TRAVEL for key in entry):
-            allowed = "the distance in m or the hours travelled per shift, or the share of the time of travel"
-            raise InputError(f"{where}.distance", None, allowed, "Add one of distance, hours and share to the block.")
+            allowed = (
+                "the distance in m or the hours travelled per shift, or the share of the "
+                "time of travel"
+            )
+            raise InputError(
+                f"{where}.distance",
+                None,
+                allowed,
+                "Add one of distance, hours and share to the block.",
+            )
         if len(lasts) > 1:
             allowed = "one of distance, hours and share; the velocity gives the others"
-            raise InputError(f"{where}.{lasts[1]}", entry[lasts[1]], allowed, f"Remove {lasts[0]} or {lasts[1]}.")
+            raise InputError(
+                f"{where}.{lasts[1]}", entry[lasts[1]], allowed, f"Remove {lasts[0]} or {lasts[1]}."
+            )
     for key in lasts[:1]:
         with wrong.part():
             fields["distance"] = _number(f"{where}.{key}", entry[key], unit=TRAVEL[key])
@@ -364,15 +431,22 @@ def _block(entry: Any, base: Mapping[str, Any], number: int) -> Block:
             if lasts[:1] == ["share"]:
                 allowed = "overrollings per hour, because blocks by share of the time have no shift"
                 remedy = "Give guide_overrollings_per_hour instead."
-                raise InputError(f"{where}.guide_overrollings", entry["guide_overrollings"], allowed, remedy)
-            fields["guide_overrollings"] = _number(f"{where}.guide_overrollings", entry["guide_overrollings"])
+                raise InputError(
+                    f"{where}.guide_overrollings", entry["guide_overrollings"], allowed, remedy
+                )
+            fields["guide_overrollings"] = _number(
+                f"{where}.guide_overrollings", entry["guide_overrollings"]
+            )
     try:
-        fields["case"] = Case.from_dict({**base, **{key: entry[key] for key in LOAD_FIELDS if key in entry}})
+        fields["case"] = Case.from_dict(
+            {**base, **{key: entry[key] for key in LOAD_FIELDS if key in entry}}
+        )
     except InputError as error:
         wrong.errors += _named(error, where)
     wrong.check()
     if lasts[0] != "distance":
-        fields["distance"] *= 60.0 * float(fields["case"].velocity)  # the velocity of the block [m/min]
+        # the velocity of the block [m/min]
+        fields["distance"] *= 60.0 * float(fields["case"].velocity)
     return Block(**fields)
 
 
@@ -402,7 +476,9 @@ def _groups(names: Any) -> tuple[str, ...]:
     if isinstance(names, str):
         limits = [names]
     if not isinstance(limits, list) or not limits:
-        raise InputError("limits", names, "all, or a list of names of limits", "Write limits: [fatigue, wear].")
+        raise InputError(
+            "limits", names, "all, or a list of names of limits", "Write limits: [fatigue, wear]."
+        )
     return groups_of("limits", [str(name) for name in limits])
 
 
@@ -412,7 +488,9 @@ def _probabilities(values: Any) -> tuple[float, ...]:
     numbers = tuple(_number("failure_probabilities", value, open_lower=True) for value in values)
     for number in numbers:
         if number >= 1:
-            raise InputError("failure_probabilities", number, "numbers between 0 and 1", "Give 0.1 for 10 %.")
+            raise InputError(
+                "failure_probabilities", number, "numbers between 0 and 1", "Give 0.1 for 10 %."
+            )
     return tuple(sorted(set(numbers)))
 
 
@@ -427,13 +505,16 @@ def overrollings_per_shift(spectrum: Spectrum) -> np.ndarray:
     Returns
     -------
     numpy.ndarray, shape (block, body)
-        Overrollings [1]. A roller has distance / (2 pi r_A) of them. For the guide, the given number is used, otherwise
-        its overrollings per hour times the hours of the block; NaN if neither is known.
+        Overrollings [1]. A roller has distance / (2 pi r_A) of them. For the guide, the given
+        number is used, otherwise its overrollings per hour times the hours of the block; NaN if
+        neither is known.
     """
     rows = []
     for block in spectrum.blocks:
         case = block.case
-        radius = rolling_radius(case.axis_distance, case.guide_profile_radius, np.deg2rad(case.contact_angle))
+        radius = rolling_radius(
+            case.axis_distance, case.guide_profile_radius, np.deg2rad(case.contact_angle)
+        )
         guide = block.guide_overrollings
         if guide is None:
             per_hour = case.guide_overrollings_per_hour

@@ -1,8 +1,10 @@
-"""Make a load spectrum of a log: a history of loads over time or distance becomes blocks of travel at a load.
+"""Make a load spectrum of a log: a history of loads over time or distance becomes blocks of travel
+at a load.
 
-Each revolution of a roller at a load is one overrolling of its track, whatever the load was before. Counting therefore
-sums the travel at each level. Rainflow counting pairs the turning points of a stress that a material feels between
-overrollings; a rolling contact unloads completely in each revolution, so that no such pairs exist.
+Each revolution of a roller at a load is one overrolling of its track, whatever the load was before.
+Counting therefore sums the travel at each level. Rainflow counting pairs the turning points of a
+stress that a material feels between overrollings; a rolling contact unloads completely in each
+revolution, so that no such pairs exist.
 """
 
 from __future__ import annotations
@@ -24,40 +26,55 @@ from trackroller.study.spectrum.log import read_log
 from trackroller.study.spectrum.log_doubts import Doubt, few_lines
 
 NO_RAINFLOW = (
-    "Blocks hold the travel at each level of load: each revolution is one overrolling. Rainflow counting pairs turning "
+    "Blocks hold the travel at each level of load: each revolution is one overrolling. "
+    "Rainflow counting pairs turning "
     "points between overrollings and does not apply."
 )
-POWERS = (1.0, 3.0, 7.0)  # of the contact force to which damage may grow; an S-N curve of exponent 9 gives 3
-TOLERANCE = 0.007  # of the damage of each contact for each power; solved with `sliding` it stays below 1 %
+# of the contact force to which damage may grow; an S-N curve of exponent 9 gives 3
+POWERS = (1.0, 3.0, 7.0)
+# of the damage of each contact for each power; solved with `sliding` it stays below 1 %
+TOLERANCE = 0.007
 MOST_BLOCKS = 2000
 MOST_POINTS = 200_000  # lines of a log whose levels are found one by one
 FINE = 1_000  # parts of the range of a force, within which the lines of a longer log count as one
 
 
-def spectrum_of_log(path: Path | str, roller: Mapping[str, Any]) -> tuple[dict[str, Any], list[str]]:
-    """Return the load spectrum of a log, as the keys of a spectrum file, and what a user must know of the log.
+def spectrum_of_log(
+    path: Path | str, roller: Mapping[str, Any]
+) -> tuple[dict[str, Any], list[str]]:
+    """Return the load spectrum of a log, as the keys of a spectrum file, and what a user must know
+    of the log.
 
     Parameters
     ----------
     path : pathlib.Path or str
-        CSV file or workbook with a column `time` or `distance`, `radial_force`, and where they vary `axial_force` and
-        `velocity` or `speed`; heads may have units.
+        CSV file or workbook with a column `time` or `distance`, `radial_force`, and where they vary
+        `axial_force` and `velocity` or `speed`; heads may have units.
     roller : mapping
         Fields and options of the roller's case file. Its `velocity` holds where the log has none.
 
     Raises
     ------
     InputError
-        If a column is missing, a cell is no number, or time does not increase; the error names file and line.
+        If a column is missing, a cell is no number, or time does not increase; the error names file
+        and line.
     """
     path = Path(path)
     given = renamed(roller)
     answers = answers_of(given)
-    log = read_log(path, float(number_or_nan(given.get("velocity", EXAMPLE.get("velocity")), "m/min")), answers)
-    angle = math.radians(float(number_or_nan(given.get("contact_angle", EXAMPLE["contact_angle"]), "deg")))
+    log = read_log(
+        path, float(number_or_nan(given.get("velocity", EXAMPLE.get("velocity")), "m/min")), answers
+    )
+    angle = math.radians(
+        float(number_or_nan(given.get("contact_angle", EXAMPLE["contact_angle"]), "deg"))
+    )
     pressed = (log.radial < 0) & (log.travel > 0)
     if not pressed.any():
-        raise InputError("radial_force", None, "a line below 0, in which the roller is pressed on the guide and moves")
+        raise InputError(
+            "radial_force",
+            None,
+            "a line below 0, in which the roller is pressed on the guide and moves",
+        )
     share = float(log.travel[~pressed].sum() / log.travel.sum())
     if share > 0:
         log.doubts.append(Doubt("unpressed", values={"share": 100 * share}))
@@ -84,12 +101,18 @@ def spectrum_of_log(path: Path | str, roller: Mapping[str, Any]) -> tuple[dict[s
     return head | {"base": fields, "blocks": blocks} | duty | options | record, log.notes
 
 
-def _blocks(loads: np.ndarray, weights: np.ndarray, hours: np.ndarray, tangent: float) -> list[dict[str, Any]]:
+def _blocks(
+    loads: np.ndarray, weights: np.ndarray, hours: np.ndarray, tangent: float
+) -> list[dict[str, Any]]:
     """Return the blocks of a spectrum, one for each level of load."""
     blocks = []
     for own in levels(loads, weights, tangent):
         radial, axial = np.average(loads[own], axis=0, weights=weights[own])
-        block: dict[str, Any] = {"distance": float(weights[own].sum()), "radial_force": radial, "axial_force": axial}
+        block: dict[str, Any] = {
+            "distance": float(weights[own].sum()),
+            "radial_force": radial,
+            "axial_force": axial,
+        }
         time = float(hours[own].sum())
         if time > 0:
             block["velocity"] = block["distance"] / time / 60
@@ -102,7 +125,8 @@ def _blocks(loads: np.ndarray, weights: np.ndarray, hours: np.ndarray, tangent: 
 def _merged(
     loads: np.ndarray, weights: np.ndarray, hours: np.ndarray, tangent: float
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return loads, travel and hours in which lines of nearly the same loads count as one, with their mean load.
+    """Return loads, travel and hours in which lines of nearly the same loads count as one, with
+    their mean load.
 
     A short log is returned as it is. Lines with and without lift-off stay apart.
     """
@@ -137,7 +161,9 @@ def _doubt_loads(
     contact = -loads[:, 0] + np.abs(loads[:, 1]) / tangent
     power = POWERS[1]
     damage = f"the sum of travel times load to the power of {power:g}, to which damage may grow"
-    doubts += few_lines(weights, lines, "the travel") or few_lines(weights * contact**power, lines, damage)
+    doubts += few_lines(weights, lines, "the travel") or few_lines(
+        weights * contact**power, lines, damage
+    )
 
 
 def levels(loads: np.ndarray, weights: np.ndarray, tangent: float) -> list[np.ndarray]:
@@ -154,9 +180,9 @@ def levels(loads: np.ndarray, weights: np.ndarray, tangent: float) -> list[np.nd
 
     Notes
     -----
-    The contacts of a wedge without friction carry forces in the ratio of -F_rad +- F_ax/tan(alpha). Lines in which one
-    of them lifts off have levels of their own. The level that changes the sum of their powers most is halved, until no
-    power in `POWERS` changes by more than `TOLERANCE`.
+    The contacts of a wedge without friction carry forces in the ratio of -F_rad +- F_ax/tan(alpha).
+    Lines in which one of them lifts off have levels of their own. The level that changes the sum of
+    their powers most is halved, until no power in `POWERS` changes by more than `TOLERANCE`.
     """
     axial = loads[:, 1] / tangent
     contacts = np.maximum(np.column_stack([-loads[:, 0] - axial, -loads[:, 0] + axial]), 0.0)
@@ -170,7 +196,8 @@ def levels(loads: np.ndarray, weights: np.ndarray, tangent: float) -> list[np.nd
         single = np.concatenate([mean**power for power in POWERS])
         return np.asarray(np.abs(weights[own] @ effects[own] - weights[own].sum() * single) / total)
 
-    lifted = contacts.min(axis=1) <= 0  # a mean of lines with and without lift-off stands for neither
+    # a mean of lines with and without lift-off stands for neither
+    lifted = contacts.min(axis=1) <= 0
     whole = [own for own in (np.flatnonzero(~lifted), np.flatnonzero(lifted)) if own.size]
     errors = [error(own) for own in whole]
     while np.max(np.sum(errors, axis=0)) > TOLERANCE and len(whole) < MOST_BLOCKS:

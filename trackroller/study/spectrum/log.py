@@ -30,7 +30,8 @@ ASKED_ABOVE = 0.1
 
 @dataclass
 class Log:
-    """A history of loads: travel [m], hours [h] and both forces [N] of each line, and the doubts about it.
+    """A history of loads: travel [m], hours [h] and both forces [N] of each line, and the doubts
+    about it.
 
     `lines` holds the number of each line in its file.
     """
@@ -63,7 +64,8 @@ def read_log(path: Path, velocity: float, answers: LogAnswers | None = None) -> 
     Raises
     ------
     InputError
-        If a column is missing, a cell is no finite number, or a question about the log has no answer.
+        If a column is missing, a cell is no finite number, or a question about the log has no
+        answer.
     """
     answers = answers or LogAnswers()
     log = read_columns(path, answers)
@@ -85,9 +87,13 @@ def read_log(path: Path, velocity: float, answers: LogAnswers | None = None) -> 
     travel, hours = _travel_and_hours(log, velocity, answers, doubts, questions)
     questions.check()
     if not travel.sum() > 0:
-        raise InputError(FIELD, str(path), "a log in which the roller moves", "Check the column velocity.")
+        raise InputError(
+            FIELD, str(path), "a log in which the roller moves", "Check the column velocity."
+        )
     _doubt_forces(log, doubts)
-    return Log(travel, hours, log.values["radial_force"], log.values["axial_force"], log.lines, doubts)
+    return Log(
+        travel, hours, log.values["radial_force"], log.values["axial_force"], log.lines, doubts
+    )
 
 
 def _check_names(log: LogColumns) -> None:
@@ -97,14 +103,22 @@ def _check_names(log: LogColumns) -> None:
         lacking = "time or distance"
         if has_axis:
             lacking = "radial_force"
-        allowed = "columns time or distance, radial_force, and where they vary axial_force and velocity"
-        raise InputError(FIELD, ", ".join(log.names), allowed, f"Name a column {lacking}.").at(log.path, log.head)
+        allowed = (
+            "columns time or distance, radial_force, and where they vary axial_force and velocity"
+        )
+        raise InputError(FIELD, ", ".join(log.names), allowed, f"Name a column {lacking}.").at(
+            log.path, log.head
+        )
     if {"speed", "velocity"} <= set(log.values):
         allowed = "one of them, because both say how fast the roller moves"
-        raise InputError("columns", "speed, velocity", allowed, "Remove one of the columns.").at(log.path, log.head)
+        raise InputError("columns", "speed, velocity", allowed, "Remove one of the columns.").at(
+            log.path, log.head
+        )
 
 
-def _without_marks(log: LogColumns, answers: LogAnswers, doubts: list[Doubt], questions: Collector) -> LogColumns:
+def _without_marks(
+    log: LogColumns, answers: LogAnswers, doubts: list[Doubt], questions: Collector
+) -> LogColumns:
     """Tell which lines were left out; ask about values that look like marks for no value."""
     if log.empty.size:
         words = {"values": listing([repr(cell) for cell in answers.missing or ()], "or")}
@@ -122,7 +136,11 @@ def _without_marks(log: LogColumns, answers: LogAnswers, doubts: list[Doubt], qu
             question = mark_question(name, shown, int(is_marked.sum()), COLUMNS[name])
             questions.errors.append(question.at(log.path, line))
         else:
-            values: dict[str, float | str] = {"column": name, "value": marks[0], "unit": COLUMNS[name]}
+            values: dict[str, float | str] = {
+                "column": name,
+                "value": marks[0],
+                "unit": COLUMNS[name],
+            }
             doubts.append(Doubt("mark", int(is_marked.sum()), line, values))
     return log
 
@@ -206,7 +224,9 @@ def _compare_travel(
     doubts: list[Doubt],
     questions: Collector,
 ) -> None:
-    """Compare what the columns of distance and speed [m/s] say of the steps that are neither gaps nor jumps."""
+    """Compare what the columns of distance and speed [m/s] say of the steps that are neither gaps
+    nor jumps.
+    """
     if answers.hold == "last":
         of_steps = speed[:-1]
     else:
@@ -226,7 +246,9 @@ def _compare_travel(
 
 
 def _of_lines(steps: np.ndarray, hold: str) -> np.ndarray:
-    """Return what each line holds: the step after it, or half of the step before and half of the step after."""
+    """Return what each line holds: the step after it, or half of the step before and half of the
+    step after.
+    """
     if hold == "last":
         return np.append(steps, 0.0)
     return np.asarray((np.append(steps, 0.0) + np.insert(steps, 0, 0.0)) / 2)

@@ -1,4 +1,6 @@
-"""Read the columns of a measured log as numbers, in pieces: a log of 50 minutes at 100 Hz has 300,000 lines."""
+"""Read the columns of a measured log as numbers, in pieces: a log of 50 minutes at 100 Hz has
+300,000 lines.
+"""
 
 from __future__ import annotations
 
@@ -22,20 +24,31 @@ from trackroller.roller.log_answers import LogAnswers
 from trackroller.study.file.user_columns import read_table
 from trackroller.tables.user_table import UserTable, is_workbook
 
-COLUMNS = {"time": "s", "distance": "m", "radial_force": "N", "axial_force": "N", "velocity": "m/min", "speed": "m/s"}
+COLUMNS = {
+    "time": "s",
+    "distance": "m",
+    "radial_force": "N",
+    "axial_force": "N",
+    "velocity": "m/min",
+    "speed": "m/s",
+}
 FIELD = "--from"
 MOST_BYTES = 500_000_000  # of a log; its numbers take about as much memory
 FIRST_BYTES = 200_000  # of a log, in which heads, units and decimal sign show
 PIECE = 200_000  # lines that are read at once
-SMALLER = "Split the log, write a spectrum of each part, and put the blocks of all of them into one file."
+SMALLER = (
+    "Split the log, write a spectrum of each part, and put the blocks of all of them into one file."
+)
 
 
 @dataclass
 class LogColumns:
-    """The known columns of a log in the units of `COLUMNS`, with the number of each line in the file.
+    """The known columns of a log in the units of `COLUMNS`, with the number of each line in the
+    file.
 
-    `scales` holds the unit of each column in the file, over that of `COLUMNS`; `bare` names the columns that state no
-    unit, and `empty` the lines that were left out because a cell stands for no value.
+    `scales` holds the unit of each column in the file, over that of `COLUMNS`; `bare` names the
+    columns that state no unit, and `empty` the lines that were left out because a cell stands for
+    no value.
     """
 
     values: dict[str, np.ndarray]
@@ -54,7 +67,14 @@ class LogColumns:
         """Return the log with some of its lines, by a mask or in a new order."""
         values = {name: column[rows] for name, column in self.values.items()}
         return LogColumns(
-            values, self.lines[rows], self.path, self.head, self.names, self.scales, self.bare, self.empty
+            values,
+            self.lines[rows],
+            self.path,
+            self.head,
+            self.names,
+            self.scales,
+            self.bare,
+            self.empty,
         )
 
 
@@ -92,7 +112,9 @@ def read_columns(path: Path, answers: LogAnswers) -> LogColumns:
 
 
 def _heads(path: Path, wrong: Collector) -> UserTable:
-    """Return the table of the first lines of a log, with its names, units and decimal sign; all of a workbook."""
+    """Return the table of the first lines of a log, with its names, units and decimal sign; all of
+    a workbook.
+    """
     with opened(path, FIELD, MOST_BYTES, SMALLER) as stream:
         if is_workbook(path):
             first = stream.read()
@@ -117,7 +139,9 @@ def _known(heads: UserTable) -> list[str]:
 
 
 def _stated_unit(name: str, heads: UserTable) -> str:
-    """Return the unit of a column in the file: that of its head, or that behind its first number."""
+    """Return the unit of a column in the file: that of its head, or that behind its first
+    number.
+    """
     place = heads.names.index(name)
     first = next((cell for cell in heads.column(place) if cell), "")
     parts = split_quantity(first)
@@ -147,7 +171,8 @@ def _pieces(path: Path, heads: UserTable) -> Iterator[tuple[np.ndarray, dict[str
     if wide:
         mark = '"'.encode("utf-16-le")
         encoding = "utf-16"
-    quoting: Literal[0, 1, 2, 3] = csv.QUOTE_NONE  # a mark further down is a letter, which no number has
+    # a mark further down is a letter, which no number has
+    quoting: Literal[0, 1, 2, 3] = csv.QUOTE_NONE
     if mark in first:
         quoting = csv.QUOTE_MINIMAL
     try:
@@ -170,11 +195,15 @@ def _pieces(path: Path, heads: UserTable) -> Iterator[tuple[np.ndarray, dict[str
     except UnicodeDecodeError as error:
         remedy = "Save the file as UTF-8; in Excel choose 'CSV UTF-8'."
         wrong = f"is not UTF-8 text ({error.reason})"
-        raise InputError(FIELD, str(path), "text in UTF-8, or in UTF-16 with its mark", remedy, wrong) from None
+        raise InputError(
+            FIELD, str(path), "text in UTF-8, or in UTF-16 with its mark", remedy, wrong
+        ) from None
     except pd.errors.ParserError as error:
         why = " ".join(str(error).split())
         allowed = f"lines of {heads.width} cells, one for each name, and quotation marks that close"
-        raise InputError(FIELD, str(path), allowed, "Mend the line.", f"cannot be read ({why})") from None
+        raise InputError(
+            FIELD, str(path), allowed, "Mend the line.", f"cannot be read ({why})"
+        ) from None
 
 
 def _refuse_zeros(stream: object, path: Path, wide: bool) -> None:
@@ -185,13 +214,17 @@ def _refuse_zeros(stream: object, path: Path, wide: bool) -> None:
     while piece := stream.read(1 << 22):  # type: ignore[attr-defined]
         if b"\0" in piece:
             remedy = "Save the file as UTF-8."
-            raise InputError(FIELD, str(path), "a text", remedy, "holds zero bytes, so it is no text")
+            raise InputError(
+                FIELD, str(path), "a text", remedy, "holds zero bytes, so it is no text"
+            )
 
 
 def _cells(
     piece: pd.DataFrame, first_line: int, heads: UserTable, path: Path
 ) -> tuple[np.ndarray, dict[str, list[str]]]:
-    """Return the numbers of the lines of a piece that are neither empty nor comments, and their cells."""
+    """Return the numbers of the lines of a piece that are neither empty nor comments, and their
+    cells.
+    """
     lines = piece.index.to_numpy() + first_line
     filled = (piece != "").any(axis=1).to_numpy()
     comments = piece[0].str.startswith("#").to_numpy(dtype=bool)
@@ -202,15 +235,23 @@ def _cells(
         row = int(np.argmax(longer))
         text = heads.separator.join(piece.iloc[row])
         allowed = f"{len(heads.places)} cells, one for each name; there are more"
-        remedy = "Write one cell for each name; with decimal commas, separate the columns by semicolons."
+        remedy = (
+            "Write one cell for each name; with decimal commas, separate the columns by semicolons."
+        )
         raise InputError(FIELD, text, allowed, remedy).at(path, int(lines[row]))
     filled_lines = piece[rows]
     places = {name: heads.places[heads.names.index(name)] for name in _known(heads)}
-    return lines[rows], {name: filled_lines[place].str.strip().tolist() for name, place in places.items()}
+    return lines[rows], {
+        name: filled_lines[place].str.strip().tolist() for name, place in places.items()
+    }
 
 
 def _numbers(
-    cells: dict[str, list[str]], lines: np.ndarray, heads: UserTable, path: Path, answers: LogAnswers
+    cells: dict[str, list[str]],
+    lines: np.ndarray,
+    heads: UserTable,
+    path: Path,
+    answers: LogAnswers,
 ) -> tuple[np.ndarray, dict[str, np.ndarray]]:
     """Return the numbers of a piece; NaN for a cell that stands for no value."""
     signs = heads.signs or decimal_signs(cell for column in cells.values() for cell in column)
@@ -225,14 +266,19 @@ def _numbers(
         for row in np.flatnonzero(bad)[:30]:
             wrong.errors.append(_refused(name, column[row], path, int(lines[row])))
         unit = _stated_unit(name, heads)
-        marks = [in_unit(number, unit or COLUMNS[name], COLUMNS[name], name) for number in answers.missing_numbers]
+        marks = [
+            in_unit(number, unit or COLUMNS[name], COLUMNS[name], name)
+            for number in answers.missing_numbers
+        ]
         values[name][np.isin(values[name], marks)] = np.nan
         values[name][~np.isfinite(values[name])] = np.nan
     wrong.check()
     return lines, values
 
 
-def _numbers_of(name: str, cells: list[str], unit: str, signs: frozenset[str], answers: LogAnswers) -> np.ndarray:
+def _numbers_of(
+    name: str, cells: list[str], unit: str, signs: frozenset[str], answers: LogAnswers
+) -> np.ndarray:
     """Return the numbers of a column in its unit of `COLUMNS`; NaN for a cell that holds none."""
     target = COLUMNS[name]
     plain = plain_column(cells, signs)
@@ -256,7 +302,9 @@ def _plain_numbers(cells: Sequence[str]) -> np.ndarray | None:
 
 
 def _number_of(cell: str, unit: str, target: str, name: str) -> float:
-    """Return the number of a cell in a unit; NaN for a cell without one, and one that is not clear."""
+    """Return the number of a cell in a unit; NaN for a cell without one, and one that is not
+    clear.
+    """
     if isinstance(cell, Refused):
         return math.nan
     digits, stated = split_quantity(cell) or (cell, unit)
@@ -273,5 +321,8 @@ def _refused(name: str, cell: str, path: Path, line: int) -> InputError:
     if isinstance(cell, Refused):
         return InputError(name, str(cell), *cell.message).at(path, line)
     allowed = f"a finite number [{COLUMNS[name]}]"
-    remedy = f"Mend the cell or remove its line, or write log: {{missing: ['{cell}']}} in the case file to leave out"
+    remedy = (
+        f"Mend the cell or remove its line, or write log: {{missing: ['{cell}']}} in the "
+        "case file to leave out"
+    )
     return InputError(name, cell, allowed, f"{remedy} lines with such cells.").at(path, line)

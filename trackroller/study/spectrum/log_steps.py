@@ -1,4 +1,6 @@
-"""Find the steps of time and travel from line to line of a measured log, whatever its clock and its counter did."""
+"""Find the steps of time and travel from line to line of a measured log, whatever its clock and its
+counter did.
+"""
 
 from __future__ import annotations
 
@@ -44,8 +46,12 @@ class Steps:
         self.travel = travel
         self.usual = np.full(along.size, True)
 
-    def cut_gaps(self, log: LogColumns, hold: str | None, doubts: list[Doubt], questions: Collector) -> None:
-        """Let gaps count as usual steps; ask where many steps are long and `hold` does not say what they are."""
+    def cut_gaps(
+        self, log: LogColumns, hold: str | None, doubts: list[Doubt], questions: Collector
+    ) -> None:
+        """Let gaps count as usual steps; ask where many steps are long and `hold` does not say what
+        they are.
+        """
         steps = self.along
         moving = steps[steps > 0]
         if not moving.size:
@@ -57,19 +63,25 @@ class Steps:
         lost = float(steps[gaps].sum())
         lines = log.lines[np.flatnonzero(gaps) + 1]
         other = float(np.mean(np.abs(moving / usual - 1) > DIFFERENT - 1e-9))
-        many = count > SHARE_OF_GAPS * steps.size or (count > FEW_GAPS and lost > LOST * steps.sum())
+        many = count > SHARE_OF_GAPS * steps.size or (
+            count > FEW_GAPS and lost > LOST * steps.sum()
+        )
         if hold is None and count and (many or other > UNEVEN):
             question = hold_question(self.name, count, lost, float(steps.sum()), unit)
             questions.errors.append(question.at(log.path, int(lines[0])))
         elif hold is None and other > UNEVEN:
-            doubts.append(Doubt("uneven", values={"share": 100 * other, "usual": usual, "unit": unit}))
+            doubts.append(
+                Doubt("uneven", values={"share": 100 * other, "usual": usual, "unit": unit})
+            )
         if not count or hold in ("last", "middle"):
             return
         self.usual = ~gaps
         values = {"lost": lost, "unit": unit, "lines": first_lines(lines)}
         if self.travel is not None:
             travel = float(self.travel[gaps].sum())
-            doubts.append(Doubt("gap_with_travel", count, int(lines[0]), values | {"travel": travel}))
+            doubts.append(
+                Doubt("gap_with_travel", count, int(lines[0]), values | {"travel": travel})
+            )
             self.along = np.where(gaps, self._needed(self.travel, usual), steps)
         else:
             cause = ""
@@ -79,7 +91,9 @@ class Steps:
             self.along = np.where(gaps, usual, steps)
 
     def _needed(self, travel: np.ndarray, usual: float) -> np.ndarray:
-        """Return the seconds of each step at the usual speed of the log: a usual step at least, its own at most."""
+        """Return the seconds of each step at the usual speed of the log: a usual step at least, its
+        own at most.
+        """
         moving = self.usual & (travel > 0) & (self.along > 0)
         if moving.any():
             speed = float(np.median(travel[moving] / self.along[moving]))
@@ -96,7 +110,8 @@ def _forward_cause(lost: float, usual: float) -> str:
 
 
 def in_order(log: LogColumns, doubts: list[Doubt]) -> LogColumns:
-    """Return the lines of a log in the order of their times; a clock that was set back does not change the order.
+    """Return the lines of a log in the order of their times; a clock that was set back does not
+    change the order.
 
     Raises
     ------
@@ -122,11 +137,14 @@ def in_order(log: LogColumns, doubts: list[Doubt]) -> LogColumns:
         return log.take(order)
     if back.mean() > MANY_BACK and not _is_regular(forward):
         remedy = (
-            "Write the time since the first line, or a column distance; sort the lines if each time stands once in "
+            "Write the time since the first line, or a column distance; sort the lines if each "
+            "time stands once in "
             "the log."
         )
         wrong = f"is below the time of the line before, as {back.sum()} times are"
-        error = InputError("time", float(time[np.argmax(back) + 1]), "times that increase", remedy, wrong)
+        error = InputError(
+            "time", float(time[np.argmax(back) + 1]), "times that increase", remedy, wrong
+        )
         raise error.at(log.path, first)
     return log
 
@@ -150,7 +168,9 @@ def time_steps(log: LogColumns, doubts: list[Doubt]) -> np.ndarray:
     forward = steps[steps > 0]
     if not forward.size:
         remedy = "Record times with more decimals, or a column distance."
-        raise InputError("time", float(time[1]), "times that increase", remedy).at(log.path, int(log.lines[1]))
+        raise InputError("time", float(time[1]), "times that increase", remedy).at(
+            log.path, int(log.lines[1])
+        )
     usual = float(np.median(forward))
     if back.any():
         row = int(np.argmax(back)) + 1
@@ -179,7 +199,9 @@ def _back_cause(time: np.ndarray, row: int, usual: float) -> str:
 
 
 def _shared(steps: np.ndarray) -> np.ndarray:
-    """Return steps in which the lines of one time share the step to the next time, a usual one at most."""
+    """Return steps in which the lines of one time share the step to the next time, a usual one at
+    most.
+    """
     ends = np.flatnonzero(np.append(steps > 0, True))  # the last line of each time
     sizes = np.diff(ends, prepend=-1)  # lines of each time
     usual = float(np.median(steps[steps > 0]))
@@ -195,8 +217,8 @@ def _shared(steps: np.ndarray) -> np.ndarray:
 def distance_steps(log: LogColumns, seconds: np.ndarray | None, doubts: list[Doubt]) -> np.ndarray:
     """Return the travel of each step [m]; a jump of the counter is none.
 
-    A counter that is reset steps back once, between steps forward. Where the time is known, a step that is far too fast
-    is a jump, too.
+    A counter that is reset steps back once, between steps forward. Where the time is known, a step
+    that is far too fast is a jump, too.
     """
     steps = np.diff(log.values["distance"])
     if np.sum(steps < 0) > np.sum(steps > 0):  # a counter that counts down
@@ -216,7 +238,9 @@ def distance_steps(log: LogColumns, seconds: np.ndarray | None, doubts: list[Dou
     jumps |= fast & ((steps < 0) | (seconds is not None))
     if jumps.any():
         row = int(np.argmax(jumps)) + 1
-        doubts.append(Doubt("jump", int(jumps.sum()), int(log.lines[row]), {"jump": float(steps[row - 1])}))
+        doubts.append(
+            Doubt("jump", int(jumps.sum()), int(log.lines[row]), {"jump": float(steps[row - 1])})
+        )
     back = (steps < 0) & ~jumps
     if back.any():
         doubts.append(Doubt("distance_back", values={"share": 100 * float(np.mean(back))}))

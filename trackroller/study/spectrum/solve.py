@@ -1,8 +1,9 @@
-"""Solve the blocks of a load spectrum and sum their damage to the life of roller and guide in shifts.
+"""Solve the blocks of a load spectrum and sum their damage to the life of roller and guide in
+shifts.
 
-ASSUME: damage adds up linearly, independent of the order of the blocks (Palmgren-Miner). A limit without a life
-is reached by the worst block alone.
-ASSUME: the blocks load the same two tracks of the roller and the same point of the guide.
+ASSUME: damage adds up linearly, independent of the order of the blocks (Palmgren-Miner). A limit
+without a life is reached by the worst block alone. ASSUME: the blocks load the same two tracks of
+the roller and the same point of the guide.
 """
 
 from __future__ import annotations
@@ -55,16 +56,18 @@ def solve_spectrum(
     database : MaterialDatabase, optional
         Materials. Default: the built-in database, changed and extended by the user's own file.
     solve : callable, optional
-        Function that solves the cases, with the signature of `trackroller.solve`, which is the default.
+        Function that solves the cases, with the signature of `trackroller.solve`, which is the
+        default.
 
     Returns
     -------
     xarray.Dataset
-        Dimensions block, contact and body, and probability where a material gives scatter. Overrollings per shift, peak
-        stress [MPa], damage per shift [1], life in shifts of each track and to the first failure of each body. A block
-        that cannot be solved, in which a contact lifts off or the roller skids, or whose peak stress exceeds R_m, makes
-        the lives that depend on it NaN; `regime` and `validity_body` state why. The life of the guide is NaN where its
-        overrollings are not known. The results of `by_limit` say which limit comes first.
+        Dimensions block, contact and body, and probability where a material gives scatter.
+        Overrollings per shift, peak stress [MPa], damage per shift [1], life in shifts of each
+        track and to the first failure of each body. A block that cannot be solved, in which a
+        contact lifts off or the roller skids, or whose peak stress exceeds R_m, makes the lives
+        that depend on it NaN; `regime` and `validity_body` state why. The life of the guide is NaN
+        where its overrollings are not known. The results of `by_limit` say which limit comes first.
 
     Notes
     -----
@@ -85,20 +88,33 @@ def solve_spectrum(
     return _damage(spectrum, solved, database, overrollings)
 
 
-def curves(spectrum: Spectrum, solved: xr.Dataset, bodies: list[Material], rule: str) -> list[SNCurve]:
-    """Return the S-N curves of roller and guide at their temperature in each block, values (block, 1)."""
-    reached = temperatures_of(solved, [[block.case.ambient_temperature] for block in spectrum.blocks])
+def curves(
+    spectrum: Spectrum, solved: xr.Dataset, bodies: list[Material], rule: str
+) -> list[SNCurve]:
+    """Return the S-N curves of roller and guide at their temperature in each block, values (block,
+    1).
+    """
+    reached = temperatures_of(
+        solved, [[block.case.ambient_temperature] for block in spectrum.blocks]
+    )
     out = []
     for material, at in zip(bodies, reached.T, strict=True):
         warm = [material.at(temperature) for temperature in at]
-        values = {name: np.array([[getattr(own, name)] for own in warm], dtype=float) for name in OF_CURVE}
-        # the line by points moves with the knee, so that its shape does not depend on the temperature
+        values = {
+            name: np.array([[getattr(own, name)] for own in warm], dtype=float) for name in OF_CURVE
+        }
+        # the line by points moves with the knee, so that its shape does not depend on the
+        # temperature
         out.append(SNCurve.of(values | {"sn_points": material.sn_points}, rule))
     return out
 
 
 def damage_per_shift(
-    stress: np.ndarray, cycles: np.ndarray, bodies: list[SNCurve], living: np.ndarray, probability: float = 0.5
+    stress: np.ndarray,
+    cycles: np.ndarray,
+    bodies: list[SNCurve],
+    living: np.ndarray,
+    probability: float = 0.5,
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return cycles to failure and damage per shift of each block, (block, contact, body) [1] each.
 
@@ -116,12 +132,16 @@ def damage_per_shift(
     life = np.full(stress.shape, np.nan)
     for i, curve in enumerate(bodies):
         if probability == 0.5 or curve.scatters.all():
-            life[..., i] = curve.changed(failure_probability=probability).life_cycles(stress[..., i])
+            life[..., i] = curve.changed(failure_probability=probability).life_cycles(
+                stress[..., i]
+            )
     life[~living] = np.nan
     return life, miner.block_damage(cycles, life)
 
 
-def _damage(spectrum: Spectrum, solved: xr.Dataset, database: MaterialDatabase, overrollings: np.ndarray) -> xr.Dataset:
+def _damage(
+    spectrum: Spectrum, solved: xr.Dataset, database: MaterialDatabase, overrollings: np.ndarray
+) -> xr.Dataset:
     """Return the damage of the solved blocks as a data set; see `solve_spectrum`."""
     peak = solved["peak_stress"].transpose("case", "contact", "body").values
     stress = peak
@@ -132,18 +152,42 @@ def _damage(spectrum: Spectrum, solved: xr.Dataset, database: MaterialDatabase, 
     rule = spectrum.options.get("life_rule", "elementary")
     materials = [database.material(getattr(case, f"{body}_material")) for body in BODIES]
     bodies = curves(spectrum, solved, materials, rule)
-    breaks = fatigue.overloaded(peak, np.concatenate([curve.tensile_strength for curve in bodies], axis=1))
-    living = np.broadcast_to(~(breaks | skidding(solved["regime"].values))[:, None, :], stress.shape)
+    breaks = fatigue.overloaded(
+        peak, np.concatenate([curve.tensile_strength for curve in bodies], axis=1)
+    )
+    living = np.broadcast_to(
+        ~(breaks | skidding(solved["regime"].values))[:, None, :], stress.shape
+    )
     life, damage = damage_per_shift(stress, cycles, bodies, living)
     total = damage.sum(axis=0)
     shifts = miner.repetitions_to_failure(total, spectrum.critical_damage)
     first = shifts.min(axis=0)  # A track whose life is not known makes the result NaN.
     variables: dict[str, Any] = {
-        "distance": ("block", [b.distance for b in spectrum.blocks], _attrs("m", "distance per shift", "s")),
-        "duration": ("block", [b.hours for b in spectrum.blocks], _attrs("h", "hours of travel per shift", "t")),
-        "overrollings": (("block", "body"), overrollings, _attrs("1", "overrollings per shift", "n")),
-        "peak_stress": (_BCB, peak, _attrs("MPa", "peak equivalent stress of the block", "sigma_DEH,max")),
-        "life_cycles": (_BCB, life, _attrs("1", "overrollings to failure at the stress of the block", "N")),
+        "distance": (
+            "block",
+            [b.distance for b in spectrum.blocks],
+            _attrs("m", "distance per shift", "s"),
+        ),
+        "duration": (
+            "block",
+            [b.hours for b in spectrum.blocks],
+            _attrs("h", "hours of travel per shift", "t"),
+        ),
+        "overrollings": (
+            ("block", "body"),
+            overrollings,
+            _attrs("1", "overrollings per shift", "n"),
+        ),
+        "peak_stress": (
+            _BCB,
+            peak,
+            _attrs("MPa", "peak equivalent stress of the block", "sigma_DEH,max"),
+        ),
+        "life_cycles": (
+            _BCB,
+            life,
+            _attrs("1", "overrollings to failure at the stress of the block", "N"),
+        ),
         "damage": (_BCB, damage, _attrs("1", "damage of the block per shift", "n/N")),
         "damage_sum": (_CB, total, _attrs("1", "damage per shift", "D")),
         "life_shifts": (_CB, shifts, _attrs("1", "shifts to failure of each track", "L_S")),
@@ -162,7 +206,9 @@ def _damage(spectrum: Spectrum, solved: xr.Dataset, database: MaterialDatabase, 
     variables |= _loads(spectrum, database)
     if "limit" in solved.coords:
         chance = spectrum.options.get("failure_probability", 0.5)
-        variables |= by_limit(spectrum, solved, damage_per_shift(stress, cycles, bodies, living, chance)[1], breaks)
+        variables |= by_limit(
+            spectrum, solved, damage_per_shift(stress, cycles, bodies, living, chance)[1], breaks
+        )
     if "fatigue_stress" in solved:
         variables["fatigue_stress"] = (_BCB, stress, dict(solved["fatigue_stress"].attrs))
     if any(curve.scatters.any() for curve in bodies):
@@ -170,22 +216,36 @@ def _damage(spectrum: Spectrum, solved: xr.Dataset, database: MaterialDatabase, 
         sums = [damage_per_shift(stress, cycles, bodies, living, p)[1].sum(axis=0) for p in levels]
         lives = miner.repetitions_to_failure(np.stack(sums), spectrum.critical_damage)
         meta = _attrs("1", "shifts to failure at a failure probability", "L_S,p")
-        known = {"probability": ("probability", list(levels), {"units": "1", "long_name": "failure probability"})}
-        variables["life_shifts_at_probability"] = xr.DataArray(lives, known, ("probability", *_CB), attrs=meta)
+        known = {
+            "probability": (
+                "probability",
+                list(levels),
+                {"units": "1", "long_name": "failure probability"},
+            )
+        }
+        variables["life_shifts_at_probability"] = xr.DataArray(
+            lives, known, ("probability", *_CB), attrs=meta
+        )
     if "life_to_first_limit_shifts" in variables:
         shifts_to_first = variables["life_to_first_limit_shifts"][1]
         travel = variables["distance"][1]
         one_roller = np.zeros(len(travel), dtype=int)
         solved = with_run_in(solved, one_roller, np.array(travel) / 1e3, shifts_to_first[None])
-    labelled = _labelled(spectrum, variables, solved, rule).assign_attrs(_inputs(spectrum, database))
+    labelled = _labelled(spectrum, variables, solved, rule).assign_attrs(
+        _inputs(spectrum, database)
+    )
     return with_duty(labelled, spectrum.duty, spectrum.strokes)
 
 
 def _inputs(spectrum: Spectrum, database: MaterialDatabase) -> dict[str, str]:
-    """Return the attributes that hold the inputs: roller, materials, values that were not given, and doubts."""
+    """Return the attributes that hold the inputs: roller, materials, values that were not given,
+    and doubts.
+    """
     case = spectrum.blocks[0].case
     return {
-        "roller": json.dumps({name: v for name, v in plain_inputs(case).items() if name not in LOAD_FIELDS}),
+        "roller": json.dumps(
+            {name: v for name, v in plain_inputs(case).items() if name not in LOAD_FIELDS}
+        ),
         "materials": json.dumps(material_values(case, database)),
         NOT_GIVEN: json.dumps(spectrum.not_given),
         DOUBTS: json.dumps(doubts_of_spectrum(spectrum, database)),
@@ -200,7 +260,9 @@ def doubts_of_spectrum(spectrum: Spectrum, database: MaterialDatabase) -> list[s
 
 
 def _loads(spectrum: Spectrum, database: MaterialDatabase) -> dict[str, Any]:
-    """Return the loads of each block, dimension `block`. Friction given by the pair of materials becomes a number."""
+    """Return the loads of each block, dimension `block`. Friction given by the pair of materials
+    becomes a number.
+    """
     table = to_table([block.case for block in spectrum.blocks], database)
     out = {}
     for name in LOAD_FIELDS:
@@ -214,9 +276,15 @@ def _attrs(units: str, long_name: str, symbol: str = "") -> dict[str, str]:
     return {"units": units, "long_name": long_name, "symbol": symbol}
 
 
-def _labelled(spectrum: Spectrum, variables: dict[str, Any], solved: xr.Dataset, rule: str) -> xr.Dataset:
+def _labelled(
+    spectrum: Spectrum, variables: dict[str, Any], solved: xr.Dataset, rule: str
+) -> xr.Dataset:
     coords = {
-        "block": ("block", [b.name for b in spectrum.blocks], {"long_name": "block of the spectrum"}),
+        "block": (
+            "block",
+            [b.name for b in spectrum.blocks],
+            {"long_name": "block of the spectrum"},
+        ),
         "contact": solved["contact"],
         "body": solved["body"],
         **({"limit": solved["limit"]} if "limit" in solved.coords else {}),
@@ -229,7 +297,8 @@ def _labelled(spectrum: Spectrum, variables: dict[str, Any], solved: xr.Dataset,
         "title": spectrum.name,
         "description": spectrum.description,
         "life_rule": rule,
-        "life_conventions": f"{fatigue.AMPLITUDE}; {CONVENTIONS[rule]}; linear damage sum, failure at "
+        "life_conventions": f"{fatigue.AMPLITUDE}; {CONVENTIONS[rule]}; linear damage sum, "
+        "failure at "
         f"D = {spectrum.critical_damage:g}",
         "critical_damage": spectrum.critical_damage,
         "period": spectrum.period,
@@ -237,7 +306,9 @@ def _labelled(spectrum: Spectrum, variables: dict[str, Any], solved: xr.Dataset,
     ds = xr.Dataset(variables, coords=coords, attrs=attrs)
     if spectrum.by_share:  # a shift of these blocks is an hour of travel
         for variable in ds.data_vars.values():
-            variable.attrs["long_name"] = variable.attrs.get("long_name", "").replace("shift", "hour of travel")
+            variable.attrs["long_name"] = variable.attrs.get("long_name", "").replace(
+                "shift", "hour of travel"
+            )
     return ds
 
 
@@ -260,7 +331,9 @@ def cases_of(spectrum: Spectrum, overrollings: np.ndarray) -> list[Case]:
     return cases
 
 
-def by_limit(spectrum: Spectrum, solved: xr.Dataset, by_curve: np.ndarray, breaks: np.ndarray) -> dict[str, Any]:
+def by_limit(
+    spectrum: Spectrum, solved: xr.Dataset, by_curve: np.ndarray, breaks: np.ndarray
+) -> dict[str, Any]:
     """Return damage, utilisation and shifts of each limit, and the first limit of each body.
 
     Parameters
@@ -277,8 +350,8 @@ def by_limit(spectrum: Spectrum, solved: xr.Dataset, by_curve: np.ndarray, break
     Returns
     -------
     dict of str to tuple
-        Variables of a data set. A block of no distance does not count. Fatigue adds up track by track; of the other
-        limits the worse contact of each block counts.
+        Variables of a data set. A block of no distance does not count. Fatigue adds up track by
+        track; of the other limits the worse contact of each block counts.
     """
     limits = [LIMITS[name] for name in solved["limit"].values.tolist()]
     used, *lives_of_blocks = (
@@ -287,7 +360,9 @@ def by_limit(spectrum: Spectrum, solved: xr.Dataset, by_curve: np.ndarray, break
     )
     travel = np.array([block.hours for block in spectrum.blocks])[:, None, None]
     unknown = np.isnan(by_curve.sum(axis=0))  # such a track counts before a known one
-    worst = np.argmax(np.where(unknown == unknown.any(axis=0), np.nansum(by_curve, axis=0), -1.0), axis=0)
+    worst = np.argmax(
+        np.where(unknown == unknown.any(axis=0), np.nansum(by_curve, axis=0), -1.0), axis=0
+    )
     of_fatigue = np.take_along_axis(by_curve, worst[None, None], axis=1)[:, 0]
     most = np.max(np.where(travel > 0, used, 0.0), axis=0)
     # D_crit belongs to Miner's rule of the S-N curve; other limits are reached at a sum of 1
@@ -296,20 +371,36 @@ def by_limit(spectrum: Spectrum, solved: xr.Dataset, by_curve: np.ndarray, break
     timed = solved["life_hours_by_limit"].notnull().any(["case", "body"]).values
     broken = verdict.breaking(np.any(breaks & (travel[:, 0] > 0), axis=0), limits)
     words = (*LIMITS, "unknown")
-    flag: dict[str, Any] = {"long_name": "limit that the body reaches first", "flag_meanings": " ".join(words)}
+    flag: dict[str, Any] = {
+        "long_name": "limit that the body reaches first",
+        "flag_meanings": " ".join(words),
+    }
     flag["flag_values"] = np.arange(len(words), dtype=np.int8)
-    states = np.where(travel > 0, solved["limit_state"].transpose("case", "limit", "body").values, 0).astype(np.int8)
+    states = np.where(
+        travel > 0, solved["limit_state"].transpose("case", "limit", "body").values, 0
+    ).astype(np.int8)
     out: dict[str, Any] = {
-        "utilisation": (("limit", "body"), most, _attrs("1", "largest utilisation of a limit in a block")),
+        "utilisation": (
+            ("limit", "body"),
+            most,
+            _attrs("1", "largest utilisation of a limit in a block"),
+        ),
         "limit_state": (("limit", "body"), states.max(axis=0), dict(solved["limit_state"].attrs)),
-        "limit_state_of_block": (("block", "limit", "body"), states, dict(solved["limit_state"].attrs)),
+        "limit_state_of_block": (
+            ("block", "limit", "body"),
+            states,
+            dict(solved["limit_state"].attrs),
+        ),
     }
     for end, lives in zip(verdict.ENDS, lives_of_blocks, strict=True):
         damage = miner.block_damage(travel, lives)
         for i in (i for i, limit in enumerate(limits) if limit.name == "fatigue"):
             damage[:, i] = of_fatigue
         shifts = critical * miner.repetitions_to_failure(damage.sum(axis=0))
-        first, which = (one[0] for one in verdict.first_of(shifts[None], most[None], timed, limits, broken[None]))
+        first, which = (
+            one[0]
+            for one in verdict.first_of(shifts[None], most[None], timed, limits, broken[None])
+        )
         head = {"": "", "_low": "low end of the ", "_high": "high end of the "}[end]
         for name, dims, values, meaning in (
             ("life_{}_by_limit", ("limit", "body"), shifts, "until a limit with a life is reached"),
@@ -321,11 +412,21 @@ def by_limit(spectrum: Spectrum, solved: xr.Dataset, by_curve: np.ndarray, break
                 "until roller or guide reaches its first known limit",
             ),
         ):
-            out[name.format("shifts") + end] = (dims, values, _attrs("1", f"{head}shifts {meaning}"))
-            hours = (dims, values * float(travel.sum()), _attrs("h", f"{head}hours of travel {meaning}"))
+            out[name.format("shifts") + end] = (
+                dims,
+                values,
+                _attrs("1", f"{head}shifts {meaning}"),
+            )
+            hours = (
+                dims,
+                values * float(travel.sum()),
+                _attrs("h", f"{head}hours of travel {meaning}"),
+            )
             out[name.format("hours") + end] = hours
         if not end:
-            names = np.array([words.index(name) for name in (*(limit.name for limit in limits), "unknown")])[which]
+            names = np.array(
+                [words.index(name) for name in (*(limit.name for limit in limits), "unknown")]
+            )[which]
             out |= {
                 "damage_by_limit": (
                     ("block", "limit", "body"),

@@ -1,8 +1,9 @@
 """Store blocks of cases in netCDF files that are noticed if they are damaged.
 
-A block is a data set along `case`, whose coordinate `case` holds the fingerprints: results of solved cases with the
-`reason` of each failure, or the inputs of cases that a chunk has to solve. The last 32 bytes of a file are the SHA-256
-of the bytes before them; netCDF readers ignore these bytes.
+A block is a data set along `case`, whose coordinate `case` holds the fingerprints: results of
+solved cases with the `reason` of each failure, or the inputs of cases that a chunk has to solve.
+The last 32 bytes of a file are the SHA-256 of the bytes before them; netCDF readers ignore these
+bytes.
 """
 
 from __future__ import annotations
@@ -26,21 +27,27 @@ from trackroller.study.store.netcdf import too_large
 from trackroller.study.store.put import put_unlisted
 
 FAILED = REGIMES.index("failed")
-_ATTRIBUTES = file_attributes("Cases of a parameter study of track rollers, named by their fingerprints", "solved")
+_ATTRIBUTES = file_attributes(
+    "Cases of a parameter study of track rollers, named by their fingerprints", "solved"
+)
 _LABELS = {"case": "fingerprint of the case", "reason": "why a case failed or misses its tolerance"}
 _SMALL = 64  # cases; smaller files gain nothing from compression
 _PACKED = {"zlib": True, "complevel": 1, "shuffle": True}
 
 
 class CorruptFile(Exception):
-    """Report a file of cases that is truncated or altered; the message names the file and the reason."""
+    """Report a file of cases that is truncated or altered; the message names the file and the
+    reason.
+    """
 
     def __init__(self, path: Path, why: str) -> None:
         super().__init__(f"{path}: {why}")
 
 
 def from_results(results: xr.Dataset, cases: np.ndarray) -> xr.Dataset:
-    """Return what `solve` returned for the cases with the fingerprints `cases`, shape (n,), as a block."""
+    """Return what `solve` returned for the cases with the fingerprints `cases`, shape (n,), as a
+    block.
+    """
     reasons = np.full(len(cases), "", dtype=object)
     if "reason" in results:
         reasons[:] = results["reason"].values
@@ -49,7 +56,9 @@ def from_results(results: xr.Dataset, cases: np.ndarray) -> xr.Dataset:
 
 
 def failure(cases: np.ndarray, reason: str) -> xr.Dataset:
-    """Return the block of cases that raised: regime failed, not converged, without other results."""
+    """Return the block of cases that raised: regime failed, not converged, without other
+    results.
+    """
     count = len(cases)
     rows = {"regime": np.full(count, FAILED, np.int8), "converged": np.zeros(count, np.int8)}
     rows["reason"] = np.full(count, reason, object)
@@ -62,7 +71,9 @@ def counts(block: xr.Dataset) -> tuple[int, int]:
 
 
 def join(blocks: Iterable[xr.Dataset]) -> xr.Dataset:
-    """Join blocks of different cases, see `trackroller.roller.dataset.joined`; their `seconds` add up."""
+    """Join blocks of different cases, see `trackroller.roller.dataset.joined`; their `seconds` add
+    up.
+    """
     blocks = list(blocks)
     seconds = sum(block.attrs.get("seconds", 0.0) for block in blocks)
     return joined(blocks).assign_attrs({"seconds": seconds})
@@ -92,8 +103,8 @@ def write(path: Path, block: xr.Dataset, packed: bool = False) -> None:
 def _opened(path: Path) -> Iterator[tuple[netCDF4.Dataset, np.ndarray]]:
     """Open a file, and yield it with its fingerprints, shape (n,).
 
-    Raise `CorruptFile` if the file was altered or holds other cases than its name says: the name of a chunk and of its
-    list is the hash of their cases.
+    Raise `CorruptFile` if the file was altered or holds other cases than its name says: the name of
+    a chunk and of its list is the hash of their cases.
     """
     if not stat.S_ISREG(path.stat().st_mode):
         raise CorruptFile(path, "it is no file")
@@ -141,5 +152,6 @@ def read_sound(
             yield path, how(path)
         except CorruptFile as exc:
             corrupt[path] = str(exc)
-        except FileNotFoundError:  # a running process has just removed this file, to solve its failed cases again
+        except FileNotFoundError:
+            # a running process has just removed this file, to solve its failed cases again
             continue

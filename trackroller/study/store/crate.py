@@ -1,12 +1,15 @@
-"""Describe a solved study as a Workflow Run RO-Crate: its files with digests, its inputs, versions and licence.
+"""Describe a solved study as a Workflow Run RO-Crate: its files with digests, its inputs, versions
+and licence.
 
-The crate is the study folder. `ro-crate-metadata.json` lists the files. `inputs/` holds what is needed to solve the
-study anywhere: the study file with every default written out, its table of cases and the user's materials. Results are
-listed with the digests that were recorded when they were written; a result that does not fit its digest is refused.
+The crate is the study folder. `ro-crate-metadata.json` lists the files. `inputs/` holds what is
+needed to solve the study anywhere: the study file with every default written out, its table of
+cases and the user's materials. Results are listed with the digests that were recorded when they
+were written; a result that does not fit its digest is refused.
 
 References
 ----------
-RO-Crate 1.1, https://w3id.org/ro/crate/1.1; Workflow Run Crate 0.5, https://w3id.org/ro/wfrun/workflow/0.5
+RO-Crate 1.1, https://w3id.org/ro/crate/1.1; Workflow Run Crate 0.5,
+https://w3id.org/ro/wfrun/workflow/0.5
 """
 
 from __future__ import annotations
@@ -65,7 +68,9 @@ def write_crate(root: Path) -> Path:
     results: dict[str, str] = {}
     for name in names:
         results |= digests_of(check_unaltered(root / name))
-    newest = str(np.datetime64(int(max((root / name).stat().st_mtime for name in results)), "s")) + "Z"
+    newest = (
+        str(np.datetime64(int(max((root / name).stat().st_mtime for name in results)), "s")) + "Z"
+    )
     path = root / CRATE
     as_before = _text(study, root, inputs, results, _end_of_run(root))
     if digests_of(path) and path.read_text(encoding="utf-8") == as_before:
@@ -75,16 +80,28 @@ def write_crate(root: Path) -> Path:
 
 def _end_of_run(root: Path) -> str:
     """Return when the run ended that the crate of a folder describes, '' without a crate."""
-    return next((str(entry.get("endTime", "")) for entry in crate_graph(root) if entry.get("@id") == "#run"), "")
+    return next(
+        (
+            str(entry.get("endTime", ""))
+            for entry in crate_graph(root)
+            if entry.get("@id") == "#run"
+        ),
+        "",
+    )
 
 
-def _text(study: Study, root: Path, inputs: dict[str, str], results: dict[str, str], ended: str) -> str:
+def _text(
+    study: Study, root: Path, inputs: dict[str, str], results: dict[str, str], ended: str
+) -> str:
     graph = _graph(study, root, inputs, results, ended)
-    return json.dumps({"@context": "https://w3id.org/ro/crate/1.1/context", "@graph": graph}, indent=1) + "\n"
+    return (
+        json.dumps({"@context": "https://w3id.org/ro/crate/1.1/context", "@graph": graph}, indent=1)
+        + "\n"
+    )
 
 
-def _entry(place: str, kind: str | list[str], **properties: Any) -> dict[str, Any]:
-    return {"@id": place, "@type": kind, **properties}
+def _entry(id_: str, kind: str | list[str], **properties: Any) -> dict[str, Any]:
+    return {"@id": id_, "@type": kind, **properties}
 
 
 def _references(names: Iterable[str]) -> list[dict[str, str]]:
@@ -101,21 +118,27 @@ def _file(root: Path, name: str, digest: str) -> dict[str, Any]:
         entry["encodingFormat"] = kind
     if name == STUDY_FILE:
         entry["@type"] = ["File", "SoftwareSourceCode", "ComputationalWorkflow"]
-        entry |= {"name": "study file with every default", "programmingLanguage": {"@id": "#study-language"}}
+        entry |= {
+            "name": "study file with every default",
+            "programmingLanguage": {"@id": "#study-language"},
+        }
     return entry
 
 
 def _graph(
     study: Study, root: Path, inputs: dict[str, str], results: dict[str, str], ended: str
 ) -> list[dict[str, Any]]:
-    """Return the entries of the metadata file, the study, its run, the programs, the licence and every file.
+    """Return the entries of the metadata file, the study, its run, the programs, the licence and
+    every file.
 
     `inputs` and `results` hold the digest of each file by its name.
     """
     programs = versions()
     work = "CreativeWork"
     return [
-        _entry(CRATE, work, about={"@id": "./"}, conformsTo={"@id": "https://w3id.org/ro/crate/1.1"}),
+        _entry(
+            CRATE, work, about={"@id": "./"}, conformsTo={"@id": "https://w3id.org/ro/crate/1.1"}
+        ),
         _entry(
             "./",
             "Dataset",
@@ -138,10 +161,18 @@ def _graph(
             result=_references(results),
             softwareRequirements=_references(f"#{name}" for name in programs),
         ),
-        _entry("#study-language", "ComputerLanguage", name="trackroller study file", version=programs["trackroller"]),
+        _entry(
+            "#study-language",
+            "ComputerLanguage",
+            name="trackroller study file",
+            version=programs["trackroller"],
+        ),
         _entry(LICENCE, work, name="MIT License", identifier="MIT"),
         *(_entry(name, work, name=f"Workflow Run Crate profile {name[28:]}") for name in PROFILES),
-        *(_entry(f"#{name}", "SoftwareApplication", name=name, softwareVersion=v) for name, v in programs.items()),
+        *(
+            _entry(f"#{name}", "SoftwareApplication", name=name, softwareVersion=v)
+            for name, v in programs.items()
+        ),
         *(_file(root, name, digest) for name, digest in (inputs | results).items()),
     ]
 
@@ -164,7 +195,9 @@ def read_crate(root: Path | str) -> dict[str, dict[str, Any]]:
     """
     check_readable(Path(root))
     check_unaltered(Path(root) / CRATE)
-    files = {str(entry.get("@id")): entry for entry in crate_graph(Path(root)) if "File" in _kinds(entry)}
+    files = {
+        str(entry.get("@id")): entry for entry in crate_graph(Path(root)) if "File" in _kinds(entry)
+    }
     if not files:
         remedy = "Give a folder results/NAME of a study that was run to its end."
         wrong = f"holds no readable {CRATE}"
@@ -172,13 +205,18 @@ def read_crate(root: Path | str) -> dict[str, dict[str, Any]]:
     for name in files:
         if Path(name).is_absolute() or ".." in Path(name).parts:
             raise InputError(
-                "crate", name, "files inside the crate", "Do not use this crate.", "leads out of the crate"
+                "crate",
+                name,
+                "files inside the crate",
+                "Do not use this crate.",
+                "leads out of the crate",
             )
     return files
 
 
 def damaged_files(root: Path | str) -> dict[str, str]:
-    """Return what is wrong with the files of a crate: missing or changed, by file; empty if all are as written.
+    """Return what is wrong with the files of a crate: missing or changed, by file; empty if all are
+    as written.
 
     Raises
     ------
@@ -203,10 +241,14 @@ def study_of_crate(root: Path | str) -> Study:
     InputError
         If the folder is not a crate, an input is damaged, or the study file is not accepted.
     """
-    damaged = {name: state for name, state in damaged_files(root).items() if name.startswith(INPUTS)}
+    damaged = {
+        name: state for name, state in damaged_files(root).items() if name.startswith(INPUTS)
+    }
     if damaged:
         name, state = next(iter(damaged.items()))
-        raise InputError("crate", name, "inputs as they were written", "Fetch the crate again.", f"is {state}")
+        raise InputError(
+            "crate", name, "inputs as they were written", "Fetch the crate again.", f"is {state}"
+        )
     return study_of_folder(StudyFolder(Path(root)))
 
 

@@ -22,4 +22,8 @@ def crate_graph(root: Path) -> list[dict[str, Any]]:
 
 def digests_of_crate(root: Path) -> dict[str, str]:
     """Return the digests of the files that the crate of a folder lists, {} if there is no crate."""
-    return {str(entry.get("@id")): str(entry["sha256"]) for entry in crate_graph(root) if "sha256" in entry}
+    return {
+        str(entry.get("@id")): str(entry["sha256"])
+        for entry in crate_graph(root)
+        if "sha256" in entry
+    }

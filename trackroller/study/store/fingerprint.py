@@ -2,15 +2,19 @@
 
 A fingerprint is the SHA-256 (first 128 bits, as hexadecimal digits) of
 
-- the digest of the solver's source and data files (`trackroller.study.store.program_digest.solver_digest`),
+- the digest of the solver's source and data files
+  (`trackroller.study.store.program_digest.solver_digest`),
 - the source of a contact model from outside,
-- the options of `solve` where they matter to the case (`trackroller.parameters.OPTIONS` says where),
-- the numeric parameters with the friction coefficient resolved, the friction law and the drawn profiles,
+- the options of `solve` where they matter to the case (`trackroller.parameters.OPTIONS` says
+  where),
+- the numeric parameters with the friction coefficient resolved, the friction law and the drawn
+  profiles,
 - the values, not the names, of both materials.
 
-Two cases with the same fingerprint have the same results. A case that is in the store is therefore never solved again,
-whatever study, chunk or order it came from. The versions of NumPy and numba are recorded with a study
-(`trackroller.study.store.provenance`); they do not count, because they change the last digits only.
+Two cases with the same fingerprint have the same results. A case that is in the store is therefore
+never solved again, whatever study, chunk or order it came from. The versions of NumPy and numba are
+recorded with a study (`trackroller.study.store.provenance`); they do not count, because they change
+the last digits only.
 """
 
 from __future__ import annotations
@@ -38,12 +42,15 @@ from trackroller.study.store.program_digest import solver_digest
 if TYPE_CHECKING:
     from trackroller.study.file.study import Study
 
-BLOCK = 100_000  # cases whose table is in memory at once; the table of millions of cases would take gigabytes
+# cases whose table is in memory at once; the table of millions of cases would take gigabytes
+BLOCK = 100_000
 _MATERIAL_VALUES = tuple(field.name for field in fields(MaterialArrays) if field.name not in TEXTS)
 
 
 def _prefix(options: Mapping[str, Any]) -> bytes:
-    """Return the options that matter to the contact model and the digest of the solver, as canonical bytes."""
+    """Return the options that matter to the contact model and the digest of the solver, as
+    canonical bytes.
+    """
     model = options.get("contact_model", OPTIONS["contact_model"].default)
     values: dict[str, Any] = {"code": solver_digest()}
     for option in OPTIONS.values():
@@ -58,7 +65,9 @@ def _prefix(options: Mapping[str, Any]) -> bytes:
     return json.dumps(values, sort_keys=True).encode()
 
 
-def fingerprints(table: CaseTable, *options: Mapping[str, Any], group: np.ndarray | None = None) -> np.ndarray:
+def fingerprints(
+    table: CaseTable, *options: Mapping[str, Any], group: np.ndarray | None = None
+) -> np.ndarray:
     """Return the fingerprint of each case.
 
     Parameters
@@ -76,7 +85,9 @@ def fingerprints(table: CaseTable, *options: Mapping[str, Any], group: np.ndarra
         Texts of 32 hexadecimal digits, dtype S32, shape (n,).
     """
     columns = [getattr(table, name) for name in PARAMETERS]
-    columns += [getattr(body, value) for body in (table.roller, table.guide) for value in _MATERIAL_VALUES]
+    columns += [
+        getattr(body, value) for body in (table.roller, table.guide) for value in _MATERIAL_VALUES
+    ]
     rows = np.ascontiguousarray(np.stack([np.asarray(c, dtype="<f8") for c in columns], axis=1))
     rows += 0.0  # -0.0 becomes 0.0
     rows[np.isnan(rows)] = np.nan  # every NaN gets the same bits
@@ -84,7 +95,11 @@ def fingerprints(table: CaseTable, *options: Mapping[str, Any], group: np.ndarra
     if group is None:
         group = np.zeros(len(rows), dtype=int)
     texts = [getattr(table, name) for name in MAPPING_FIELDS]
-    texts += [text for body in (table.roller, table.guide) for text in (body.temperature_dependence, body.sn_points)]
+    texts += [
+        text
+        for body in (table.roller, table.guide)
+        for text in (body.temperature_dependence, body.sn_points)
+    ]
     has_texts = any(np.any(column != "") for column in texts)
     data = rows.reshape(-1).view(np.uint8).data
     width = rows.itemsize * rows.shape[1]
@@ -104,15 +119,26 @@ def chunk_name(cases: np.ndarray) -> str:
 
 
 def solver_and_materials(database: MaterialDatabase) -> str:
-    """Return a digest of the solver and of every value in a database: the two that a planned case does not state."""
+    """Return a digest of the solver and of every value in a database: the two that a planned case
+    does not state.
+    """
     friction = sorted((sorted(pair), levels) for pair, levels in database.friction_table.items())
-    stated = repr((solver_digest(), sorted(database.materials.items()), friction, sorted(database.wear_table.items())))
+    stated = repr(
+        (
+            solver_digest(),
+            sorted(database.materials.items()),
+            friction,
+            sorted(database.wear_table.items()),
+        )
+    )
     return hashlib.sha256(stated.encode()).hexdigest()
 
 
 @dataclass(frozen=True)
 class StudyCases:
-    """The cases of a study, which are built and identified when they are first needed, and only once."""
+    """The cases of a study, which are built and identified when they are first needed, and only
+    once.
+    """
 
     study: Study
 
@@ -136,7 +162,9 @@ class StudyCases:
 
     @cached_property
     def fingerprints(self) -> np.ndarray:
-        """Return the fingerprint of each case, dtype S32, shape (n,); raise `InputError` if a case is not valid."""
+        """Return the fingerprint of each case, dtype S32, shape (n,); raise `InputError` if a case
+        is not valid.
+        """
         options, group = self.options
         database = self.study.materials
         cases = self.design.drop_vars(list(self.design.coords))
@@ -146,7 +174,8 @@ class StudyCases:
             try:
                 table = to_table(cases.isel(case=block), database)
             except InputError:
-                to_table(cases, database)  # names the case by its number in the design, not in the block
+                # names the case by its number in the design, not in the block
+                to_table(cases, database)
                 raise
             out[block] = fingerprints(table, *options, group=group[block])
         return out

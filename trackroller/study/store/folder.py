@@ -21,7 +21,15 @@ from trackroller.files import (
     refuse_links,
     why_not,
 )
-from trackroller.study.store.manifest import BLOCK, GATHERED, SCRATCH, WHAT, Manifest, files_below, remove_empty
+from trackroller.study.store.manifest import (
+    BLOCK,
+    GATHERED,
+    SCRATCH,
+    WHAT,
+    Manifest,
+    files_below,
+    remove_empty,
+)
 from trackroller.study.store.mark import MARK, OURS, is_study, read_mark, signed
 from trackroller.study.store.program_digest import solver_digest
 from trackroller.study.store.put import put_unlisted, sweep
@@ -65,11 +73,13 @@ def check_readable(root: Path) -> None:
 
 
 def _is_empty(root: Path) -> bool:
-    """Return whether a folder holds no file and no link, at any level, but the empty mark of a killed process."""
-    for place, folders, names in os.walk(root):
-        if any(is_link(Path(place, name)) for name in folders):
+    """Return whether a folder holds no file and no link, at any level, but the empty mark of a
+    killed process.
+    """
+    for folder, folders, names in os.walk(root):
+        if any(is_link(Path(folder, name)) for name in folders):
             return False
-        for path in (Path(place, name) for name in names):
+        for path in (Path(folder, name) for name in names):
             if path != root / MARK or path.stat().st_size:
                 return False
     return True
@@ -96,7 +106,8 @@ def _foreign_folder(root: Path) -> InputError:
 
 
 class StudyFolder:
-    """Paths of the files of one study, `results/NAME/`; a folder that was renamed is the same study.
+    """Paths of the files of one study, `results/NAME/`; a folder that was renamed is the same
+    study.
 
     Attributes
     ----------
@@ -105,11 +116,14 @@ class StudyFolder:
     design, gathered : pathlib.Path
         The cases of the study, and its gathered results.
     inputs, study_file : pathlib.Path
-        Folder with the files that the study was made from, and the study file in it, with every default written out.
+        Folder with the files that the study was made from, and the study file in it, with every
+        default written out.
     plan_file : pathlib.Path
-        The record of the plan: its chunks, and the study and inputs that it was made from. It marks the folder as ours.
+        The record of the plan: its chunks, and the study and inputs that it was made from. It marks
+        the folder as ours.
     lock : pathlib.Path
-        Lock that processes share while they work from the plan; only its sole holder may change the plan.
+        Lock that processes share while they work from the plan; only its sole holder may change the
+        plan.
     """
 
     def __init__(self, root: Path) -> None:
@@ -130,7 +144,9 @@ class StudyFolder:
         return self.root / "plan" / f"{chunk}.lock"
 
     def mark(self, chunk: str) -> Path:
-        """Return the empty file by which the workflow knows that a chunk is solved. It may be deleted at any time."""
+        """Return the empty file by which the workflow knows that a chunk is solved. It may be
+        deleted at any time.
+        """
         return self.root / "plan" / f"{chunk}.solved"
 
     def chunk(self, chunk: str) -> Path:
@@ -138,7 +154,9 @@ class StudyFolder:
         return self.root / "chunks" / f"{chunk}.nc"
 
     def solved_files(self) -> list[Path]:
-        """Return the files with results of solved cases; files with names that no chunk has do not count."""
+        """Return the files with results of solved cases; files with names that no chunk has do not
+        count.
+        """
         paths = sorted((self.root / "chunks").glob("*.nc"))
         return [path for path in paths if BLOCK.fullmatch(f"chunks/{path.name}")]
 
@@ -146,7 +164,10 @@ class StudyFolder:
         """Return the files with solved cases that the plan counts on and that are gone."""
         record = self.record()
         solved = [name for name in record.get("chunks", {}) if self.mark(name).is_file()]
-        paths = [*map(self.chunk, solved), *(self.root / "chunks" / name for name in record.get("uses", ()))]
+        paths = [
+            *map(self.chunk, solved),
+            *(self.root / "chunks" / name for name in record.get("uses", ())),
+        ]
         return [path for path in paths if not path.is_file()]
 
     def create(self) -> StudyFolder:
@@ -160,7 +181,8 @@ class StudyFolder:
         Raises
         ------
         InputError
-            If the path exists and is not a folder, or the folder is somebody else's or holds a link.
+            If the path exists and is not a folder, or the folder is somebody else's or holds a
+            link.
         WorkError
             If the folder cannot be written.
         """
@@ -177,15 +199,17 @@ class StudyFolder:
             if exc.errno in NO_FOLDER:
                 wrong = f"cannot be a folder ({why_not(exc, self.root)})"
                 remedy = "Choose another with --results."
-                raise InputError(WHAT, str(self.root), "the path of a folder", remedy, wrong) from None
+                raise InputError(
+                    WHAT, str(self.root), "the path of a folder", remedy, wrong
+                ) from None
             raise disk_error(exc, self.root) from None
         return self
 
     def _mark(self) -> None:
         """Write the mark as the first file of the folder, unless it has one.
 
-        An empty `plan.json`, as a process leaves it that is killed here, counts as none. The lock lets one of several
-        processes write the mark.
+        An empty `plan.json`, as a process leaves it that is killed here, counts as none. The lock
+        lets one of several processes write the mark.
         """
         if is_study(self.root):
             return
@@ -203,7 +227,9 @@ class StudyFolder:
             raise _foreign_folder(self.root)
 
     def record(self) -> dict[str, Any]:
-        """Return the record of the plan; {} if there is none, it was altered, or it is that of another version."""
+        """Return the record of the plan; {} if there is none, it was altered, or it is that of
+        another version.
+        """
         if not is_study(self.root):
             return {}
         return {key: value for key, value in read_mark(self.root).items() if key not in OURS}
@@ -223,24 +249,38 @@ class StudyFolder:
     def write_record(self, record: Mapping[str, Any]) -> None:
         """Write the record of the plan with its digest, and the mark that the folder is ours."""
         text = signed(record)
-        put_unlisted(self.plan_file, lambda beside: beside.write_text(text, encoding="utf-8", newline="\n"))
+        put_unlisted(
+            self.plan_file, lambda beside: beside.write_text(text, encoding="utf-8", newline="\n")
+        )
 
 
 @contextlib.contextmanager
 def reporting(folder: StudyFolder, tell: Tell | None = None) -> Iterator[None]:
     """Keep others from making a report, gathering results and changing the plan."""
-    with locked(folder.create().lock, shared=True), locked(folder.lock.with_name(".report"), tell=tell):
+    with (
+        locked(folder.create().lock, shared=True),
+        locked(folder.lock.with_name(".report"), tell=tell),
+    ):
         yield
 
 
 def check_for_workflow(root: Path) -> None:
     """Refuse a folder in which Snakemake would delete a file that is not ours.
 
-    Snakemake removes the outputs and log files of a job without a look at them, and the folder `figures/` as a whole.
-    An empty file, as a mark is, holds nothing that could be lost.
+    Snakemake removes the outputs and log files of a job without a look at them, and the folder
+    `figures/` as a whole. An empty file, as a mark is, holds nothing that could be lost.
     """
     figures = root / "figures"
-    paths = [root / name for name in ("design.nc", GATHERED, "sensitivity.nc", "report.html", "ro-crate-metadata.json")]
+    paths = [
+        root / name
+        for name in (
+            "design.nc",
+            GATHERED,
+            "sensitivity.nc",
+            "report.html",
+            "ro-crate-metadata.json",
+        )
+    ]
     paths += (root / "plan").glob("*.solved")
     paths += [file for place in ("figures", "logs", "looks") for file in files_below(root / place)]
     if not figures.is_dir():
@@ -259,13 +299,16 @@ def delete_study(root: Path) -> None:
     Raises
     ------
     InputError
-        If the folder is not that of a study, or holds a file of somebody else; nothing is deleted then.
+        If the folder is not that of a study, or holds a file of somebody else; nothing is deleted
+        then.
     """
     check_folder(root)
     manifest = Manifest(root)
     listed = manifest.contents()
     files = [path for path in files_below(root) if root / SCRATCH not in path.parents]
-    ours = [path for path in files if not _holds_something(path) or manifest.owns(path, listed=listed)]
+    ours = [
+        path for path in files if not _holds_something(path) or manifest.owns(path, listed=listed)
+    ]
     foreign = [path for path in files if path not in ours]
     if foreign:
         names = ", ".join(map(manifest.name_of, foreign[:4]))
@@ -273,7 +316,9 @@ def delete_study(root: Path) -> None:
             names += f" and {len(foreign) - 4} more"
         remedy = "Move these files away, or delete the folder yourself."
         wrong = f"holds files that trackroller did not write: {names}"
-        raise InputError(WHAT, str(root), "a folder with files that trackroller wrote", remedy, wrong)
+        raise InputError(
+            WHAT, str(root), "a folder with files that trackroller wrote", remedy, wrong
+        )
     sweep(root)
     # manifest and mark prove what the other files are, so they go last
     for path in sorted(ours, key=lambda path: (path == root / MARK, path == manifest.path)):

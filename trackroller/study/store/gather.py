@@ -1,4 +1,6 @@
-"""Gather solved cases into one file: a grid gets a dimension for each factor, a sample the dimension `case`."""
+"""Gather solved cases into one file: a grid gets a dimension for each factor, a sample the
+dimension `case`.
+"""
 
 from __future__ import annotations
 
@@ -59,8 +61,8 @@ def gather(ledger: Ledger, tell: Tell = unheard, attrs: Mapping[str, str] | None
 
     Notes
     -----
-    The time is proportional to the number of results. A result above `MOST_MEMORY` passes through a temporary
-    file in the study's folder.
+    The time is proportional to the number of results. A result above `MOST_MEMORY` passes through a
+    temporary file in the study's folder.
     """
     study = ledger.study
     folder = ledger.folder
@@ -94,23 +96,26 @@ def collect(ledger: Ledger, solved: slice | np.ndarray = slice(None)) -> xr.Data
     solved : slice or numpy.ndarray of int, shape (n,)
         The wanted cases of the design, each of which is solved; all by default.
     """
-    place = ledger.state_number[solved]
+    state_number = ledger.state_number[solved]
     results: dict[Hashable, xr.Variable] = {}
     coords: dict[Hashable, xr.Variable] = {}
     attrs: dict[str, Any] = {}
-    file, row = (ledger.states[name].values[place] for name in ("file", "row"))
+    file, row = (ledger.states[name].values[state_number] for name in ("file", "row"))
     order = np.argsort(file, kind="stable")
     numbers, start = np.unique(file[order], return_index=True)
     for number, rows in zip(numbers, np.split(order, start[1:]), strict=True):
         try:
             block = chunks.read(ledger.paths[number])
         except (chunks.CorruptFile, FileNotFoundError) as exc:
-            raise WorkError(f"corrupt results: {exc}. Start again: only its cases are solved.") from None
+            raise WorkError(
+                f"corrupt results: {exc}. Start again: only its cases are solved."
+            ) from None
         attrs = united((attrs or block.attrs, block.attrs))
         coords = {name: v.variable for name, v in block.coords.items() if name != "case"} | coords
         for name, v in block.data_vars.items():
             known = results.get(name, v[:0].variable)
-            shape = (len(place), *np.maximum(known.shape[1:], v.shape[1:]))  # grids of different sizes
+            # grids of different sizes
+            shape = (len(state_number), *np.maximum(known.shape[1:], v.shape[1:]))
             if known.shape != shape:
                 room = _room(shape, v.dtype, ledger.folder.root)
                 room[tuple(map(slice, known.shape))] = known.values

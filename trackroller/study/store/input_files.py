@@ -1,8 +1,9 @@
-"""Store the files that a study was made from, and notice when one of them is edited while the study is solved.
+"""Store the files that a study was made from, and notice when one of them is edited while the study
+is solved.
 
-Each input is read once, when the study is loaded, and its SHA-256 is noted at that moment. `inputs/` receives the bytes
-with this digest. A study file is stored with every default written out, beside the file as the user wrote it in
-`inputs/given/`. Where the files lie is not stored.
+Each input is read once, when the study is loaded, and its SHA-256 is noted at that moment.
+`inputs/` receives the bytes with this digest. A study file is stored with every default written
+out, beside the file as the user wrote it in `inputs/given/`. Where the files lie is not stored.
 """
 
 from __future__ import annotations
@@ -42,8 +43,8 @@ def store_inputs(study: Study, folder: StudyFolder, cases: xr.Dataset) -> dict[s
     folder : StudyFolder
         Its folder.
     cases : xarray.Dataset
-        Its cases, which name its materials: the fits of these are stored as well, because the range of a life by tests
-        rests on them.
+        Its cases, which name its materials: the fits of these are stored as well, because the range
+        of a life by tests rests on them.
 
     Returns
     -------
@@ -61,10 +62,19 @@ def store_inputs(study: Study, folder: StudyFolder, cases: xr.Dataset) -> dict[s
     for path, (kind, digest) in study.inputs.items():
         content = path.read_bytes() if path.is_file() else b""
         _compare(path, digest, hashlib.sha256(content).hexdigest())
-        names = {"table": path.name, "materials file": MATERIALS, "limit": f"{LIMITS_FOLDER}{path.name}"}
+        names = {
+            "table": path.name,
+            "materials file": MATERIALS,
+            "limit": f"{LIMITS_FOLDER}{path.name}",
+        }
         contents[names.get(kind, f"given/{digest[:8]}-{path.name}")] = content
         if kind == "materials file":
-            used = {str(name) for field in MATERIAL_FIELDS if field in cases for name in np.unique(cases[field])}
+            used = {
+                str(name)
+                for field in MATERIAL_FIELDS
+                if field in cases
+                for name in np.unique(cases[field])
+            }
             fits = [fit for fit in (posterior_path(path, name) for name in used) if fit.is_file()]
             contents |= {f"{FITS}/{fit.name}": read_bytes(fit, "fit") for fit in fits}
     if study.config.table is None:
@@ -76,7 +86,9 @@ def store_inputs(study: Study, folder: StudyFolder, cases: xr.Dataset) -> dict[s
         for name, content in contents.items():
             (beside / name).parent.mkdir(parents=True, exist_ok=True)
             (beside / name).write_bytes(content)
-    return {name: {"sha256": hashlib.sha256(content).hexdigest()} for name, content in contents.items()}
+    return {
+        name: {"sha256": hashlib.sha256(content).hexdigest()} for name, content in contents.items()
+    }
 
 
 def check_inputs(folder: StudyFolder, inputs: Reads) -> None:
@@ -106,13 +118,15 @@ def _says_the_same(path: Path, study: str) -> bool:
 def _compare(path: Path, before: str, now: str) -> None:
     if now != before:
         raise WorkError(
-            f"{path} was edited while the study was solved from its earlier version: its SHA-256 was {before} and is "
+            f"{path} was edited while the study was solved from its earlier version: its SHA-256 "
+            f"was {before} and is "
             f"{now}. Nothing is mixed. Start again: the cases that did not change are kept."
         )
 
 
 def study_of_folder(folder: StudyFolder) -> Study:
-    """Return the study of a folder as it was planned, with the materials stored there and no others.
+    """Return the study of a folder as it was planned, with the materials stored there and no
+    others.
 
     Raises
     ------
@@ -128,8 +142,10 @@ def study_of_folder(folder: StudyFolder) -> Study:
         now = sha256(path) if path.is_file() else "no file"
         if now != stored["sha256"]:
             raise WorkError(
-                f"{path} was altered after it was written: its SHA-256 was {stored['sha256']} and is {now}. Move or "
-                "remove it, then start `trackroller run` with the study file: it stores its inputs again."
+                f"{path} was altered after it was written: its SHA-256 was {stored['sha256']} and "
+                f"is {now}. Move or "
+                "remove it, then start `trackroller run` with the study file: it stores its "
+                "inputs again."
             )
     _check_limits(folder, record.get("inputs", {}))
     materials = folder.inputs / MATERIALS
@@ -143,7 +159,9 @@ def study_of_folder(folder: StudyFolder) -> Study:
 
 
 def _check_limits(folder: StudyFolder, inputs: Iterable[str]) -> None:
-    """Refuse a study whose own limits are not loaded; its materials and outputs would not be known."""
+    """Refuse a study whose own limits are not loaded; its materials and outputs would not be
+    known.
+    """
     files = [folder.inputs / name for name in inputs if name.startswith(LIMITS_FOLDER)]
     lacking = [file for file in files if file.stem not in LIMITS]
     if lacking:

@@ -1,11 +1,12 @@
 """The ledger of a study: which case is solved in which chunk, and which chunk is open.
 
-Data goes one way. The design of a study is built and its cases are identified once; the files of the chunks say which
-of them are solved; the other cases are planned: they go into new chunks, each with a case list that is named by its
-content. Growing a study therefore adds chunks and changes no finished one.
+Data goes one way. The design of a study is built and its cases are identified once; the files of
+the chunks say which of them are solved; the other cases are planned: they go into new chunks, each
+with a case list that is named by its content. Growing a study therefore adds chunks and changes no
+finished one.
 
-Every process that works from a ledger holds the study's lock together with the others (`working_ledger`). Only the
-sole holder of the lock repairs the folder and may plan anew.
+Every process that works from a ledger holds the study's lock together with the others
+(`working_ledger`). Only the sole holder of the lock repairs the folder and may plan anew.
 """
 
 from __future__ import annotations
@@ -46,7 +47,8 @@ from trackroller.yaml_file import parse_mapping
 if TYPE_CHECKING:
     from trackroller.study.file.study import Study
 
-SHORTEST, LONGEST = 8.0, 40.0  # seconds of solving a chunk: long beside the start of a job (1-2 s), short to lose
+# seconds of solving a chunk: long beside the start of a job (1-2 s), short to lose
+SHORTEST, LONGEST = 8.0, 40.0
 LARGEST_CHUNK = 20_000
 MOST_LEVELS = 3  # that the words for a chunk list
 
@@ -55,7 +57,8 @@ MOST_LEVELS = 3  # that the words for a chunk list
 class Ledger:
     """Which case of a study is solved in which chunk, and which chunk is open.
 
-    The files of the solved chunks are read when a caller first asks for a solved case; `anew` reads them again.
+    The files of the solved chunks are read when a caller first asks for a solved case; `anew` reads
+    them again.
 
     Attributes
     ----------
@@ -96,14 +99,18 @@ class Ledger:
 
     @cached_property
     def _read(self) -> tuple[xr.Dataset, list[Path], dict[Path, str]]:
-        """Read every file with solved cases and verify its checksum; return `states`, `paths` and `corrupt`."""
+        """Read every file with solved cases and verify its checksum; return `states`, `paths` and
+        `corrupt`.
+        """
         corrupt: dict[Path, str] = {}
         sound = list(chunks.read_sound(self.folder.solved_files(), corrupt, chunks.read_state))
         none = chunks.failure(np.empty(0, dtype="S32"), "")[["regime", "reason"]]
         numbered = [none.assign(file=("case", np.empty(0, int)), row=("case", np.empty(0, int)))]
         for number, (_, state) in enumerate(sound):
             rows = np.arange(state.sizes["case"])
-            numbered.append(state.assign(file=("case", np.full(len(rows), number)), row=("case", rows)))
+            numbered.append(
+                state.assign(file=("case", np.full(len(rows), number)), row=("case", rows))
+            )
         every = chunks.join(numbered)
         _, first = np.unique(every["case"].values, return_index=True)
         return every.isel(case=first), [path for path, _ in sound], corrupt
@@ -112,8 +119,9 @@ class Ledger:
     def states(self) -> xr.Dataset:
         """Return the solved cases of the folder, each once, also those of earlier designs.
 
-        `regime` (code of `REGIMES`), `reason` of a failure, `file` (index into `paths`) and `row` in that file, along
-        `case` in ascending order of the fingerprints; the attribute `seconds` is the time spent on solving [s].
+        `regime` (code of `REGIMES`), `reason` of a failure, `file` (index into `paths`) and `row`
+        in that file, along `case` in ascending order of the fingerprints; the attribute `seconds`
+        is the time spent on solving [s].
         """
         return self._read[0]
 
@@ -133,27 +141,35 @@ class Ledger:
         return float(self.states.attrs["seconds"]) / 3600
 
     def find(self, fingerprints: np.ndarray) -> np.ndarray:
-        """Return the index of each wanted case in `states`, shape (n,); -1 marks a case that is not solved."""
+        """Return the index of each wanted case in `states`, shape (n,); -1 marks a case that is not
+        solved.
+        """
         cases = self.states["case"].values
         number = np.searchsorted(cases, fingerprints)
         return np.where(np.append(cases, b"")[number] == fingerprints, number, -1)
 
     @cached_property
     def state_number(self) -> np.ndarray:
-        """Return the index of each case of the design in `states`, shape (n,); -1 marks a case that is not solved."""
+        """Return the index of each case of the design in `states`, shape (n,); -1 marks a case that
+        is not solved.
+        """
         return self.find(self.cases.fingerprints)
 
     def forget_failed(self) -> int:
-        """Remove the failed cases from the files, so that they are planned again; return their number.
+        """Remove the failed cases from the files, so that they are planned again; return their
+        number.
 
-        A file without its failed cases gets another name, because its name is the hash of its cases.
+        A file without its failed cases gets another name, because its name is the hash of its
+        cases.
         """
         failed = self.states["file"].values[self.states["regime"].values == chunks.FAILED]
         for number in np.unique(failed):
             block = chunks.read(self.paths[number])
             solved = block.isel(case=(block["regime"] != chunks.FAILED).values)
             if solved.sizes["case"]:
-                chunks.write(self.folder.chunk(chunk_name(solved["case"].values)), solved, packed=True)
+                chunks.write(
+                    self.folder.chunk(chunk_name(solved["case"].values)), solved, packed=True
+                )
             Manifest(self.folder.root).unlink([self.paths[number]])
         return len(failed)
 
@@ -164,7 +180,8 @@ def study_folder(study_name: str, results: Path | str = "results") -> StudyFolde
 
 
 def chunk_size(study: Study, cases: int) -> int:
-    """Return the number of cases of a chunk: some seconds of solving, and at least two chunks for two processors.
+    """Return the number of cases of a chunk: some seconds of solving, and at least two chunks for
+    two processors.
 
     A killed process loses the chunks that it works on, so a chunk of slow cases holds few of them.
     """
@@ -177,27 +194,39 @@ def chunk_size(study: Study, cases: int) -> int:
 
 def plan_key(study: Study) -> str:
     """Return the hash of everything that a plan depends on, found without drawing the design."""
-    stated = [solver_and_materials(study.materials), study.merged(), *([study.grown] if study.grown else [])]
+    stated = [
+        solver_and_materials(study.materials),
+        study.merged(),
+        *([study.grown] if study.grown else []),
+    ]
     if study.config.table is not None:
         stated.append(sha256(study.table_path))
     return hashlib.sha256(repr(stated).encode()).hexdigest()
 
 
 def read_ledger(study: Study, folder: StudyFolder) -> Ledger | None:
-    """Return the ledger on the disk, or None if it is missing or was made for another version of the study."""
+    """Return the ledger on the disk, or None if it is missing or was made for another version of
+    the study.
+    """
     record = folder.record()
     if record.get("key") != plan_key(study):
         return None
     return Ledger(
-        StudyCases(study), folder, record["chunks"], record["size"], record["distinct"], tuple(record["uses"])
+        StudyCases(study),
+        folder,
+        record["chunks"],
+        record["size"],
+        record["distinct"],
+        tuple(record["uses"]),
     )
 
 
 def sound_ledger(files: Ledger) -> tuple[Ledger | None, list[str]]:
-    """Return the ledger on the disk if it accounts for every case, and a line on each damaged case list.
+    """Return the ledger on the disk if it accounts for every case, and a line on each damaged case
+    list.
 
-    Each case must be in a solved file or in the sound list of an open chunk, and no case of an open chunk may be solved
-    already, as it is after a process was killed while it forgot failed cases.
+    Each case must be in a solved file or in the sound list of an open chunk, and no case of an open
+    chunk may be solved already, as it is after a process was killed while it forgot failed cases.
     """
     folder = files.folder
     ledger = read_ledger(files.study, files.folder)
@@ -217,7 +246,9 @@ def sound_ledger(files: Ledger) -> tuple[Ledger | None, list[str]]:
 
 
 def planned(files: Ledger) -> Ledger:
-    """Return the ledger in which each case that no file holds has a chunk, and write the case lists of these chunks."""
+    """Return the ledger in which each case that no file holds has a chunk, and write the case lists
+    of these chunks.
+    """
     study = files.study
     folder = files.folder
     cases = files.cases
@@ -234,21 +265,33 @@ def planned(files: Ledger) -> Ledger:
     fields = fields.assign({name: ((), value) for name, value in shared.items()})
     sizes: dict[str, int] = {}
     identity = solver_and_materials(study.materials)
-    parts = [part for number in range(len(options)) for part in _split(missing[group[missing] == number], size)]
+    parts = [
+        part
+        for number in range(len(options))
+        for part in _split(missing[group[missing] == number], size)
+    ]
     for count, part in enumerate(parts, 1):
         name = chunk_name(names[part])
         # an index of all names would take 70 bytes a case
         block = fields.isel(case=part, missing_dims="ignore").assign_coords(case=names[part])
         words = ", ".join([f"chunk {count} of {len(parts)}", *_levels_of(study, cases.rows[part])])
-        attrs = {"options": json.dumps(options[group[part[0]]]), "identity": identity, "words": words}
+        attrs = {
+            "options": json.dumps(options[group[part[0]]]),
+            "identity": identity,
+            "words": words,
+        }
         chunks.write(folder.case_list(name), block.assign_attrs(attrs))
         sizes[name] = len(part)
-    uses = sorted(files.paths[i].name for i in np.unique(files.states["file"].values[state_number[state_number >= 0]]))
+    uses = sorted(
+        files.paths[i].name
+        for i in np.unique(files.states["file"].values[state_number[state_number >= 0]])
+    )
     return replace(files, chunks=sizes, size=len(names), distinct=len(distinct), uses=tuple(uses))
 
 
 def unused_cases(ledger: Ledger) -> str:
-    """Say how many solved cases the design of a study does not hold, and why; '' if it holds all of them.
+    """Say how many solved cases the design of a study does not hold, and why; '' if it holds all of
+    them.
 
     Parameters
     ----------
@@ -259,7 +302,8 @@ def unused_cases(ledger: Ledger) -> str:
     folder = ledger.folder
     solved = ledger.states.sizes["case"]
     state_number = ledger.state_number
-    if study.config.method.proposes or study.config.until is not None:  # each step is a design of its own
+    # each step is a design of its own
+    if study.config.method.proposes or study.config.until is not None:
         return ""
     unused = solved - len(np.unique(state_number[state_number >= 0]))
     if not unused or folder.of_another_solver:
@@ -273,7 +317,8 @@ def unused_cases(ledger: Ledger) -> str:
         why = f": {' and '.join(added)} became a factor"
     if why and not study.config.method.crossed:
         remedy = (
-            f"A {study.config.design} design with another factor is drawn anew. To keep both, give it another name."
+            f"A {study.config.design} design with another factor is drawn anew. To keep "
+            "both, give it another name."
         )
     elif why:
         remedy = "The old value of a new factor must be one of its levels to keep them."
@@ -284,7 +329,9 @@ def unused_cases(ledger: Ledger) -> str:
 
 
 def _keeps_rows(study: Study) -> bool:
-    """Return whether a larger sample begins with the rows of a smaller one; True for a design without samples."""
+    """Return whether a larger sample begins with the rows of a smaller one; True for a design
+    without samples.
+    """
     method = METHODS[study.config.inner or study.config.design]
     return method.grows or not method.sampled
 
@@ -297,7 +344,9 @@ def _split(rows: np.ndarray, size: int) -> list[np.ndarray]:
 
 
 def _levels_of(study: Study, rows: np.ndarray) -> list[str]:
-    """Return the levels of the cases of a chunk for each listed factor of which the chunk holds some levels only."""
+    """Return the levels of the cases of a chunk for each listed factor of which the chunk holds
+    some levels only.
+    """
     words = []
     for name, factor in study.drawn.factors.items():
         levels = []
@@ -316,7 +365,9 @@ def _levels_of(study: Study, rows: np.ndarray) -> list[str]:
 
 
 def record_of(ledger: Ledger, inputs: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the record of a ledger, which `read_ledger` reads: what it was made from, and its chunks."""
+    """Return the record of a ledger, which `read_ledger` reads: what it was made from, and its
+    chunks.
+    """
     return {
         "key": plan_key(ledger.study),
         "solver_digest": solver_digest(),
@@ -328,13 +379,21 @@ def record_of(ledger: Ledger, inputs: Mapping[str, Any]) -> dict[str, Any]:
         "distinct": ledger.distinct,
         "chunks": ledger.chunks,
         "uses": list(ledger.uses),
-        **({"grown": list(ledger.study.grown), "sample": sample_of(ledger.study)} if ledger.study.grown else {}),
+        **(
+            {"grown": list(ledger.study.grown), "sample": sample_of(ledger.study)}
+            if ledger.study.grown
+            else {}
+        ),
     }
 
 
 @contextlib.contextmanager
 def working_ledger(
-    study: Study, results: Path | str = "results", *, tell: Tell = unheard, rerun_failed: bool = False
+    study: Study,
+    results: Path | str = "results",
+    *,
+    tell: Tell = unheard,
+    rerun_failed: bool = False,
 ) -> Iterator[Ledger]:
     """Plan a study and keep other processes from changing the plan.
 
@@ -357,11 +416,11 @@ def working_ledger(
     Raises
     ------
     InputError
-        If the design holds an invalid case, the results folder cannot be a folder or is somebody else's, or a file of
-        somebody else stands in the place of a result.
+        If the design holds an invalid case, the results folder cannot be a folder or is somebody
+        else's, or a file of somebody else stands in the place of a result.
     WorkError
-        If another process works on another version of the study, an input was edited after the study was loaded, or the
-        folder cannot be written.
+        If another process works on another version of the study, an input was edited after the
+        study was loaded, or the folder cannot be written.
     """
     folder = study_folder(study.name, results).create()
     with open(folder.lock, "rb+") as lock:
@@ -372,13 +431,18 @@ def working_ledger(
         if ledger is None and not rerun_failed:  # another process has planned
             ledger = read_ledger(study, folder)
         if ledger is None:
-            raise _held(study, folder, rerun_failed)
+            raise _in_use(study, folder, rerun_failed)
         yield ledger
 
 
-def _held(study: Study, folder: StudyFolder, rerun_failed: bool) -> WorkError:
-    """Return the error for a folder that another process holds, so that this one can neither plan nor join in."""
-    wait = f"Wait until that process ends, or stop it; then start again: {folder.root} keeps every finished case."
+def _in_use(study: Study, folder: StudyFolder, rerun_failed: bool) -> WorkError:
+    """Return the error for a folder that another process holds, so that this one can neither plan
+    nor join in.
+    """
+    wait = (
+        f"Wait until that process ends, or stop it; then start again: {folder.root} keeps "
+        "every finished case."
+    )
     if rerun_failed:
         why = "and failed cases are not removed under it"
         return WorkError(f"study '{study.name}': another process is solving it, {why}. {wait}")
@@ -390,7 +454,10 @@ def _held(study: Study, folder: StudyFolder, rerun_failed: bool) -> WorkError:
 def _plan(study: Study, folder: StudyFolder, tell: Tell, rerun_failed: bool) -> Ledger:
     """Remove damaged files, and plan anew unless the ledger on the disk accounts for every case."""
     if folder.of_another_solver:
-        tell(f"the solver's code has changed since {folder.root} was planned: all its cases are solved anew")
+        tell(
+            f"the solver's code has changed since {folder.root} was planned: all its cases are "
+            "solved anew"
+        )
     _check_same_study(study, folder)
     files = Ledger(StudyCases(study), folder)
     _check_files(files)
@@ -414,14 +481,18 @@ def _plan(study: Study, folder: StudyFolder, tell: Tell, rerun_failed: bool) -> 
 
 
 def _check_same_study(study: Study, folder: StudyFolder) -> None:
-    """Refuse the folder of another study that was given the name of this one; a study may have been renamed itself."""
+    """Refuse the folder of another study that was given the name of this one; a study may have been
+    renamed itself.
+    """
     earlier = folder.earlier()
     now = parse_mapping(study.merged(), "study file")
     other = earlier.get("name", study.name)
     if other != study.name and any(earlier.get(key) != now.get(key) for key in ("base", "factors")):
         remedy = "Give this study another name, choose another --results, or rename the folder."
         wrong = f"holds the study '{other}', which has other inputs"
-        raise InputError("results folder", str(folder.root), "a folder of this study", remedy, wrong)
+        raise InputError(
+            "results folder", str(folder.root), "a folder of this study", remedy, wrong
+        )
 
 
 def _check_files(files: Ledger) -> None:

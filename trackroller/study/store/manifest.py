@@ -1,18 +1,20 @@
 """The manifest of a folder: which files in it this program wrote, and what they hold.
 
-`plan.json` marks the folder of a study as ours. `plan/files.jsonl` lists the files that this program
-wrote there, one line for each content that a file has had or is about to get: its path and the
-SHA-256 of the content. Lines are only added. This is promised:
+`plan.json` marks the folder of a study as ours. `plan/files.jsonl` lists the files that this
+program wrote there, one line for each content that a file has had or is about to get: its path and
+the SHA-256 of the content. Lines are only added. This is promised:
 
 1. A folder is ours if its `plan.json` bears our mark and fits its own digest. The mark is the first
-   file of a folder (`mark.py`). Any other folder that is not empty is refused, whatever it holds (`folder.py`).
+   file of a folder (`mark.py`). Any other folder that is not empty is refused, whatever it holds
+   (`folder.py`).
 2. A file is replaced or removed only if it holds what this program wrote: the manifest lists its
    digest. If something else stands in its place, the command stops and names it. The user moves or
    removes it and starts again.
 3. The digest is written down before the file. A process that is killed in between leaves a file of
    ours: the one of before, whose digest is listed too.
-4. A block of cases needs no line: it is named by its cases and ends with its checksum (`chunks.py`).
-   The plan holds its own digest. A log keeps changing: it is ours by its name, once it is listed.
+4. A block of cases needs no line: it is named by its cases and ends with its checksum
+   (`chunks.py`). The plan holds its own digest. A log keeps changing: it is ours by its name, once
+   it is listed.
 5. A file is made in `plan/.scratch/` and renamed when it is whole. The sole holder of the study's
    lock empties that folder, in which only killed processes leave something.
 6. The RO-Crate of a finished study lists the same digests and goes where the folder goes: a copy
@@ -43,8 +45,10 @@ WHAT = "results folder"  # in messages
 SCRATCH = "plan/.scratch"
 LOCK = "plan/.manifest"
 GATHERED = "study.nc"
-REPORT = ("sensitivity.nc", "report.html", "figures", "tables")  # what is made from the gathered results
-OUTDATED = "outdated"  # in place of a digest: what stands there, if anything, is not the newest result
+# what is made from the gathered results
+REPORT = ("sensitivity.nc", "report.html", "figures", "tables")
+# in place of a digest: what stands there, if anything, is not the newest result
+OUTDATED = "outdated"
 CHANGING = "changing"  # in place of a digest: a log, which is ours by its name
 EMPTY = (".lock", ".solved")  # locks and marks, whose name says all
 BLOCK = re.compile(r"(plan|chunks)/[0-9a-f]{16}\.nc")
@@ -77,17 +81,22 @@ class Manifest:
         return self.name == LIST
 
     def contents(self) -> Contents:
-        """Return the digests of all files, read once: a caller that asks about many files passes them on."""
+        """Return the digests of all files, read once: a caller that asks about many files passes
+        them on.
+        """
         listed: Contents = {}
         with contextlib.suppress(OSError), open_here(self.path, "rb") as stream:
             for line in stream:
-                with contextlib.suppress(ValueError, TypeError, KeyError, RecursionError):  # a line that was cut off
+                # a line that was cut off
+                with contextlib.suppress(ValueError, TypeError, KeyError, RecursionError):
                     entry = json.loads(line)
                     listed.setdefault(str(entry["file"]), []).append(str(entry["sha256"]))
         return {name: digests for name, digests in listed.items() if _is_inside(name)}
 
     def current(self, path: Path) -> dict[str, str]:
-        """Return the newest digest of each file of a result, which is a file or a folder; {} if it is outdated."""
+        """Return the newest digest of each file of a result, which is a file or a folder; {} if it
+        is outdated.
+        """
         newest: dict[str, str] = {}
         for name, digests in sorted(self.contents().items()):
             file = self.root / name
@@ -107,13 +116,15 @@ class Manifest:
         """Return the temporary path at which this process makes a file or folder."""
         if not self.of_study:
             return scratch_name(path)
-        place = self.root / SCRATCH
-        for part in self.parts(place):
+        folder = self.root / SCRATCH
+        for part in self.parts(folder):
             refuse_link(part, WHAT)
-        return scratch_name(place / self.name_of(path).replace("/", "."))
+        return scratch_name(folder / self.name_of(path).replace("/", "."))
 
     def note(self, digests: Mapping[str, str]) -> None:
-        """Write down what files are about to hold; the first line of a list names the list itself."""
+        """Write down what files are about to hold; the first line of a list names the list
+        itself.
+        """
         self.check()
         with disk_errors(self.path):
             self.path.parent.mkdir(parents=True, exist_ok=True)
@@ -121,7 +132,9 @@ class Manifest:
                 entries = dict(digests)
                 if stream.seek(0, os.SEEK_END) == 0:
                     entries = {self.name: CHANGING, **digests}
-                lines = [json.dumps({"file": name, "sha256": digest}) for name, digest in entries.items()]
+                lines = [
+                    json.dumps({"file": name, "sha256": digest}) for name, digest in entries.items()
+                ]
                 if not _ends_with_line(stream):
                     lines.insert(0, "")
                 stream.write("".join(f"{line}\n" for line in lines).encode())
@@ -166,8 +179,11 @@ class Manifest:
         digests = listed.get(name, [])
         return CHANGING in digests or digest_of_file(path) in {new, *digests} - {""}
 
-    def check(self, *paths: Path, new: Mapping[Path, str] | None = None, damaged: Iterable[Path] = ()) -> None:
-        """Refuse to write where a link, a folder, a file of somebody else or a changed file of ours stands.
+    def check(
+        self, *paths: Path, new: Mapping[Path, str] | None = None, damaged: Iterable[Path] = ()
+    ) -> None:
+        """Refuse to write where a link, a folder, a file of somebody else or a changed file of ours
+        stands.
 
         The list itself is always looked at.
 
@@ -233,7 +249,9 @@ class Manifest:
 
 
 def manifest_of(path: Path) -> Manifest | None:
-    """Return the manifest of the study in whose folder a path lies, None if it lies in none, or is temporary."""
+    """Return the manifest of the study in whose folder a path lies, None if it lies in none, or is
+    temporary.
+    """
     root = next((parent for parent in list(path.parents)[:4] if is_study(parent)), None)
     if root is None or root / SCRATCH in path.parents:
         return None
@@ -264,7 +282,9 @@ def why_altered(path: Path) -> str | None:
 
 
 def _listed(path: Path) -> tuple[Path, Contents, Path]:
-    """Return the folder of a result, the digests that are listed of its files, and the file that lists them."""
+    """Return the folder of a result, the digests that are listed of its files, and the file that
+    lists them.
+    """
     manifest = manifest_of(path)
     if manifest is not None:
         current = manifest.current(path)
@@ -286,13 +306,18 @@ def check_unaltered(path: Path) -> Path:
     """
     reason = why_altered(path)
     if reason is not None:
-        remedy = "Move or remove it; `trackroller run STUDY --report` then makes it again from the chunks"
+        remedy = (
+            "Move or remove it; `trackroller run STUDY --report` then makes it again from "
+            "the chunks"
+        )
         raise WorkError(f"{reason}. {remedy}, which are kept.")
     return path
 
 
 def digests_of(path: Path) -> dict[str, str]:
-    """Return the digest of each file of a result; {} unless it is listed and holds what was written down last."""
+    """Return the digest of each file of a result; {} unless it is listed and holds what was written
+    down last.
+    """
     root, listed, _ = _listed(path)
     newest = {name: digests[-1] for name, digests in listed.items()}
     if all(digest_of_file(root / name) == digest for name, digest in newest.items()):
@@ -302,14 +327,14 @@ def digests_of(path: Path) -> dict[str, str]:
 
 def remove_empty(root: Path) -> None:
     """Remove a folder and the folders in it, as far as no file is left in them."""
-    for place, _, _ in os.walk(root, topdown=False):
+    for folder, _, _ in os.walk(root, topdown=False):
         with contextlib.suppress(OSError):
-            os.rmdir(place)
+            os.rmdir(folder)
 
 
 def files_below(root: Path) -> list[Path]:
     """Return all files below a folder, in order."""
-    return sorted(Path(place, name) for place, _, names in os.walk(root) for name in names)
+    return sorted(Path(folder, name) for folder, _, names in os.walk(root) for name in names)
 
 
 def _is_inside(name: str) -> bool:
@@ -318,7 +343,9 @@ def _is_inside(name: str) -> bool:
 
 
 def _ends_with_line(stream: IO[bytes]) -> bool:
-    """Return whether a file is empty or ends with a whole line; a killed process may have cut its last line off."""
+    """Return whether a file is empty or ends with a whole line; a killed process may have cut its
+    last line off.
+    """
     if stream.seek(0, os.SEEK_END) == 0:
         return True
     stream.seek(-1, os.SEEK_END)

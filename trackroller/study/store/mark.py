@@ -1,4 +1,6 @@
-"""The mark of a study's folder: `plan.json`, which fits its own digest and says that trackroller made the folder."""
+"""The mark of a study's folder: `plan.json`, which fits its own digest and says that trackroller
+made the folder.
+"""
 
 from __future__ import annotations
 
@@ -14,7 +16,8 @@ from trackroller.files import STUDY_MARK, open_here
 
 MARK = STUDY_MARK
 LIST = "plan/files.jsonl"  # the manifest of a study
-STORE_FORMAT = 1  # raise it when a file of the store gets another meaning; other formats are refused by name
+# raise it when a file of the store gets another meaning; other formats are refused by name
+STORE_FORMAT = 1
 OURS = {"store_format": STORE_FORMAT, "made_by": "trackroller", "manifest": LIST}  # the mark
 MAPPINGS = ("inputs", "chunks")  # keys of the plan that hold an entry for each name
 
@@ -30,16 +33,21 @@ def _digest_of(record: Mapping[str, Any]) -> str:
 
 
 def read_mark(root: Path) -> dict[str, Any]:
-    """Return what `plan.json` of a folder says, of any version; {} if there is none, or it does not fit its digest."""
+    """Return what `plan.json` of a folder says, of any version; {} if there is none, or it does not
+    fit its digest.
+    """
     path = root / MARK
     try:
         state = os.lstat(path)
-        return dict(_parsed_mark(path, (state.st_ino, state.st_mtime_ns, state.st_size, state.st_mode)))
+        return dict(
+            _parsed_mark(path, (state.st_ino, state.st_mtime_ns, state.st_size, state.st_mode))
+        )
     except OSError:
         return {}
 
 
-@functools.lru_cache(64)  # each written file asks for it, and the plan of a large study has megabytes
+# each written file asks for it, and the plan of a large study has megabytes
+@functools.lru_cache(64)
 def _parsed_mark(path: Path, state: tuple[int, ...]) -> dict[str, Any]:
     try:
         with open_here(path, "rb") as stream:

@@ -15,13 +15,16 @@ from trackroller.files import memory
 from trackroller.study.store.manifest import check_unaltered
 
 ANY_BYTES = 1_000_000_000  # any file may declare so many bytes
-MOST_PACKED = 200  # bytes declared for each byte of a larger file; results of a study pack 2 to 20 times
+# bytes declared for each byte of a larger file; results of a study pack 2 to 20 times
+MOST_PACKED = 200
 TEXT_BYTES = 100  # of a text in memory
-MOST_VARIABLES = 5_000  # a table has 1,000 columns at most, and each variable takes xarray longer than the one before
+# a table has 1,000 columns at most, and each variable takes xarray longer than the one before
+MOST_VARIABLES = 5_000
 
 
 def read_netcdf(path: Path, what: str, remedy: str) -> xr.Dataset:
-    """Return a netCDF file in memory; the one way to read a netCDF file that somebody else may have written.
+    """Return a netCDF file in memory; the one way to read a netCDF file that somebody else may have
+    written.
 
     Parameters
     ----------
@@ -54,7 +57,9 @@ def read_netcdf(path: Path, what: str, remedy: str) -> xr.Dataset:
         RecursionError,
     ) as exc:
         reason = " ".join(str(exc).split())[:200]
-        raise InputError(what, str(path), "a netCDF file", remedy, f"cannot be read as netCDF ({reason})") from None
+        raise InputError(
+            what, str(path), "a netCDF file", remedy, f"cannot be read as netCDF ({reason})"
+        ) from None
     raise InputError(what, str(path), "a netCDF file that fits the memory", remedy, excess)
 
 
@@ -70,7 +75,13 @@ def read_result(path: Path | str) -> xr.Dataset:
     """
     path = Path(path)
     if not path.is_file():
-        raise InputError("results", str(path), "the path of a netCDF file", "Run the study first.", "does not exist")
+        raise InputError(
+            "results",
+            str(path),
+            "the path of a netCDF file",
+            "Run the study first.",
+            "does not exist",
+        )
     return read_netcdf(check_unaltered(path), "results", "Run the study again.")
 
 
@@ -83,7 +94,8 @@ def _check_attributes(ds: xr.Dataset) -> None:
 
 
 def too_large(file: netCDF4.Dataset, size: int) -> str | None:
-    """Return why a file must not be read into memory: a file of a few kB can declare thousands of millions of values.
+    """Return why a file must not be read into memory: a file of a few kB can declare thousands of
+    millions of values.
 
     Parameters
     ----------
@@ -104,4 +116,7 @@ def too_large(file: netCDF4.Dataset, size: int) -> str | None:
     declared = sum(math.prod(v.shape) * getattr(v.dtype, "itemsize", TEXT_BYTES) for v in variables)
     if declared <= min(memory(), max(ANY_BYTES, MOST_PACKED * size)):
         return None
-    return f"declares {values:,} values, which take {declared / 1e9:,.0f} GB, in a file of {size:,} bytes"
+    return (
+        f"declares {values:,} values, which take {declared / 1e9:,.0f} GB, in a file of "
+        f"{size:,} bytes"
+    )

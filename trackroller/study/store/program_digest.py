@@ -1,11 +1,13 @@
 """Digests of the program's own files: of which code a result was made.
 
-A result depends on the rooms in which it is made: a solved case on those up to `roller`, an analysis on those up to
-`results`. The digest of rooms is that of the bytes of their files. A changed comment therefore counts as a change: two
-versions of the program rarely differ by comments alone, and no rule has to say what a comment is.
+A result depends on the rooms in which it is made: a solved case on those up to `roller`, an
+analysis on those up to `results`. The digest of rooms is that of the bytes of their files. A
+changed comment therefore counts as a change: two versions of the program rarely differ by comments
+alone, and no rule has to say what a comment is.
 
-The solver's digest is part of each case's fingerprint (`solver_digest`). Rules of the workflow depend on a digest file
-instead of on source files, because the date of a source file changes when a copy is made::
+The solver's digest is part of each case's fingerprint (`solver_digest`). Rules of the workflow
+depend on a digest file instead of on source files, because the date of a source file changes when a
+copy is made::
 
     from trackroller.study.store.program_digest import digest_file
 
@@ -14,7 +16,8 @@ instead of on source files, because the date of a source file changes when a cop
             study=f"{RESULTS}/study.nc",
             code=digest_file(f"{RESULTS}/code", "results"),
 
-`digest_file` returns a path. It writes this file when the workflow is read, and only if the digest has changed.
+`digest_file` returns a path. It writes this file when the workflow is read, and only if the digest
+has changed.
 
 Examples
 --------
@@ -60,7 +63,8 @@ ROOMS = (  # a room imports from the rooms before it only
     "app",
     "cli",
 )
-# The values of materials stand in each fingerprint, so the file of materials need not count as well.
+# The values of materials stand in each fingerprint, so the file of materials need not count as
+# well.
 BY_VALUE = ("materials.yaml",)
 CONTENT = (".py", ".json", ".csv", ".npz", ".yaml", ".j2", ".html", ".css", ".js", ".mplstyle")
 
@@ -76,21 +80,27 @@ def room_files(last: str) -> list[Path]:
     Returns
     -------
     list of pathlib.Path
-        The files room by room, sorted in each. The top `trackroller/__init__.py` is left out: it holds public names and
-        the version only.
+        The files room by room, sorted in each. The top `trackroller/__init__.py` is left out: it
+        holds public names and the version only.
     """
     rooms = ROOMS[: ROOMS.index(last) + 1]
-    places = [place for room in rooms for place in (PACKAGE / room, PACKAGE / f"{room}.py")]
-    return [path for place in places for path in files_of(place)]
+    paths_of_rooms = [
+        path_of_room for room in rooms for path_of_room in (PACKAGE / room, PACKAGE / f"{room}.py")
+    ]
+    return [path for path_of_room in paths_of_rooms for path in files_of(path_of_room)]
 
 
-def files_of(place: Path) -> list[Path]:
-    """Return a file, or the source and data files of a folder, sorted; files that an editor leaves do not count."""
-    if place.is_dir():
-        files = sorted(place.rglob("*"))
+def files_of(path_of_room: Path) -> list[Path]:
+    """Return a file, or the source and data files of a folder, sorted; files that an editor leaves
+    do not count.
+    """
+    if path_of_room.is_dir():
+        files = sorted(path_of_room.rglob("*"))
     else:
-        files = [place]
-    return [path for path in files if path.suffix in CONTENT and path.is_file() and path.name[0] != "."]
+        files = [path_of_room]
+    return [
+        path for path in files if path.suffix in CONTENT and path.is_file() and path.name[0] != "."
+    ]
 
 
 def code_digest(last: str, *beside: str, leave_out: Iterable[str] = ()) -> str:
@@ -101,14 +111,16 @@ def code_digest(last: str, *beside: str, leave_out: Iterable[str] = ()) -> str:
     last : str
         Name of the room.
     *beside : str
-        Further files and folders, such as "validation/paper", from the folder that holds the package.
+        Further files and folders, such as "validation/paper", from the folder that holds the
+        package.
     leave_out : iterable of str
         Names of files that do not count.
 
     Returns
     -------
     str
-        16 hexadecimal digits. Two copies of the same package have the same digest, wherever they lie.
+        16 hexadecimal digits. Two copies of the same package have the same digest, wherever they
+        lie.
     """
     files = room_files(last)
     digest = hashlib.sha256()
@@ -125,7 +137,9 @@ def code_digest(last: str, *beside: str, leave_out: Iterable[str] = ()) -> str:
 
 @cache
 def solver_digest() -> str:
-    """Return the digest of all that `trackroller.solve` depends on except the values in a fingerprint."""
+    """Return the digest of all that `trackroller.solve` depends on except the values in a
+    fingerprint.
+    """
     digest = code_digest(SOLVER, leave_out=BY_VALUE)
     own = {path.stem: sha for path, sha in digests().items()}
     if own:
@@ -146,7 +160,8 @@ def digest_file(folder: str | Path, last: str, *beside: str, leave_out: Iterable
     Returns
     -------
     str
-        Path of the file. The file keeps its date while the code stays the same, so that it can be an input of a rule.
+        Path of the file. The file keeps its date while the code stays the same, so that it can be
+        an input of a rule.
     """
     path = Path(folder) / f"{'.'.join([last, *(Path(name).stem for name in beside[:1])])}.txt"
     digest = code_digest(last, *beside, leave_out=leave_out) + "\n"

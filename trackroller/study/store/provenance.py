@@ -33,7 +33,9 @@ def now() -> str:
 
 
 def git_commit() -> str:
-    """Return the commit of the source tree, with '+changed' after an edit; 'unknown' outside a source tree."""
+    """Return the commit of the source tree, with '+changed' after an edit; 'unknown' outside a
+    source tree.
+    """
     root = Path(__file__).resolve().parents[3]
     if not (root / ".git").exists():
         return "unknown"
@@ -56,14 +58,18 @@ def git_commit() -> str:
 
 
 def versions() -> dict[str, str]:
-    """Return the versions of all that computes the numbers: this package, Python, packages, limits of a user's own."""
+    """Return the versions of all that computes the numbers: this package, Python, packages, limits
+    of a user's own.
+    """
     own = {f"config/limits/{path.name}": f"sha256 {digest}" for path, digest in digests().items()}
     return {"trackroller": __version__, "python": platform.python_version()} | own | _packages()
 
 
 @functools.cache
 def _packages() -> dict[str, str]:
-    """Return the versions of the installed packages; reading them takes 6 ms, and the live page repeats it."""
+    """Return the versions of the installed packages; reading them takes 6 ms, and the live page
+    repeats it.
+    """
     versions = {}
     for name in _PACKAGES:
         with contextlib.suppress(metadata.PackageNotFoundError):
@@ -72,10 +78,15 @@ def _packages() -> dict[str, str]:
 
 
 def attributes(study: Study) -> dict[str, Any]:
-    """Return the global attributes of the gathered file for a study, those of its materials left out."""
+    """Return the global attributes of the gathered file for a study, those of its materials left
+    out.
+    """
     config = study.config
     stated = {
-        **file_attributes(f"Parameter study '{study.name}' of locating-bearing track rollers", "solved and gathered"),
+        **file_attributes(
+            f"Parameter study '{study.name}' of locating-bearing track rollers",
+            "solved and gathered",
+        ),
         "comment": config.description or f"Results of the study {study.name}",
         "study": study.merged(),
         NOT_GIVEN: json.dumps(study.not_given),

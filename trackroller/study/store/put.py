@@ -12,7 +12,16 @@ from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 
 from trackroller.errors import InputError
-from trackroller.files import check_place, disk_errors, flush, is_link, scratch_name, sha256, sync_folder, write_whole
+from trackroller.files import (
+    check_place,
+    disk_errors,
+    flush,
+    is_link,
+    scratch_name,
+    sha256,
+    sync_folder,
+    write_whole,
+)
 from trackroller.study.store.crate_entries import CRATE, digests_of_crate
 from trackroller.study.store.digests import digest_of_file
 from trackroller.study.store.manifest import (
@@ -32,14 +41,18 @@ LONE = ".trackroller.jsonl"  # manifest of a folder of figures that lies in no s
 
 
 def _manifest_to_write(path: Path) -> Manifest | None:
-    """Return the manifest of a file to write; refuse a study whose mark was damaged or removed meanwhile."""
+    """Return the manifest of a file to write; refuse a study whose mark was damaged or removed
+    meanwhile.
+    """
     manifest = manifest_of(path)
     if manifest is not None:
         return manifest
     for parent in list(path.parents)[:4]:
         if os.path.lexists(parent / LIST) and not is_study(parent):
             remedy = f"Restore {MARK} from a copy, or move the folder away, then start again."
-            raise InputError(WHAT, str(parent / MARK), "the plan of the study", remedy, "is missing or damaged")
+            raise InputError(
+                WHAT, str(parent / MARK), "the plan of the study", remedy, "is missing or damaged"
+            )
     return None
 
 
@@ -47,8 +60,8 @@ def _manifest_to_write(path: Path) -> Manifest | None:
 def replacing(path: Path) -> Iterator[Path]:
     """Yield a temporary path; what the caller writes there replaces the result at `path`.
 
-    Of a folder, each file is put in place; files that the folder holds beside stay. Outside of a study, a lone file is
-    replaced as it stands, and a folder keeps a manifest of its own.
+    Of a folder, each file is put in place; files that the folder holds beside stay. Outside of a
+    study, a lone file is replaced as it stands, and a folder keeps a manifest of its own.
 
     Raises
     ------
@@ -80,7 +93,9 @@ def replacing(path: Path) -> Iterator[Path]:
 
 
 def _replace(manifest: Manifest, path: Path, beside: Path) -> None:
-    """Put what was made at a temporary path in the place of a result, after its digests were written down."""
+    """Put what was made at a temporary path in the place of a result, after its digests were
+    written down.
+    """
     scratch_files = {path: beside}
     if beside.is_dir():
         scratch_files = {path / file.relative_to(beside): file for file in files_below(beside)}
@@ -99,8 +114,12 @@ def _replace(manifest: Manifest, path: Path, beside: Path) -> None:
     manifest.unlink(manifest.root / name for name in superfluous)
 
 
-def _outdated(manifest: Manifest, before: Mapping[str, str], digests: Mapping[str, str]) -> dict[str, str]:
-    """Return the mark of what new digests outdate: files that are not made again, and a report of earlier results."""
+def _outdated(
+    manifest: Manifest, before: Mapping[str, str], digests: Mapping[str, str]
+) -> dict[str, str]:
+    """Return the mark of what new digests outdate: files that are not made again, and a report of
+    earlier results.
+    """
     outdated = dict.fromkeys(before.keys() - digests.keys(), OUTDATED)
     if manifest.of_study and digests.get(GATHERED, before.get(GATHERED)) != before.get(GATHERED):
         for part in REPORT:
@@ -127,7 +146,9 @@ def _put_in_place(scratch_files: Mapping[Path, Path]) -> None:
 
 
 def put(path: Path, save: Callable[[Path], object]) -> Path:
-    """Write a file, see `replacing`: `save` writes its content to the temporary path that it receives."""
+    """Write a file, see `replacing`: `save` writes its content to the temporary path that it
+    receives.
+    """
     with replacing(path) as beside, disk_errors(path):
         save(beside)
     return path
@@ -139,7 +160,9 @@ def put_text(path: Path, text: str) -> Path:
 
 
 def put_unlisted(path: Path, save: Callable[[Path], object]) -> None:
-    """Write a file whose digest the manifest does not list: a block of cases, a plan, or a file that was claimed."""
+    """Write a file whose digest the manifest does not list: a block of cases, a plan, or a file
+    that was claimed.
+    """
     manifest = _manifest_to_write(path)
     if manifest is None:
         write_whole(path, save)
@@ -149,7 +172,8 @@ def put_unlisted(path: Path, save: Callable[[Path], object]) -> None:
 
 
 def claim(path: Path) -> Path:
-    """Make a file that keeps changing, such as a log, ours by its name; refuse one of somebody else.
+    """Make a file that keeps changing, such as a log, ours by its name; refuse one of somebody
+    else.
 
     Parameters
     ----------
@@ -164,7 +188,9 @@ def claim(path: Path) -> Path:
 
 
 def sweep(root: Path) -> None:
-    """Remove what killed processes left half made; only the sole holder of the study's lock may call it."""
+    """Remove what killed processes left half made; only the sole holder of the study's lock may
+    call it.
+    """
     scratch = root / SCRATCH
     if not any(map(is_link, Manifest(root).parts(scratch))):
         _remove_scratch(scratch)

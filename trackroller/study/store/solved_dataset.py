@@ -1,4 +1,6 @@
-"""Label the results of a study: a grid gets a dimension for each factor, a sample the dimension `case`."""
+"""Label the results of a study: a grid gets a dimension for each factor, a sample the dimension
+`case`.
+"""
 
 from __future__ import annotations
 
@@ -34,16 +36,17 @@ def labelled(study: Study, plan: Design, cases: xr.Dataset, solved: xr.Dataset) 
     plan : Design
         Its design.
     cases : xarray.Dataset
-        Its n cases, as `Study.design` returns them; for a study of a carriage those of all its rollers.
+        Its n cases, as `Study.design` returns them; for a study of a carriage those of all its
+        rollers.
     solved : xarray.Dataset
-        Their results, each with `case` as its first dimension, with the coordinates of the other dimensions and the
-        attributes of the solver.
+        Their results, each with `case` as its first dimension, with the coordinates of the other
+        dimensions and the attributes of the solver.
 
     Returns
     -------
     xarray.Dataset
-        Results with parameters, factors and the places of the design as coordinates. The attributes hold what is needed
-        to repeat the study, and the study file itself.
+        Results with parameters, factors and the places of the design as coordinates. The attributes
+        hold what is needed to repeat the study, and the study file itself.
     """
     if study.carriage is not None:
         cases, solved = of_worst_rollers(study.config, plan, study.materials, cases, solved)
@@ -65,9 +68,13 @@ def labelled(study: Study, plan: Design, cases: xr.Dataset, solved: xr.Dataset) 
 
 
 def _attributes(study: Study, design: xr.Dataset, attrs: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the global attributes: what the solver wrote, and what is needed to repeat the study."""
+    """Return the global attributes: what the solver wrote, and what is needed to repeat the
+    study.
+    """
     of_study = {*study.factors, "seconds", "date_solved"}  # earlier versions dated their chunks
-    of_solver = {k: v for k, v in attrs.items() if isinstance(v, (str, int, float)) and k not in of_study}
+    of_solver = {
+        k: v for k, v in attrs.items() if isinstance(v, (str, int, float)) and k not in of_study
+    }
     # what `solve` recorded of its materials holds, whatever the database says by now
     if MATERIALS in attrs:
         materials = attrs[MATERIALS]
@@ -78,7 +85,9 @@ def _attributes(study: Study, design: xr.Dataset, attrs: Mapping[str, Any]) -> d
 
 
 def _labels(design: xr.Dataset, sizes: dict[str, int], grid: dict[str, Factor]) -> Variables:
-    """Return the axes of a grid, the number of each case, and every parameter over the axes that it depends on."""
+    """Return the axes of a grid, the number of each case, and every parameter over the axes that it
+    depends on.
+    """
     labels: Variables = {}
 
     def add(name: str, dims: tuple[str, ...], values: np.ndarray) -> None:
@@ -92,21 +101,31 @@ def _labels(design: xr.Dataset, sizes: dict[str, int], grid: dict[str, Factor]) 
         add(name, (dim,), values)
     number = design["case"].values
     words = {"long_name": "case number, for `trackroller repeat`", "units": "1"}
-    labels["case"] = _variable(tuple(sizes), number.reshape(*sizes.values()), words, coordinate=True)
-    columns = {str(name): v.values for name, v in design.variables.items() if v.dims == ("case",) and name != "case"}
+    labels["case"] = _variable(
+        tuple(sizes), number.reshape(*sizes.values()), words, coordinate=True
+    )
+    columns = {
+        str(name): v.values
+        for name, v in design.variables.items()
+        if v.dims == ("case",) and name != "case"
+    }
     for name, values in columns.items():
         if name in grid and set(grid[name].levels) & {*FRICTION_LEVELS, None}:
             name = f"{name}_value"
         add(name, *_varying(values.reshape(*sizes.values()), list(sizes)))
     for name in (PLACE, FACTOR):
         if name in design.variables:
-            place = design[name]
-            labels[name] = _variable(place.dims, place.values, place.attrs, coordinate=True)
+            coordinate = design[name]
+            labels[name] = _variable(
+                coordinate.dims, coordinate.values, coordinate.attrs, coordinate=True
+            )
     return labels
 
 
 def _axes(grid: dict[str, Factor], sizes: dict[str, int]) -> Iterator[tuple[str, str, np.ndarray]]:
-    """Yield name, dimension and values of each axis of a grid; one of pairs of materials has both bodies' names."""
+    """Yield name, dimension and values of each axis of a grid; one of pairs of materials has both
+    bodies' names.
+    """
     for dim, factor in grid.items():
         yield dim, dim, readable(factor.take(np.arange(sizes[dim])))
         if dim == "material_pair":
@@ -127,7 +146,9 @@ def _varying(values: np.ndarray, dims: list[str]) -> tuple[tuple[str, ...], np.n
 def _variable(
     dims: tuple[Hashable, ...], values: np.ndarray, attrs: dict[str, Any], coordinate: bool = False
 ) -> tuple[tuple[Hashable, ...], np.ndarray, dict[str, Any], dict[str, Any]]:
-    """Return dimensions, values, attributes and encoding of a variable of the file; only results have a fill value."""
+    """Return dimensions, values, attributes and encoding of a variable of the file; only results
+    have a fill value.
+    """
     encoding: dict[str, Any] = {"coordinates": None}  # one attribute of the file lists all of them
     encoding["_FillValue"] = None
     if values.dtype.kind == "f" and not coordinate:

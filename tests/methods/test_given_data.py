@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import json
-
 import numpy as np
 import pytest
 from scipy.stats import norm, qmc
@@ -11,8 +9,6 @@ from scipy.stats import norm, qmc
 from trackroller.methods.delta import delta
 from trackroller.methods.given_data import firsts
 from trackroller.methods.interactions import pairs
-from trackroller.report.numbers import level_text, near
-from trackroller.study.design.levels import short
 
 
 def ishigami(u: np.ndarray) -> np.ndarray:
@@ -112,19 +108,3 @@ def test_no_interaction_is_told_where_no_polynomial_predicts():
     u = rng.random((300, 2))
     found = pairs(np.sin(90 * u[:, 0]) * np.sin(70 * u[:, 1]), u, np.array([True, True]))
     assert np.isnan(found["interaction_share"]).all() and found["fit_share"] < 0.5
-
-
-def test_friction_laws_and_profiles_are_told_in_a_few_words():
-    law = json.dumps({"kind": "linear", "speed": 50, "lowest": 0.3})
-    assert short("friction_law", law) == "linear to 0.3 at 50 mm/s"
-    assert short("friction_law", "") == "constant"
-    assert short("roller_profile", '{"arc":-7.0,"width":9}') == "arc −7 mm, 9 mm wide"
-    drawn = [json.dumps({"points": [[0, 0], [1, z]], "frame": "section"}) for z in (1, 2)]
-    assert len({short("guide_profile", text) for text in drawn}) == 2
-    assert level_text("friction_law", law) == "linear to 0.3 at 50 mm/s"
-    assert len(short("friction_law", "{" + "x" * 200)) <= 40
-
-
-def test_ends_of_a_range_are_rounded_to_the_range():
-    assert near(0.24983, 0.25) == "0.25" and near(1.6e-5, 0.25) == "0"
-    assert near(39.994, 12.0) == "40" and near(-250.3, 100.0) == "−250"

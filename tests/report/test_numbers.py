@@ -1,0 +1,15 @@
+"""Numbers on pages have the digits that a reader needs."""
+
+import json
+
+from trackroller.report.numbers import level_text, near
+
+
+def test_ends_of_a_range_are_rounded_to_the_range():
+    assert near(0.24983, 0.25) == "0.25" and near(1.6e-5, 0.25) == "0"
+    assert near(39.994, 12.0) == "40" and near(-250.3, 100.0) == "−250"
+
+
+def test_a_friction_law_is_named_in_a_few_words():
+    law = json.dumps({"kind": "linear", "speed": 50, "lowest": 0.3})
+    assert level_text("friction_law", law) == "linear to 0.3 at 50 mm/s"
