@@ -108,6 +108,7 @@ def test_lives_are_those_of_the_command():
         "Load cases and margins",
         "Masses",
         "Places and directions",
+        "Values that nobody has measured",
     ]
 
 

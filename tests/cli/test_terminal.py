@@ -58,7 +58,8 @@ def test_solve_ends_with_the_margins_and_what_was_not_checked():
     margins = next(i for i, line in enumerate(lines) if line.startswith("┃ Limit"))
     assert all("┃ input" not in line and "Contact 1" not in line for line in lines[margins:])
     last = " ".join(lines[margins:])
-    assert "not checked, roller:" in last and lines[0] in " ".join(lines[margins - 3 :])
+    assert "not checked, roller:" in last
+    assert " ".join(lines).count(lines[0]) == 1  # the headline stands at the head alone
     assert "heat (give heat_transfer_coefficient, give cooled_area)" in last
 
 
