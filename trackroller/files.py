@@ -621,8 +621,9 @@ def inert_cell(value: Any) -> Any:
     """Return a cell of a table with an apostrophe before a text that a spreadsheet would run as a
     formula.
 
-    Numbers stay as they are, as texts too. No name is refused for its first sign, because `+20 N` may name a load case:
-    each table that is written has inert cells, and each that is read has them as they were, see `cell_as_meant`.
+    Numbers stay as they are, as texts too. No name is refused for its first sign, because `+20 N`
+    may name a load case: each table that is written has inert cells, and each that is read has them
+    as they were, see `cell_as_meant`.
     """
     if not isinstance(value, str) or not value.startswith(("=", "+", "-", "@", "\t", "\r")):
         return value
@@ -632,7 +633,8 @@ def inert_cell(value: Any) -> Any:
 
 
 def cell_as_meant(cell: str) -> str:
-    """Return a cell of a table without the apostrophe that `inert_cell` has put before it, or a person.
+    """Return a cell of a table without the apostrophe that `inert_cell` has put before it, or a
+    person.
 
     Examples
     --------

@@ -310,16 +310,24 @@ def carriage(
 @command("trackroller.cli.patch", "run_patch")
 def patch(
     file: Annotated[
-        Path, typer.Argument(help="one contact: load, shape, materials, friction (YAML)", show_default=False)
+        Path,
+        typer.Argument(
+            help="one contact: load, shape, materials, friction (YAML)", show_default=False
+        ),
     ],
     creepage: Annotated[
-        str | None, typer.Option("--creepage", help="longitudinal creepages from:to in per cent, such as 0:2%")
+        str | None,
+        typer.Option("--creepage", help="longitudinal creepages from:to in per cent, such as 0:2%"),
     ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="print JSON")] = False,
     out: Annotated[Path | None, typer.Option("-o", "--out", help="write netCDF (.nc)")] = None,
-    report: Annotated[Path | None, typer.Option("--report", help="write the page (.html or .pdf) too")] = None,
+    report: Annotated[
+        Path | None, typer.Option("--report", help="write the page (.html or .pdf) too")
+    ] = None,
 ) -> None:
-    """Print forces, friction power and adhesion of one ellipse, or of two discs, at given creepages."""
+    """Print forces, friction power and adhesion of one ellipse, or of two discs, at given
+    creepages.
+    """
 
 
 @command("trackroller.cli.case", "run_wear")

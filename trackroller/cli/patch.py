@@ -1,4 +1,6 @@
-"""The command of one contact by itself: its forces at given creepages, as a table, JSON, netCDF or a page."""
+"""The command of one contact by itself: its forces at given creepages, as a table, JSON, netCDF or
+a page.
+"""
 
 from __future__ import annotations
 
@@ -7,11 +9,13 @@ from pathlib import Path
 from trackroller.cli.case import PRINTED, writable_data, writable_page, write_result
 
 
-def run_patch(file: Path, creepage: str | None, as_json: bool, out: Path | None, report: Path | None) -> None:
+def run_patch(
+    file: Path, creepage: str | None, as_json: bool, out: Path | None, report: Path | None
+) -> None:
     """Solve a patch file, and write or print the result.
 
-    `creepage` is a range that replaces the longitudinal creepages of the file. `out` receives netCDF and `report` the
-    page. `as_json` prints JSON; without it and `out`, a table is printed.
+    `creepage` is a range that replaces the longitudinal creepages of the file. `out` receives
+    netCDF and `report` the page. `as_json` prints JSON; without it and `out`, a table is printed.
     """
     target = None if out is None else writable_data(out, PRINTED)
     page = None if report is None else writable_page(report)

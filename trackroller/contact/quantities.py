@@ -198,9 +198,10 @@ class Works(Rows):
 class Elastic(Rows):
     """Combined elastic constants of pairs of bodies (Kalker 1990, eq. 1.44), arrays (n,).
 
-    1/G = (1/G1 + 1/G2)/2, nu/G = (nu1/G1 + nu2/G2)/2, K/G = ((1-2 nu1)/G1 - (1-2 nu2)/G2)/4,
-    body 1 is the roller. `shear_modulus` G [MPa], `poisson_ratio` nu [1], `coupling` K [1]. `layer_flexibility`
-    h/G3 [mm^3/N] is that of a film of thickness h and shear modulus G3 between the bodies; None stands for no film.
+    1/G = (1/G1 + 1/G2)/2, nu/G = (nu1/G1 + nu2/G2)/2, K/G = ((1-2 nu1)/G1 - (1-2 nu2)/G2)/4, body 1
+    is the roller. `shear_modulus` G [MPa], `poisson_ratio` nu [1], `coupling` K [1].
+    `layer_flexibility` h/G3 [mm^3/N] is that of a film of thickness h and shear modulus G3 between
+    the bodies; None stands for no film.
     """
 
     shear_modulus: np.ndarray

@@ -1,1 +1,3 @@
-"""One contact by itself: given load, shape, materials, friction and creepages, without a roller around it."""
+"""One contact by itself: given load, shape, materials, friction and creepages, without a roller
+around it.
+"""

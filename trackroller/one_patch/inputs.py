@@ -1,4 +1,5 @@
-"""Read and check what describes one contact by itself: load, shape, materials, friction and creepages.
+"""Read and check what describes one contact by itself: load, shape, materials, friction and
+creepages.
 
 normal_force: 106.7 kN
 curvature_rolling: 0.0016 1/mm            # or semi_axes: [12 mm, 6 mm], lateral first
@@ -32,13 +33,24 @@ from trackroller.yaml_file import errors_by_line, parse_mapping
 SEMI_AXES = ("semi_axis_lateral", "semi_axis_rolling")
 CURVATURES = ("curvature_rolling", "curvature_lateral")
 ELASTIC = ("youngs_modulus", "poisson_ratio")
-NUMBERS = tuple(name for name in PATCH_FIELDS if name not in SEMI_AXES)  # keys of a file that hold numbers
-FILE_FIELDS = ("name", "description", *NUMBERS, "semi_axes", "materials", "friction_law", "accuracy")
+# keys of a file that hold numbers
+NUMBERS = tuple(name for name in PATCH_FIELDS if name not in SEMI_AXES)
+FILE_FIELDS = (
+    "name",
+    "description",
+    *NUMBERS,
+    "semi_axes",
+    "materials",
+    "friction_law",
+    "accuracy",
+)
 
 
 @dataclass(frozen=True)
 class Body:
-    """A body of the contact: name of its material, Young's modulus [MPa] and Poisson's ratio [1]."""
+    """A body of the contact: name of its material, Young's modulus [MPa] and Poisson's ratio
+    [1].
+    """
 
     name: str
     youngs_modulus: float
@@ -52,7 +64,8 @@ class PatchInputs:
     Parameters
     ----------
     columns : mapping of str to numpy.ndarray
-        Numbers by their names in `PATCH_FIELDS`, each (n,): either both curvatures or both semi-axes.
+        Numbers by their names in `PATCH_FIELDS`, each (n,): either both curvatures or both
+        semi-axes.
     bodies : tuple of Body
         Body 1, on which the forces act, and body 2.
     law : FrictionLaw
@@ -97,7 +110,8 @@ def load_patch(path: Path | str, changes: Mapping[str, Any] | None = None) -> Pa
     Raises
     ------
     InputError
-        If an entry is wrong; the error names file, line, entry, value, what is allowed and what to do.
+        If an entry is wrong; the error names file, line, entry, value, what is allowed and what to
+        do.
     """
     text = read_text(Path(path), "patch file")
     given = {"name": Path(path).stem} | parse_mapping(text, str(path))
@@ -107,7 +121,9 @@ def load_patch(path: Path | str, changes: Mapping[str, Any] | None = None) -> Pa
 
 
 def checked_patch(values: Mapping[str, Any]) -> PatchInputs:
-    """Return the checked inputs of a mapping with the keys of a file; raise the errors of all entries together."""
+    """Return the checked inputs of a mapping with the keys of a file; raise the errors of all
+    entries together.
+    """
     given = {key: value for key, value in values.items() if value is not None}
     wrong = Collector()
     made: dict[str, Any] = {}
@@ -128,7 +144,9 @@ def checked_patch(values: Mapping[str, Any]) -> PatchInputs:
     with wrong.part():
         made["name"] = checked_text(str(given.get("name", "patch")), "name")
     with wrong.part():
-        made["description"] = checked_text(str(given.get("description", "")), "description", lines=True)
+        made["description"] = checked_text(
+            str(given.get("description", "")), "description", lines=True
+        )
     wrong.check()
     own_friction = at_rest(made["law"])
     if own_friction is not None:
@@ -136,17 +154,28 @@ def checked_patch(values: Mapping[str, Any]) -> PatchInputs:
     _check_needed(columns)
     _check_discs(columns)
     single = all(column.ndim == 0 for column in columns.values())
-    usual = {name: np.array(own.default) for name, own in PATCH_FIELDS.items() if np.isfinite(own.default)}
+    usual = {
+        name: np.array(own.default)
+        for name, own in PATCH_FIELDS.items()
+        if np.isfinite(own.default)
+    }
     return PatchInputs(_along_case(usual | columns), single=single, **made)
 
 
 def _column(name: str, value: Any) -> np.ndarray:
-    """Return the number of a field, shape (), or its list of numbers, shape (n,), in the unit of the field."""
+    """Return the number of a field, shape (), or its list of numbers, shape (n,), in the unit of
+    the field.
+    """
     own = plain(value, name)
     if not isinstance(own, list):
         return np.array(_number(name, own))
     if not own:
-        raise InputError(name, own, "a number, or a list of numbers", f"Write {name}: [..] with at least one number.")
+        raise InputError(
+            name,
+            own,
+            "a number, or a list of numbers",
+            f"Write {name}: [..] with at least one number.",
+        )
     return np.array([_number(name, one) for one in own])
 
 
@@ -178,15 +207,23 @@ def _bodies(value: Any) -> tuple[Body, Body]:
     own = plain(value, "materials")
     pair = own if isinstance(own, list) else [own, own]
     if value is None or len(pair) != 2:
-        allowed = "a material of both bodies, or a list of two: that of body 1, on which the forces act, and of body 2"
-        remedy = "Write names of the database, or materials: {youngs_modulus: 210 GPa, poisson_ratio: 0.3}."
+        allowed = (
+            "a material of both bodies, or a list of two: that of body 1, on which the "
+            "forces act, and of body 2"
+        )
+        remedy = (
+            "Write names of the database, or materials: {youngs_modulus: 210 GPa, "
+            "poisson_ratio: 0.3}."
+        )
         raise InputError("materials", value, allowed, remedy)
     first, second = (_body(one, f"materials[{i + 1}]") for i, one in enumerate(pair))
     return first, second
 
 
 def _body(value: Any, field: str) -> Body:
-    """Return the body of a material of the database, or of a mapping, of which the elastic constants are enough."""
+    """Return the body of a material of the database, or of a mapping, of which the elastic
+    constants are enough.
+    """
     own = mapping_of(value)
     if isinstance(own, Mapping) and set(own) - {"name"} == set(ELASTIC):
         name = checked_text(str(own.get("name", "given")), f"{field}.name")
@@ -211,7 +248,13 @@ def _check_needed(columns: Mapping[str, np.ndarray]) -> None:
     if axes and curved:
         shown = [columns[name].tolist() for name in SEMI_AXES]
         remedy = f"Remove semi_axes, or remove {' and '.join(curved)}."
-        raise InputError("semi_axes", shown, "either curvatures or semi-axes", remedy, f"stand beside {curved[0]}")
+        raise InputError(
+            "semi_axes",
+            shown,
+            "either curvatures or semi-axes",
+            remedy,
+            f"stand beside {curved[0]}",
+        )
     if not axes and len(curved) < len(CURVATURES):
         missing = next(name for name in CURVATURES if name not in curved)
         remedy = "Give curvature_rolling and curvature_lateral, or semi_axes: [a, b]."
@@ -219,15 +262,21 @@ def _check_needed(columns: Mapping[str, np.ndarray]) -> None:
 
 
 def _check_discs(columns: Mapping[str, np.ndarray]) -> None:
-    """Refuse discs without a width or with spin, a width of other bodies, and discs beside other bodies."""
+    """Refuse discs without a width or with spin, a width of other bodies, and discs beside other
+    bodies.
+    """
     flat = columns.get("curvature_lateral", np.ones(())) == 0.0
     if flat.any() and not flat.all():
         allowed = "0 in all cases, which stands for two discs, or > 0 in all cases"
         remedy = "Solve discs and ellipses one after the other."
-        raise InputError("curvature_lateral", columns["curvature_lateral"].tolist(), allowed, remedy)
+        raise InputError(
+            "curvature_lateral", columns["curvature_lateral"].tolist(), allowed, remedy
+        )
     if flat.all() and "width" not in columns:
         remedy = "Write width: 10 mm, or curvature_lateral > 0 for an ellipse."
-        raise InputError("width", None, "the width of the two discs, because curvature_lateral is 0", remedy)
+        raise InputError(
+            "width", None, "the width of the two discs, because curvature_lateral is 0", remedy
+        )
     if not flat.all() and "width" in columns:
         remedy = "Remove width, or write curvature_lateral: 0."
         allowed = "no width: only discs, with curvature_lateral 0, have one"
@@ -235,11 +284,15 @@ def _check_discs(columns: Mapping[str, np.ndarray]) -> None:
     spin = columns.get("spin", np.zeros(()))
     if flat.all() and np.any(spin != 0.0):
         allowed = "0 for two discs: with spin the slip would change across their width"
-        raise InputError("spin", spin.tolist(), allowed, "Remove spin, or give curvature_lateral > 0.")
+        raise InputError(
+            "spin", spin.tolist(), allowed, "Remove spin, or give curvature_lateral > 0."
+        )
 
 
 def _along_case(columns: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
-    """Return all columns with the length of the longest list, (n,); single values hold in every case."""
+    """Return all columns with the length of the longest list, (n,); single values hold in every
+    case.
+    """
     lengths = {name: column.size for name, column in columns.items() if column.ndim}
     n = max(lengths.values(), default=1)
     longest = next((name for name, length in lengths.items() if length == n), "")

@@ -23,20 +23,34 @@ from trackroller.parameters.patch_fields import PATCH_FIELDS
 from trackroller.parameters.validity import VALIDITY
 from trackroller.roller.dataset import VARIABLES, file_attributes
 
-TOLERANCE = 1e-8  # largest residual of the friction law over mu p_max, as in the balance of a roller
+# largest residual of the friction law over mu p_max, as in the balance of a roller
+TOLERANCE = 1e-8
 MM_PER_S = 1000.0 / 60.0  # mm/s for 1 m/min
 CONVENTIONS = (
-    "x lateral, y in the rolling direction; forces and tractions act on body 1; creepage is the velocity of body 1 "
-    "less that of body 2, over the travel speed, so that the force has the sign opposite to the creepage; the spin "
+    "x lateral, y in the rolling direction; forces and tractions act on body 1; creepage is "
+    "the velocity of body 1 "
+    "less that of body 2, over the travel speed, so that the force has the sign opposite to "
+    "the creepage; the spin "
     "moment is about the contact normal, which points into body 1"
 )
 _OWN = {
     "friction_force_share": Variable(
-        "friction_force_share", "forces", (), "1", "|F|/(mu F_N)", "friction force over its bound mu F_N at rest"
+        "friction_force_share",
+        "forces",
+        (),
+        "1",
+        "|F|/(mu F_N)",
+        "friction force over its bound mu F_N at rest",
     ),
 }
 RESULTS = (
-    *("lateral_force", "driving_force", "spin_moment", "friction_force_share", "force_error_estimate"),
+    *(
+        "lateral_force",
+        "driving_force",
+        "spin_moment",
+        "friction_force_share",
+        "force_error_estimate",
+    ),
     *("max_pressure", "semi_axis_lateral", "semi_axis_rolling", "stick_area_fraction"),
     *("friction_power", "friction_energy_per_distance", "residual"),
 )
@@ -65,25 +79,27 @@ def patch(  # noqa: PLR0913 - one argument for each field
     accuracy: str = "standard",
     name: str = "patch",
 ) -> xr.Dataset:
-    """Solve one contact by the exact theory of rolling with friction: two bodies, given load and creepages.
+    """Solve one contact by the exact theory of rolling with friction: two bodies, given load and
+    creepages.
 
-    A number may be a list or an array of n values, one a case; single numbers hold in every case. Texts with units,
-    such as '2 kN' and '0.1 %', are taken too.
+    A number may be a list or an array of n values, one a case; single numbers hold in every case.
+    Texts with units, such as '2 kN' and '0.1 %', are taken too.
 
     Parameters
     ----------
     normal_force : float or array_like, shape (n,)
         F_N [N].
     materials : str, mapping or pair of these
-        Material of both bodies, or of body 1 and body 2: a name of the database, or a mapping, of which
-        `youngs_modulus` [MPa] and `poisson_ratio` are enough.
+        Material of both bodies, or of body 1 and body 2: a name of the database, or a mapping, of
+        which `youngs_modulus` [MPa] and `poisson_ratio` are enough.
     friction_coefficient : float or array_like, shape (n,), optional
         Friction coefficient mu [1], at rest. A friction law of kind table brings its own.
     curvature_rolling, curvature_lateral : float or array_like, shape (n,), optional
-        Relative curvatures [1/mm]: the sum of 1/radius of both bodies in the rolling plane and across it. A lateral
-        curvature of 0 stands for two discs.
+        Relative curvatures [1/mm]: the sum of 1/radius of both bodies in the rolling plane and
+        across it. A lateral curvature of 0 stands for two discs.
     semi_axes : pair of float or array_like, optional
-        Semi-axes (a, b) of the ellipse [mm] in place of curvatures; a lies across the rolling direction.
+        Semi-axes (a, b) of the ellipse [mm] in place of curvatures; a lies across the rolling
+        direction.
     width : float or array_like, shape (n,), optional
         Width of two discs [mm].
     longitudinal_creepage, lateral_creepage : float or array_like, shape (n,)
@@ -104,11 +120,12 @@ def patch(  # noqa: PLR0913 - one argument for each field
     Returns
     -------
     xarray.Dataset
-        Along `case`, if a value was a list: `lateral_force`, `driving_force` [N], `spin_moment` [N mm],
-        `friction_force_share`, `force_error_estimate` (over mu F_N), `stick_area_fraction`, `friction_power` [W],
-        `max_pressure` [MPa], semi-axes [mm], `converged` and `residual`; the fields `pressure`, `shear_lateral`,
-        `shear_rolling`, `slip_lateral`, `slip_rolling` over `y` and `x` with their places `patch_x` and `patch_y` [mm];
-        and the inputs. Discs have one column of elements.
+        Along `case`, if a value was a list: `lateral_force`, `driving_force` [N], `spin_moment` [N
+        mm], `friction_force_share`, `force_error_estimate` (over mu F_N), `stick_area_fraction`,
+        `friction_power` [W], `max_pressure` [MPa], semi-axes [mm], `converged` and `residual`; the
+        fields `pressure`, `shear_lateral`, `shear_rolling`, `slip_lateral`, `slip_rolling` over `y`
+        and `x` with their places `patch_x` and `patch_y` [mm]; and the inputs. Discs have one
+        column of elements.
 
     Raises
     ------
@@ -117,9 +134,10 @@ def patch(  # noqa: PLR0913 - one argument for each field
 
     Notes
     -----
-    Valid for half-spaces, steady rolling and dry friction, and discs much wider than their contact. The friction power
-    is the work of forces and spin moment on the creepages, and that of the pressures on unlike bodies. Elastic bodies
-    have one solution for a patch; a roller in its balance has `trackroller.solve`.
+    Valid for half-spaces, steady rolling and dry friction, and discs much wider than their contact.
+    The friction power is the work of forces and spin moment on the creepages, and that of the
+    pressures on unlike bodies. Elastic bodies have one solution for a patch; a roller in its
+    balance has `trackroller.solve`.
 
     References
     ----------
@@ -178,7 +196,9 @@ def _ellipses(inputs: PatchInputs) -> Ellipse:
     return shape(*curved, _modulus(inputs)).at(own["normal_force"])
 
 
-def _solve_ellipses(inputs: PatchInputs) -> tuple[PatchSolution, SurfaceTractions, dict[str, np.ndarray]]:
+def _solve_ellipses(
+    inputs: PatchInputs,
+) -> tuple[PatchSolution, SurfaceTractions, dict[str, np.ndarray]]:
     """Return solution, fields, and sizes and pressures by their names."""
     own = inputs.columns
     ellipse = _ellipses(inputs)
@@ -188,7 +208,9 @@ def _solve_ellipses(inputs: PatchInputs) -> tuple[PatchSolution, SurfaceTraction
     settings = KalkerSettings(elements, tolerance=TOLERANCE, law=inputs.law)
     friction = own["friction_coefficient"]
     travel = own["velocity"] * MM_PER_S
-    solution = solve_patch(ellipse, _creepage(inputs), friction, _elastic(inputs), settings, travel_speed=travel)
+    solution = solve_patch(
+        ellipse, _creepage(inputs), friction, _elastic(inputs), settings, travel_speed=travel
+    )
     contact = {
         "semi_axis_lateral": ellipse.semi_axis_lateral,
         "semi_axis_rolling": ellipse.semi_axis_rolling,
@@ -197,15 +219,21 @@ def _solve_ellipses(inputs: PatchInputs) -> tuple[PatchSolution, SurfaceTraction
     return solution, to_tractions(ellipse, friction, solution), contact
 
 
-def _solve_discs(inputs: PatchInputs) -> tuple[PatchSolution, SurfaceTractions, dict[str, np.ndarray]]:
+def _solve_discs(
+    inputs: PatchInputs,
+) -> tuple[PatchSolution, SurfaceTractions, dict[str, np.ndarray]]:
     """Return solution, fields, and sizes and pressures by their names, of two discs."""
     own = inputs.columns
-    line = discs.LineContact.of_load(own["normal_force"], own["width"], own["curvature_rolling"], _modulus(inputs))
+    line = discs.LineContact.of_load(
+        own["normal_force"], own["width"], own["curvature_rolling"], _modulus(inputs)
+    )
     friction = own["friction_coefficient"]
     travel = own["velocity"] * MM_PER_S
     settings = KalkerSettings(tolerance=TOLERANCE, law=inputs.law)
     elements = discs.ELEMENTS[inputs.accuracy]
-    solution = discs.solve_discs(line, _creepage(inputs), friction, _elastic(inputs), elements, settings, travel)
+    solution = discs.solve_discs(
+        line, _creepage(inputs), friction, _elastic(inputs), elements, settings, travel
+    )
     contact = {
         "semi_axis_lateral": 0.5 * line.width,
         "semi_axis_rolling": line.half_length,
@@ -214,7 +242,9 @@ def _solve_discs(inputs: PatchInputs) -> tuple[PatchSolution, SurfaceTractions, 
     return solution, discs.to_tractions(line, friction, solution), contact
 
 
-def _is_steep(inputs: PatchInputs, contact: Mapping[str, np.ndarray], surface: SurfaceTractions) -> np.ndarray:
+def _is_steep(
+    inputs: PatchInputs, contact: Mapping[str, np.ndarray], surface: SurfaceTractions
+) -> np.ndarray:
     """Return where friction falls faster with the slip speed than the surfaces follow, (n,)."""
     own = inputs.columns
     elastic = _elastic(inputs)
@@ -252,13 +282,22 @@ def _results(inputs: PatchInputs, solution: PatchSolution) -> dict[str, np.ndarr
 
 
 def _labelled(
-    inputs: PatchInputs, values: Mapping[str, np.ndarray], surface: SurfaceTractions, flags: Mapping[str, np.ndarray]
+    inputs: PatchInputs,
+    values: Mapping[str, np.ndarray],
+    surface: SurfaceTractions,
+    flags: Mapping[str, np.ndarray],
 ) -> xr.Dataset:
-    """Return results and inputs as a data set; without the dimension `case` if no value was a list."""
+    """Return results and inputs as a data set; without the dimension `case` if no value was a
+    list.
+    """
     made: dict[str, Any] = {}
     for name, column in inputs.columns.items():
         declared = PATCH_FIELDS[name]
-        attrs = {"units": declared.units, "symbol": declared.symbol, "long_name": declared.long_name}
+        attrs = {
+            "units": declared.units,
+            "symbol": declared.symbol,
+            "long_name": declared.long_name,
+        }
         made[name] = ("case", column, attrs | {"comment": declared.meaning})
     for name in RESULTS:
         made[name] = ("case", values[name], _attributes(name))
@@ -268,7 +307,11 @@ def _labelled(
     made["patch_y"] = (("case", "y"), surface.y, _attributes("patch_y"))
     for name in FIELDS:
         made[name] = (("case", "y", "x"), getattr(surface, name), _attributes(name))
-    made["stick"] = (("case", "y", "x"), surface.stick.astype(np.int8), {"long_name": "adhesion", "units": "1"})
+    made["stick"] = (
+        ("case", "y", "x"),
+        surface.stick.astype(np.int8),
+        {"long_name": "adhesion", "units": "1"},
+    )
     first, second = inputs.bodies
     attrs = file_attributes(f"contact patch {inputs.name}", "patch solved") | {
         "patch": inputs.name,

@@ -28,7 +28,8 @@ LASTING: dict[str, Any] = {
     "roller_profile_radius": -6.4,
     **dict.fromkeys(("roller_material", "guide_material"), "1.7225-quenched-tempered"),
 }
-ABSENT = ("layer_flexibility",)  # a default that means "none of it" is no value that somebody has to be told
+# a default that means "none of it" is no value that somebody has to be told
+ABSENT = ("layer_flexibility",)
 _PAIR = ("material_pair", "roller_material", "guide_material")
 
 

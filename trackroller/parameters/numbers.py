@@ -99,7 +99,8 @@ _ALL = (
         "h/G_3",
         "mm3/N",
         0.0,
-        "thickness over shear modulus of a film between the bodies, such as wear debris; 0 is no film",
+        "thickness over shear modulus of a film between the bodies, such as wear debris; 0 is no "
+        "film",
         0.0,
         1e3,
         label="flexibility of a film",

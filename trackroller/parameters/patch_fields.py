@@ -32,15 +32,42 @@ _ALL = (
         0.0,
         _LARGE,
     ),
-    Parameter("semi_axis_lateral", "a", "mm", math.nan, "semi-axis across the rolling direction", _SMALL, _LARGE),
-    Parameter("semi_axis_rolling", "b", "mm", math.nan, "semi-axis in the rolling direction", _SMALL, _LARGE),
+    Parameter(
+        "semi_axis_lateral",
+        "a",
+        "mm",
+        math.nan,
+        "semi-axis across the rolling direction",
+        _SMALL,
+        _LARGE,
+    ),
+    Parameter(
+        "semi_axis_rolling",
+        "b",
+        "mm",
+        math.nan,
+        "semi-axis in the rolling direction",
+        _SMALL,
+        _LARGE,
+    ),
     Parameter("width", "w", "mm", math.nan, "width of two discs", _SMALL, _LARGE),
     Parameter(
-        "longitudinal_creepage", "xi", "-", 0.0, "creepage in the rolling direction, > 0 braking body 1", **_CREEPAGE
+        "longitudinal_creepage",
+        "xi",
+        "-",
+        0.0,
+        "creepage in the rolling direction, > 0 braking body 1",
+        **_CREEPAGE,
     ),
-    Parameter("lateral_creepage", "eta", "-", 0.0, "creepage across the rolling direction", **_CREEPAGE),
-    Parameter("spin", "phi", "1/mm", 0.0, "spin creepage about the contact normal", -_LARGE, _LARGE),
-    Parameter("friction_coefficient", "mu", "-", math.nan, "Coulomb coefficient, at rest", 0.0, 2.0),
+    Parameter(
+        "lateral_creepage", "eta", "-", 0.0, "creepage across the rolling direction", **_CREEPAGE
+    ),
+    Parameter(
+        "spin", "phi", "1/mm", 0.0, "spin creepage about the contact normal", -_LARGE, _LARGE
+    ),
+    Parameter(
+        "friction_coefficient", "mu", "-", math.nan, "Coulomb coefficient, at rest", 0.0, 2.0
+    ),
     PARAMETERS["layer_flexibility"],
     replace(PARAMETERS["velocity"], meaning="for friction power and friction laws only"),
 )

@@ -57,7 +57,8 @@ NAMES = "names of letters, digits and _"
 
 
 def name_with_blank(text: str) -> str:
-    """Return words with blanks between them that stand where one name can stand, '' if there are none.
+    """Return words with blanks between them that stand where one name can stand, '' if there are
+    none.
 
     Examples
     --------
@@ -78,7 +79,9 @@ def name_with_blank(text: str) -> str:
 
 
 def rename_remedy(name: str) -> str:
-    """Return what to write for words that are no name of an expression; a column of a table is known by it, too."""
+    """Return what to write for words that are no name of an expression; a column of a table is
+    known by it, too.
+    """
     new = re.sub(r"\W+", "_", name).strip("_")
     return f"Write {new}: a column is known by this name, too."
 

@@ -1,6 +1,7 @@
 """Judge over all load cases of a roller whether its groove wears away within the life, flag `worn`.
 
-ASSUME: wear adds up linearly over the load cases: each uses up its travel over the run-in distance under it alone.
+ASSUME: wear adds up linearly over the load cases: each uses up its travel over the run-in distance
+under it alone.
 """
 
 from __future__ import annotations
@@ -19,11 +20,15 @@ FLAG = "worn"
 
 
 def groups_for_run_in(cases: Iterable[Case]) -> tuple[str, ...]:
-    """Return the group of outputs that holds the run-in distance if the wear of a case is a limit, otherwise none."""
+    """Return the group of outputs that holds the run-in distance if the wear of a case is a limit,
+    otherwise none.
+    """
     return ("wear",) if any(case.permissible_wear_depth is not None for case in cases) else ()
 
 
-def with_run_in(solved: xr.Dataset, roller: np.ndarray, travel: np.ndarray, life: np.ndarray) -> xr.Dataset:
+def with_run_in(
+    solved: xr.Dataset, roller: np.ndarray, travel: np.ndarray, life: np.ndarray
+) -> xr.Dataset:
     """Return solved load cases whose flag `worn` holds for the life of the roller over all of them.
 
     Parameters
@@ -39,7 +44,8 @@ def with_run_in(solved: xr.Dataset, roller: np.ndarray, travel: np.ndarray, life
 
     Notes
     -----
-    A load case whose wear is not known counts as one without wear, so that the flag is set only where it is sure.
+    A load case whose wear is not known counts as one without wear, so that the flag is set only
+    where it is sure.
     """
     if RUN_IN not in solved:
         return solved
@@ -51,6 +57,10 @@ def with_run_in(solved: xr.Dataset, roller: np.ndarray, travel: np.ndarray, life
     bodies = solved["validity_body"]
     pair = solved["validity"]
     return solved.assign(
-        validity_body=(bodies & ~bit | xr.where(by_case, bit, 0)).astype(bodies.dtype).assign_attrs(bodies.attrs),
-        validity=(pair & ~bit | xr.where(by_case.any("body"), bit, 0)).astype(pair.dtype).assign_attrs(pair.attrs),
+        validity_body=(bodies & ~bit | xr.where(by_case, bit, 0))
+        .astype(bodies.dtype)
+        .assign_attrs(bodies.attrs),
+        validity=(pair & ~bit | xr.where(by_case.any("body"), bit, 0))
+        .astype(pair.dtype)
+        .assign_attrs(pair.attrs),
     )

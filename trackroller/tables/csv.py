@@ -124,7 +124,11 @@ def _cell(cell: str, separator: str) -> str:
     """Return a cell without blanks around it, `Refused` if it is no value."""
     cell = cell.strip()
     if cell.startswith("="):
-        return Refused(cell, "a value; this is a formula", "Write its value; if it is a name, write ' before it.")
+        return Refused(
+            cell,
+            "a value; this is a formula",
+            "Write its value; if it is a name, write ' before it.",
+        )
     if "\n" in cell and separator in cell:
         allowed = "the text of one cell; this one goes over several lines"
         return Refused(cell, allowed, "Close its quotation marks.")

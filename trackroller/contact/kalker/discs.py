@@ -1,8 +1,10 @@
-"""Two discs that roll on each other: the exact theory in plane strain, on a line of elements across the contact.
+"""Two discs that roll on each other: the exact theory in plane strain, on a line of elements across
+the contact.
 
-The problem of each disc is the same at every place of its width, so that one column of elements is enough. Longitudinal
-tractions act in plane strain, lateral ones in antiplane shear. Carter (1926) solved longitudinal creepage of like
-discs in closed form; here any creepage, unlike discs and friction laws are solved as on patches.
+The problem of each disc is the same at every place of its width, so that one column of elements is
+enough. Longitudinal tractions act in plane strain, lateral ones in antiplane shear. Carter (1926)
+solved longitudinal creepage of like discs in closed form; here any creepage, unlike discs and
+friction laws are solved as on patches.
 """
 
 from __future__ import annotations
@@ -17,7 +19,8 @@ from trackroller.contact.quantities import Elastic, Resultants, SurfaceTractions
 from trackroller.contact.slip import Creepage
 from trackroller.numerics.rows import Rows
 
-ELEMENTS = {"preview": 128, "standard": 256, "reference": 512}  # along the contact, by the rung of accuracy
+# along the contact, by the rung of accuracy
+ELEMENTS = {"preview": 128, "standard": 256, "reference": 512}
 
 
 @dataclass(frozen=True)
@@ -73,7 +76,13 @@ def line_heights(elements: int) -> np.ndarray:
 
 
 def _level(
-    line: LineContact, creep: Creepage, friction, elastic: Elastic, travel, settings: KalkerSettings, elements: int
+    line: LineContact,
+    creep: Creepage,
+    friction,
+    elastic: Elastic,
+    travel,
+    settings: KalkerSettings,
+    elements: int,
 ) -> batch.Found:
     """Solve on a line of elements, from zero tractions."""
     n = len(friction)
@@ -133,13 +142,13 @@ def solve_discs(
     Returns
     -------
     PatchSolution
-        Solution of the n contacts; fields have one column, nx = 1. The spin moment is that of the lateral tractions
-        about the middle of the contact.
+        Solution of the n contacts; fields have one column, nx = 1. The spin moment is that of the
+        lateral tractions about the middle of the contact.
 
     Notes
     -----
-    Valid for wide discs, whose contact is short beside the radii and the width. The resultants are extrapolated from
-    half as many elements; the change is the estimated error.
+    Valid for wide discs, whose contact is short beside the radii and the width. The resultants are
+    extrapolated from half as many elements; the change is the estimated error.
 
     References
     ----------
@@ -149,7 +158,8 @@ def solve_discs(
     coarse = _level(line, creep, friction, elastic, travel_speed, settings, elements // 2)
     found = _level(line, creep, friction, elastic, travel_speed, settings, elements)
     report = found.report
-    change = report.forces - coarse.report.forces  # of first order: the adhesion area ends between elements
+    # of first order: the adhesion area ends between elements
+    change = report.forces - coarse.report.forces
     limit = np.zeros((n, 6))
     limit[:, :3] = change
     return PatchSolution(
@@ -173,7 +183,9 @@ def solve_discs(
     )
 
 
-def to_tractions(line: LineContact, friction: np.ndarray, solution: PatchSolution) -> SurfaceTractions:
+def to_tractions(
+    line: LineContact, friction: np.ndarray, solution: PatchSolution
+) -> SurfaceTractions:
     """Return the fields of a solution as means of the elements, (n, elements, 1)."""
     elements = solution.traction.shape[-2]
     y = line.half_length[:, None] * ((2.0 * np.arange(elements) + 1.0) / elements - 1.0)
@@ -181,5 +193,12 @@ def to_tractions(line: LineContact, friction: np.ndarray, solution: PatchSolutio
     shear = solution.traction * (friction * line.max_pressure)[:, None, None, None]
     x = np.zeros((len(friction), 1))
     return SurfaceTractions(
-        x, y, pressure, shear[:, 0], shear[:, 1], solution.slip[:, 0], solution.slip[:, 1], solution.stick
+        x,
+        y,
+        pressure,
+        shear[:, 0],
+        shear[:, 1],
+        solution.slip[:, 0],
+        solution.slip[:, 1],
+        solution.stick,
     )

@@ -35,7 +35,8 @@ class KalkerModel(ContactModel):
             self.elements, tolerance=1e-8, law=law, profile_slip=given.profile_slip
         )
         self._law = KalkerLaw(elastic, discretisation, given.travel_speed)
-        if law.is_constant and not np.any(elastic.film):  # all that the table behind the corrections holds
+        # all that the table behind the corrections holds
+        if law.is_constant and not np.any(elastic.film):
             self.correction = Correction(elastic, discretisation, trusts_table)
 
     def law(self, ellipse, slip, friction, rows, fine):

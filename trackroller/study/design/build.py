@@ -17,7 +17,13 @@ from trackroller.materials.database import FRICTION
 from trackroller.methods import METHODS, Design
 from trackroller.methods.factor import parse, readable
 from trackroller.methods.method import study_keys
-from trackroller.parameters import FRICTION_LEVELS, MAPPING_FIELDS, MATERIAL_FIELDS, PARAMETERS, expressions
+from trackroller.parameters import (
+    FRICTION_LEVELS,
+    MAPPING_FIELDS,
+    MATERIAL_FIELDS,
+    PARAMETERS,
+    expressions,
+)
 from trackroller.parameters.carriage_fields import field_of, long_name_of
 from trackroller.parameters.example import EXAMPLE
 from trackroller.roller.fields import own_frictions

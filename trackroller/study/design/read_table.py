@@ -42,7 +42,10 @@ def table(path: Any, used: Collection[str] = ()) -> dict[str, np.ndarray]:
     """
     wrong = Collector()
     if used:  # an expression writes a name without its blanks
-        used = {*used, *(name for name in column_names(Path(path), "table") if _without_blanks(name) in used)}
+        used = {
+            *used,
+            *(name for name in column_names(Path(path), "table") if _without_blanks(name) in used),
+        }
     cases = read_cases(Path(path), wrong, used)
     with wrong.part():
         _check_names(cases, used, path)

@@ -123,7 +123,8 @@ def cross_check(study: Study) -> None:
         check_own_name(name, f"factors.{name}")
     wrong = Collector()
     with wrong.part():
-        # a constraint may name a further column of the table, whose cells say whether it holds numbers
+        # a constraint may name a further column of the table, whose cells say whether it holds
+        # numbers
         columns = study.drawn.columns if config.method.observed and config.constraints else {}
         check(config, study.parsed, columns)
         check_search(config, study.parsed)
