@@ -134,9 +134,9 @@ def _factor_and_offset(unit: str, wanted: str, field: str) -> tuple[float, float
         if spelt == "g" and _registry().Unit(_spelt(own)).dimensionality == _registry().Unit("m/s^2").dimensionality:
             spelt = "standard_gravity"  # of an acceleration; a mass keeps its gram
         zero, one = (_registry().Quantity(number, spelt) for number in (0.0, 1.0))
+        target = _registry().Unit(_spelt(own))  # a column of a user's own may have a unit that nobody knows
     except Exception:  # pint's parser raises a dozen kinds, also AssertionError
         raise InputError(field, unit, "a unit that is known", remedy) from None
-    target = _registry().Unit(_spelt(own))
     # radians are no dimension to pint, but an angle is no friction coefficient and 600 rpm are not 600/min
     if one.to_base_units().units != _registry().Quantity(1.0, target).to_base_units().units:
         kind = "no unit, because the value is a plain number"

@@ -135,9 +135,13 @@ def study_with_radii(data: Mapping[str, Any], wrong: Collector) -> dict[str, Any
     base, factors = sections.values()
     derived = {"expression": AXIS_DISTANCE}
     own = {name: value for name, value in factors.items() if name != "axis_distance" or value != derived}
+    rows = [
+        row for own_factor in own.values() if isinstance(own_factor, Mapping) for row in own_factor.get("rows") or ()
+    ]
+    in_shelves = {name: value for row in rows if isinstance(row, Mapping) for name, value in row.items()}
     before = len(wrong.errors)
     with wrong.part():
-        if check_radii({**base, **own}):
+        if check_radii({**in_shelves, **base, **own}):
             given = {name: {"values": [radius(name, base[name], "base.")]} for name in RADII if name in base}
             factors = given | factors | {"axis_distance": derived}
             base = {name: value for name, value in base.items() if name not in RADII}

@@ -233,7 +233,7 @@ def check(config: Any, factors: Mapping[str, Factor]) -> None:
     """Check that the names in `analysis`, `pareto` and `constraints` exist; `InputError` gives the nearest one."""
     check_own(config, factors)
     known = names_of_outputs(config)
-    check_analysed(config)
+    check_analysed(config, [name for name, factor in factors.items() if factor.discrete and factor.numeric])
     if config.requirement and not config.method.weighted:
         remedy = "Use inner_outer, lhs, sobol or saltelli. A grid or a table gives shares of its designs."
         raise InputError("requirement", config.design, "a design whose rows have known weights", remedy)
@@ -247,16 +247,20 @@ def check(config: Any, factors: Mapping[str, Factor]) -> None:
     _check_constraints(config, factors, free)
 
 
-def check_analysed(config: Any) -> None:
-    """Check that the outputs under `analysis` and `requirement` are results of the study; raise all errors together."""
+def check_analysed(config: Any, goods: Iterable[str] = ()) -> None:
+    """Check that the outputs under `analysis` and `requirement` are results of the study; raise all errors together.
+
+    A requirement may name a column of a shelf, too, which `goods` lists.
+    """
     known = names_of_outputs(config)
+    wanted = [name for name in config.requirement if name not in goods]
     scale = config.analysis.scale
     outputs = [*(config.analysis.outputs or ())]
     if isinstance(scale, dict):
         outputs += scale
     raise_all(
         unknown_result(where, name, known, config.outputs)
-        for where, names in (("analysis.outputs", outputs), (KEY, config.requirement))
+        for where, names in (("analysis.outputs", outputs), (KEY, wanted))
         for name in names
         if name.replace(" ", "") not in known
     )

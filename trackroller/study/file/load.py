@@ -15,7 +15,7 @@ from trackroller.carriage.fields import check_fields
 from trackroller.contact.friction_laws import at_rest
 from trackroller.damage.own import digests
 from trackroller.errors import Collector, InputError, nearest, raise_all, unknown_name
-from trackroller.files import files_beside, find_beside, noted_reads, read_text
+from trackroller.files import Reads, files_beside, find_beside, noted_reads, read_text
 from trackroller.materials import load_database
 from trackroller.numerics.numbers import number_in
 from trackroller.numerics.plain import mapping_of
@@ -29,6 +29,7 @@ from trackroller.study.file.checks import check_cells, check_geometry, cross_che
 from trackroller.study.file.config import StudyFile
 from trackroller.study.file.goals import Analysis, check_analysed, to_first_limit
 from trackroller.study.file.search import Budget
+from trackroller.study.file.shelf import names_of_columns, with_rows
 from trackroller.study.file.study import Study
 from trackroller.study.file.until import Until
 from trackroller.study.file.user_columns import column_names
@@ -147,7 +148,8 @@ def checked_keys(data: Mapping[str, Any]) -> StudyFile:
         if not {one["loc"][0] for one in errors} & {*naming}:
             with wrong.part():
                 analysed = {key: data[key] for key in naming if key in data}
-                check_analysed(StudyFile.model_validate({"name": "without-the-other-keys"} | analysed))
+                goods = names_of_columns(_mapping(data.get("factors")))
+                check_analysed(StudyFile.model_validate({"name": "without-the-other-keys"} | analysed), goods)
         wrong.check()
         raise
     return config
@@ -196,7 +198,7 @@ def complete(study: Study) -> Study:
     study : the study as its file states it
     """
     config = study.config
-    names = {*config.base, *study.factors}
+    names = {*config.base, *study.factors, *study.columns_of_shelves}
     if config.method.observed and config.table is not None:
         names.update(column_names(study.table_path, "table"))
     if any(at_rest(law) is not None for law in study.friction_laws if law):
@@ -289,23 +291,30 @@ def parse_study(
     """Return the study of a mapping with the keys of a study file; raise `InputError` if an entry is wrong."""
     with _as_written(data), noted_reads() as inputs:
         inputs |= {path: ("limit", digest) for path, digest in digests().items()}
-        wrong = Collector()
+        data, places = with_rows(data)
+        with places.in_files():
+            return _checked_study(data, path, database, planned, inputs)
+
+
+def _checked_study(data: Mapping[str, Any], path: Path | None, database: Any, planned: bool, inputs: Reads) -> Study:
+    """Return the study of a mapping that holds the rows of its shelves; see `parse_study`."""
+    wrong = Collector()
+    with wrong.part():
+        config = checked_keys(data)
+    if wrong.errors:
         with wrong.part():
-            config = checked_keys(data)
-        if wrong.errors:
-            with wrong.part():
-                base, factors = (_mapping(data.get(key)) for key in ("base", "factors"))
-                named_materials(base, factors, database or load_database())
-            wrong.check()
-        study = complete(Study(config, path, database, inputs))
-        with wrong.part():
-            cross_check(study)
-        with wrong.part():
-            if study.config.method.observed and study.config.table and not planned:
-                check_cells(study)
+            base, factors = (_mapping(data.get(key)) for key in ("base", "factors"))
+            named_materials(base, factors, database or load_database())
         wrong.check()
-        if not planned:
-            check_geometry(study)
+    study = complete(Study(config, path, database, inputs))
+    with wrong.part():
+        cross_check(study)
+    with wrong.part():
+        if study.config.method.observed and study.config.table and not planned:
+            check_cells(study)
+    wrong.check()
+    if not planned:
+        check_geometry(study)
     return study
 
 
