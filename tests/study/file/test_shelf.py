@@ -204,3 +204,30 @@ def test_two_shelves_are_crossed(tmp_path, monkeypatch):
     assert found.sizes["case"] == 12 and set(found["guide"].values) == {"thin", "thick"}
     thin = found["guide"].values == "thin"
     assert set(found["guide_profile_radius"].values[thin]) == {5.0}
+
+
+def test_the_cheapest_row_that_is_enough_leads_and_its_columns_stand_on_the_page(tmp_path, monkeypatch):
+    """By hand: all three rows last 6 h; of the two with a price the small one is cheaper, and mid has none."""
+    keys = {"requirement": {"pair_life_hours": {"min": 6}}, "pareto": {"price": "min"}}
+    head = HEAD.replace("order number", "number")  # a name that the table of candidates has, too
+    results = tr.run(study(tmp_path, monkeypatch, head=head, **keys), results=tmp_path / "out", progress=False)
+    answer = results.answer
+    assert answer.table["roller"].tolist()[:2] == ["small", "mid"] and answer.kind == "build"
+    assert answer.table["price"].tolist()[0] == 12.5 and answer.table["own_number"].tolist()[0] == "A-1"
+    units = {column.name: column.units for column in answer.columns}
+    assert units["price"] == "EUR" and units["mass"] == "kg"
+    assert results.pareto() is not None and "price" not in results.pareto().attrs["objectives"]
+    page = tmp_path / "page.html"
+    tr.report(results, page)
+    assert "12.5" in page.read_text(encoding="utf-8") and "A-3" in page.read_text(encoding="utf-8")
+    with pytest.raises(InputError, match=r"pareto .*one beside a requirement"):
+        study(tmp_path, monkeypatch, pareto={"price": "min"})
+
+
+def test_a_search_takes_a_shelf(tmp_path, monkeypatch):
+    """The least price of all rows, by hand 12.5; a search that minimises it finds its row."""
+    keys = {"factors": {"roller": {"file": "rollers.csv"}}, "method": "optimise", "goals": {"price": "min"}}
+    rows = tuple(row.replace(";;", ";15;") for row in ROWS)
+    found = study(tmp_path, monkeypatch, rows, budget={"designs": 12, "population": 4}, **keys)
+    results = tr.run(found, results=tmp_path / "out", progress=False)
+    assert results.answer.table["roller"].tolist()[0] == "small"

@@ -58,7 +58,7 @@ def check_name(name: Any) -> str:
 Name = Annotated[str, BeforeValidator(check_name)]
 Correlations = Annotated[tuple[tuple[str, str, float], ...], BeforeValidator(check_entries)]
 Roles = Annotated[dict[str, str], BeforeValidator(check_words)]
-Goals = Annotated[dict[str, str], BeforeValidator(directions)]
+Goals = Annotated[dict[str, str], BeforeValidator(partial(directions, least=1))]
 DUTY_MEANING = (
     "hours_per_day and days_per_year of travel: lives in years beside hours; or strokes_per_day, stroke [m] (one way), "
     "days_per_year and rollers_on_rail, which give hours and guide_overrollings_per_hour by the velocity"

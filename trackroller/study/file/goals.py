@@ -107,9 +107,12 @@ class Analysis(BaseModel):
 
 
 def directions(value: Any, key: str = "pareto", least: int = 2) -> Any:
-    """Check the key `pareto` or `goals`: at least so many outputs or factors, each with `max` or `min`."""
+    """Check the key `pareto` or `goals`: at least so many outputs or factors, each with `max` or `min`.
+
+    A single goal under `pareto` ranks what meets the requirement of the study.
+    """
     if isinstance(value, Mapping) and 0 < len(value) < least:
-        allowed = "two or more outputs or factors, each with max or min"
+        allowed = "two or more outputs or factors, each with max or min; one beside a requirement"
         raise InputError(key, value, allowed, "For example {pair_life_hours: max, friction_power: min}.")
     return collected(without_spaces(value), lambda name, way: choice(way, f"{key}.{name}", DIRECTIONS))
 
@@ -239,6 +242,8 @@ def check(config: Any, factors: Mapping[str, Factor]) -> None:
         raise InputError("requirement", config.design, "a design whose rows have known weights", remedy)
     free = [*known, *factors, *PARAMETERS]
     _check_statistics(config, factors, known)
+    if len(config.pareto) == 1 and not config.requirement:
+        directions(config.pareto)
     for name in config.pareto if not config.method.points else ():
         if name not in free:
             raise unknown_result("pareto", name, free, config.outputs)
