@@ -218,6 +218,16 @@ def carriage(
     """Print loads and lives of the rollers of a carriage by load case, and the margins to lift-off and tipping."""
 
 
+@command("trackroller.cli.shelf", "print_shelf")
+def shelf(
+    file: Annotated[Path, typer.Argument(help="table of rollers, bearings or guides (CSV, .xlsx)", show_default=False)],
+    of: Annotated[str, typer.Option("--of", help="what a row is: roller, bearing or guide")] = "roller",
+    case: Annotated[Path | None, typer.Option("--case", help="case whose rail and values the rows are put to")] = None,
+    settings: Annotated[list[str] | None, typer.Option("--set", help=SET_HELP)] = None,
+) -> None:
+    """Show the rows of a shelf and check them: names, units, values, and whether they fit the rail."""
+
+
 @command("trackroller.cli.case", "run_wear")
 def wear(
     case: Annotated[Path | None, typer.Argument(help=CASE_HELP)] = None,

@@ -27,7 +27,7 @@ from trackroller.numerics.numbers import finite_number
 from trackroller.numerics.table_cells import is_number, split_head
 from trackroller.numerics.units import PLAIN, split_quantity
 from trackroller.parameters import PARAMETERS
-from trackroller.roller.aliases import ALIASES
+from trackroller.roller.aliases import ALIASES, RADII
 from trackroller.study.design.entries import BEARING_DIAMETER, CASE_FIELDS, SHELVES, SIZES, check_own_name, field_of_row
 from trackroller.study.file.user_columns import column_names, read_table
 from trackroller.tables.column_heads import is_unit
@@ -108,6 +108,27 @@ def with_rows(data: Mapping[str, Any]) -> tuple[dict[str, Any], Places]:
     if base is not None:
         out["base"] = left
     return out, places
+
+
+def without_overridden(keys: Mapping[str, Any], shelf: str) -> dict[str, Any]:
+    """Return keys of a study whose `base` holds no parameter that the rows of a shelf give.
+
+    A case or study then takes the rollers of a shelf in place of its own.
+
+    Parameters
+    ----------
+    keys : mapping
+        Keys of a study with rows, as `with_rows` returns them.
+    shelf : str
+        Name of the shelf.
+    """
+    given = names_of_columns({shelf: keys["factors"][shelf]})
+    if given & {*RADII}:
+        given |= {"axis_distance"}
+    if "axis_distance" in given:
+        given |= {*RADII}
+    base = {name: value for name, value in (keys.get("base") or {}).items() if name not in given}
+    return {**keys, "base": base}
 
 
 def names_of_columns(factors: Mapping[str, Any]) -> set[str]:
