@@ -22,6 +22,7 @@ from trackroller.parameters import BODIES
 from trackroller.parameters.example import EXAMPLE
 from trackroller.results.results import Results
 from trackroller.results.solving import run
+from trackroller.roller.aliases import with_options
 from trackroller.roller.duty import OVERROLLINGS
 from trackroller.roller.requirement import DEFAULT
 from trackroller.roller.settings import LOADS, checked_case
@@ -186,7 +187,7 @@ def _keys_of(case: Path | str | Mapping[str, Any], shelf: Path | str) -> dict[st
         raise InputError("case", type(case).__name__, "a path or a mapping", "Give a case file, or its keys.")
     with files_beside(path):
         if set(OF_STUDY) & set(values):
-            keys = dict(values)
+            keys = with_options(values)
         else:
             keys = _of_case(values)
     for name in ("carriage", "table", "blocks"):

@@ -21,6 +21,8 @@ from trackroller.parameters.example import EXAMPLE
 from trackroller.roller.geometry import rolling_radius
 
 ALIASES = {"mu": "friction_coefficient"}
+OTHER_OPTIONS = {"failures": "failure_probability"}  # names of options that people use, in case and study files
+WRITTEN = ALIASES | OTHER_OPTIONS  # names that a file may have in place of those in messages
 RADII = ("outer_radius", "groove_depth")  # mm
 _ACROSS = "(abs(roller_profile_radius) - guide_profile_radius) * {}(radians(contact_angle))"
 AXIS_DISTANCE = (
@@ -42,13 +44,33 @@ def renamed(values: Mapping[Any, Any]) -> dict[Any, Any]:
     return out
 
 
+def with_options(values: Mapping[Any, Any]) -> dict[Any, Any]:
+    """Return the keys of a file with the name of each option in place of its other name.
+
+    Examples
+    --------
+    >>> with_options({"failures": "5%", "mu": 0.1})
+    {'failure_probability': '5%', 'mu': 0.1}
+    """
+    out = dict(values)
+    for other, name in OTHER_OPTIONS.items():
+        if other not in out:
+            continue
+        if name in out:
+            wrong = f"stands beside {name}, which is another name of it"
+            raise InputError(other, out[other], "one value", "Remove one of the two.", wrong)
+        out = {name if key == other else key: value for key, value in out.items()}
+    return out
+
+
 def overridden(values: Mapping[str, Any], given: Mapping[str, Any]) -> dict[str, Any]:
     """Return the values of a case file, overridden by those of the command line.
 
     A value overrides that of its other name, such as `mu` that of `friction_coefficient`. An axis distance overrides
     the radii of the roller (`RADII`), and a radius the axis distance; radii that are overridden are checked, too.
     """
-    given = renamed(given)
+    given = with_options(renamed(given))
+    values = with_options(values)
     for name in RADII if "axis_distance" in given else ():
         if name in values:
             radius(name, values[name])

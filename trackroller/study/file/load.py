@@ -22,7 +22,7 @@ from trackroller.numerics.plain import mapping_of
 from trackroller.parameters import MATERIAL_FIELDS
 from trackroller.parameters.carriage_fields import field_of
 from trackroller.parameters.example import not_given
-from trackroller.roller.aliases import ALIASES, study_with_radii
+from trackroller.roller.aliases import OTHER_OPTIONS, WRITTEN, study_with_radii, with_options
 from trackroller.roller.duty import OVERROLLINGS, checked_duty, is_of_strokes, of_roller
 from trackroller.study.design.carriage_cases import common_values, given_by
 from trackroller.study.file.checks import check_cells, check_geometry, cross_check, named_materials
@@ -85,11 +85,12 @@ def _translated(detail: Mapping[str, Any]) -> InputError:
 
 
 def with_present_keys(data: Mapping[str, Any]) -> dict[str, Any]:
-    """Return a study file with today's name of each key in `OTHER_NAMES`; refuse a key that is given by both names."""
+    """Return a study file with today's name of each key in `OTHER_NAMES` and `OTHER_OPTIONS`; refuse a doubled key."""
     out = dict(data)
     if "design" in out:
         _refuse_both("design", "method", out)
         out = {{"design": "method"}.get(key, key): value for key, value in out.items()}
+    out = with_options(out)
     given = _mapping(out.get("analysis"))
     if "target" in given:
         _refuse_both("analysis.target", "requirement", out)
@@ -107,12 +108,15 @@ def _refuse_both(other: str, name: str, data: Mapping[str, Any]) -> None:
 
 @contextmanager
 def _as_written(data: Mapping[str, Any]) -> Iterator[None]:
-    """Name in errors the keys of `OTHER_NAMES` as the study file does."""
+    """Name in errors the keys of `OTHER_NAMES` and `OTHER_OPTIONS` as the study file does."""
     written = {}
     if "method" in data and "design" not in data:
         written["design"] = "method"
     if "design" in data and "method" not in data:
         written["method"] = "design"
+    for other, name in OTHER_OPTIONS.items():
+        if other in data:
+            written[name] = other
     if "target" in _mapping(data.get("analysis")) and "requirement" not in data:
         written["requirement"] = "analysis.target"
     try:
@@ -358,7 +362,7 @@ def load_study(path: str | Path | Mapping[str, Any], database: Any = None, plann
     with files_beside(path), noted_reads():
         text = read_text(path, "study file")
         data = parse_mapping(text, "study file")
-        with errors_by_line(text, aliases=ALIASES):
+        with errors_by_line(text, aliases=WRITTEN):
             if data.get("table") is not None:
                 find_beside(data["table"], "table")
             return parse_study(data, path, database, planned)

@@ -10,6 +10,7 @@ from trackroller.methods import METHODS
 from trackroller.methods.factor import DISTRIBUTIONS, ROWS
 from trackroller.parameters import MAPPING_FIELDS, MATERIAL_FIELDS, PARAMETERS, Option
 from trackroller.parameters.accuracy import QUANTITIES
+from trackroller.roller.aliases import OTHER_OPTIONS
 from trackroller.study.design.entries import OPTION_FACTORS, SHELVES
 from trackroller.study.file.config import IN_STUDY, NAME, StudyFile
 from trackroller.study.file.questions import QUESTIONS
@@ -76,6 +77,8 @@ def schema() -> dict[str, Any]:
     properties["factors"] |= {"properties": named, "additionalProperties": _factor()}
     properties["method"]["enum"] = list(METHODS)
     properties["question"]["enum"] = list(QUESTIONS)
+    for other, name in OTHER_OPTIONS.items():
+        properties[other] = {"description": f"another name of `{name}`, such as 5%", "type": ["number", "string"]}
     properties["design"] = {"description": "another name of `method`", "enum": list(METHODS)}
     target = {"description": "another name of `requirement`"} | properties["requirement"]
     whole["$defs"]["Analysis"]["properties"]["target"] = target
