@@ -135,7 +135,7 @@ def test_a_study_with_the_name_of_a_device_of_windows_is_refused(name):
 def test_files_with_windows_newlines_and_a_byte_order_mark_give_the_same_cases(tmp_path):
     """Study, table of cases and measured profile as editors on Windows save them have the same fingerprints."""
     from trackroller.study.file.load import load_study
-    from trackroller.study.store.identity import Cases
+    from trackroller.study.store.fingerprint import StudyCases
 
     profile = "x,z\n" + "".join(f"{x / 2},{x * x / 52}\n" for x in range(-8, 9))
     files = {
@@ -150,7 +150,7 @@ def test_files_with_windows_newlines_and_a_byte_order_mark_give_the_same_cases(t
             path = tmp_path / place / name
             path.parent.mkdir(parents=True, exist_ok=True)
             path.write_bytes((mark + text.replace("\n", newline)).encode())
-        prints.append(Cases(load_study(tmp_path / place / "study.yaml")).fingerprints.tolist())
+        prints.append(StudyCases(load_study(tmp_path / place / "study.yaml")).fingerprints.tolist())
     assert prints[0] == prints[1] and len(set(prints[0])) == 2
 
 

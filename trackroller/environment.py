@@ -75,7 +75,9 @@ def let_matplotlib_cache() -> None:
         kinds = {"XDG_CONFIG_HOME": ".config", "XDG_CACHE_HOME": ".cache"}
         places = [os.environ.get(name) or os.path.join(home, folder) for name, folder in kinds.items()]
         usual = [os.path.join(place, "matplotlib") for place in places]
-    bad = next((place for place in ([given] if given else usual) if not is_writable(place)), None)
+    if given:
+        usual = [given]
+    bad = next((place for place in usual if not is_writable(place)), None)
     if bad is not None:
         temporary_cache("MPLCONFIGDIR", "matplotlib", bad)
 
@@ -99,7 +101,10 @@ def temporary_cache(variable: str, name: str, instead: str) -> Path | None:
     if root is None or not is_writable(root / name):
         return None
     os.environ[variable] = str(root / name)  # processes that this one starts take it without a word
-    why = "this user has no home" if instead.startswith("~") else f"{instead} cannot be written"
+    if instead.startswith("~"):
+        why = "this user has no home"
+    else:
+        why = f"{instead} cannot be written"
     remedy = f"Set {variable} to a folder that stays and can be written."
     warnings.warn(f"{why}, so {name} keeps its cache in {root / name}. {remedy}", stacklevel=4)
     return root / name
@@ -122,5 +127,7 @@ def _temporary_folder() -> Path | None:
             place.mkdir(mode=0o700)
         seen = place.lstat()
         own = stat.S_ISDIR(seen.st_mode) and (user is None or (seen.st_uid == user and not seen.st_mode & 0o022))
-        return place if own and is_writable(place) else Path(tempfile.mkdtemp(prefix="trackroller-", dir=TEMPORARY))
+        if own and is_writable(place):
+            return place
+        return Path(tempfile.mkdtemp(prefix="trackroller-", dir=TEMPORARY))
     return None

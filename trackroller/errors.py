@@ -43,10 +43,12 @@ class InputError(ValueError):
         self.file: str | None = None  # a file that another file or the command names
         self.line: int | None = None  # of the file, the first line being 1
         self.path: tuple[str, ...] = ()  # of the entry in the file, as far as `field` does not say it
-        why = wrong or ("is missing or empty" if value is None else "is not usable")
-        what = f"{field} {why}" if value is None else f"{field} = {shortened(repr(value))} {why}"
-        label = "Needed" if value is None else "Allowed"
-        super().__init__(escaped(". ".join(filter(None, (what, allowed and f"{label}: {allowed}", remedy)))))
+        if value is None:
+            parts = [f"{field} {wrong or 'is missing or empty'}", allowed and f"Needed: {allowed}", remedy]
+        else:
+            shown = f"{field} = {shortened(repr(value))}"
+            parts = [f"{shown} {wrong or 'is not usable'}", allowed and f"Allowed: {allowed}", remedy]
+        super().__init__(escaped(". ".join(part for part in parts if part)))
 
     @property
     def errors(self) -> tuple[InputError, ...]:
@@ -70,8 +72,14 @@ class InputError(ValueError):
         return self
 
     def __str__(self) -> str:
-        where = ", ".join(filter(None, (self.file, f"line {self.line}" if self.line else None)))
-        return f"{escaped(where)}: {super().__str__()}" if where else super().__str__()
+        places = []
+        if self.file:
+            places.append(self.file)
+        if self.line:
+            places.append(f"line {self.line}")
+        if not places:
+            return super().__str__()
+        return f"{escaped(', '.join(places))}: {super().__str__()}"
 
     def __reduce__(self):  # another process rebuilds the error from its parts
         parts = (self.field, self.value, self.allowed, self.remedy, self.wrong)
@@ -83,7 +91,9 @@ MOST_CHARACTERS = 200  # of a value that a message shows
 
 def shortened(text: str) -> str:
     """Return a text as a message shows it: of a long one the beginning and the end."""
-    return text if len(text) <= MOST_CHARACTERS else f"{text[:100]}...{text[-60:]}"
+    if len(text) <= MOST_CHARACTERS:
+        return text
+    return f"{text[:100]}...{text[-60:]}"
 
 
 _CONTROL = r"\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\ud800-\udfff"  # also halves of surrogate pairs
@@ -157,8 +167,11 @@ class InputErrors(InputError):
     @property
     def shown(self) -> list[str]:
         """Return the messages of the first errors, and how many there are further."""
-        more = len(self._errors) - MOST_SHOWN
-        return [*map(str, self._errors[:MOST_SHOWN]), *([f"{more} further errors are not shown."] if more > 0 else [])]
+        messages = [str(error) for error in self._errors[:MOST_SHOWN]]
+        further = len(self._errors) - MOST_SHOWN
+        if further > 0:
+            messages.append(f"{further} further errors are not shown.")
+        return messages
 
     def __str__(self) -> str:
         return "\n".join(self.shown)
@@ -212,7 +225,8 @@ def collected(entries: Any, checked: Callable[[Any, Any], Any]) -> Any:
     """
     if not isinstance(entries, Mapping):
         return entries
-    out, wrong = {}, Collector()
+    out = {}
+    wrong = Collector()
     for key, entry in entries.items():
         with wrong.part():
             out[key] = checked(key, entry)
@@ -275,10 +289,13 @@ def nearest(name: str, options: Iterable[str]) -> str | None:
     if longer:  # of several abbreviated names none is meant for sure
         return longer[0] if len(longer) == 1 else None
     by_lower = {option.lower(): option for option in options}
-    hit = difflib.get_close_matches(
-        str(name).lower(), list(by_lower), n=1, cutoff=CLOSE if len(str(name)) > 4 else CLOSE_SHORT
-    )
-    return by_lower[hit[0]] if hit else None
+    cutoff = CLOSE_SHORT
+    if len(str(name)) > 4:
+        cutoff = CLOSE
+    hit = difflib.get_close_matches(str(name).lower(), list(by_lower), n=1, cutoff=cutoff)
+    if not hit:
+        return None
+    return by_lower[hit[0]]
 
 
 def _words(name: object) -> set[str]:
@@ -287,7 +304,8 @@ def _words(name: object) -> set[str]:
 
 def likeliest(name: str, options: Iterable[str]) -> list[str]:
     """Return at most three options that a name stands for by the meaning of its words, the likeliest first."""
-    options, words = list(options), str(name).lower().split("_")
+    options = list(options)
+    words = str(name).lower().split("_")
     plain = [word if word in _MEANS else word.removesuffix("s") for word in words]
     meant = [option for word in plain for option in _MEANS.get(word, ()) if option in options]
     akin = [o for o in options if any(difflib.get_close_matches(word, _words(o), cutoff=CLOSE) for word in words)]
@@ -303,12 +321,17 @@ def unknown_name(kind: str, name: str, options: Iterable[str], elsewhere: Iterab
     Names `elsewhere` in the file are proposed, too, if the name means one of them.
     """
     options = list(options)
-    close, akin = nearest(name, options), likeliest(name, [*options, *elsewhere])
-    short = len(options) <= MOST_LISTED
-    allowed = ", ".join(map(str, options)) if short else ""
-    remedy = "Use one of these names." if short else "The page 'Parameters, options and results' lists the names."
-    remedy = f"Names with a similar meaning: {', '.join(akin)}." if akin else remedy
-    remedy = f"Did you mean '{close}'?" if close else remedy
+    close = nearest(name, options)
+    akin = likeliest(name, [*options, *elsewhere])
+    allowed = ""
+    remedy = "The page 'Parameters, options and results' lists the names."
+    if len(options) <= MOST_LISTED:
+        allowed = ", ".join(map(str, options))
+        remedy = "Use one of these names."
+    if akin:
+        remedy = f"Names with a similar meaning: {', '.join(akin)}."
+    if close:
+        remedy = f"Did you mean '{close}'?"
     return InputError(kind, name, allowed, remedy, wrong="is not known")
 
 
@@ -321,14 +344,19 @@ def contained(name: str, options: Iterable[str]) -> list[str]:
     (['radial_force'], ['axial_force'])
     """
     words = [word for word in re.split(r"[^\w]|_", name.lower()) if word]
-    whole, options = "_".join(words), list(options)
+    whole = "_".join(words)
+    options = list(options)
     meant = [option for word in (*words, "".join(words)) for option in _MEANS.get(word, ()) if option in options]
     return list(dict.fromkeys([*(o for o in options if f"_{o}_" in f"_{whole}_"), *meant]))[:3]
 
 
 def listing(words: Sequence[str], last: str = "and") -> str:
     """Join words: 'a', 'a and b', 'a, b and c'; 'none' for an empty list."""
-    return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} {last} {words[-1]}" if words else "none"
+    if len(words) == 1:
+        return words[0]
+    if words:
+        return f"{', '.join(words[:-1])} {last} {words[-1]}"
+    return "none"
 
 
 def check_names(kind: str, names: Iterable[object], options: Iterable[str]) -> None:

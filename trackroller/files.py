@@ -44,10 +44,13 @@ def confine(folder: Path) -> None:
     Links are followed before the check, so a link that leads out of the folder is refused. Temporary files, such as
     the figures of a sheet before they stand in its page, have a folder that is deleted with the process.
     """
-    materials, own = os.environ.get(MATERIALS), tempfile.mkdtemp(prefix="trackroller-")
+    materials = os.environ.get(MATERIALS)
+    own = tempfile.mkdtemp(prefix="trackroller-")
     atexit.register(shutil.rmtree, own, ignore_errors=True)
     tempfile.tempdir = own
-    places = [folder, Path(own), *([Path(os.path.expanduser(materials))] if materials else [])]
+    places = [folder, Path(own)]
+    if materials:
+        places.append(Path(os.path.expanduser(materials)))
     _confined[:] = [place.resolve() for place in places]
 
 
@@ -112,7 +115,8 @@ def read_bytes(path: Path | str, what: str, most: float = MAX_BYTES) -> bytes:
     path = Path(path)
     with opened(path, what, most) as stream:
         content = stream.read()
-    if (noted := _noted.get()) is not None:
+    noted = _noted.get()
+    if noted is not None:
         noted[path.resolve()] = what, hashlib.sha256(content).hexdigest()
     return content
 
@@ -140,10 +144,14 @@ def opened(
     except FileNotFoundError:
         raise InputError(what, str(path), "the path of a file", "Check the path.", "does not exist") from None
     except (OSError, ValueError) as exc:
-        too_long = long_name(exc) if isinstance(exc, OSError) else None
+        too_long = None
+        if isinstance(exc, OSError):
+            too_long = long_name(exc)
         if too_long is not None:
             raise too_long.named(what) from None
-        why = exc.strerror if isinstance(exc, OSError) and exc.strerror else exc
+        why: object = exc
+        if isinstance(exc, OSError) and exc.strerror:
+            why = exc.strerror
         wrong = f"cannot be read ({why})"
         raise InputError(what, str(path), "a file that can be read", "Check path and rights.", wrong) from None
 
@@ -173,6 +181,19 @@ def read_text(path: Path | str, what: str, most: float = MAX_BYTES) -> str:
     return text_of(read_bytes(path, what, most), path, what)
 
 
+UTF_16 = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)  # the marks at the beginning of a file
+
+
+def _with_mark(content: bytes) -> bytes:
+    """Return the content of a file; UTF-16 without its mark, of which every other byte is 0, gets the mark."""
+    even, odd = (content[start::2].count(0) for start in (0, 1))
+    if max(even, odd) <= 0.3 * len(content) or min(even, odd) > 0:
+        return content
+    if odd:
+        return codecs.BOM_UTF16_LE + content
+    return codecs.BOM_UTF16_BE + content
+
+
 def text_of(content: bytes, path: Path | str, what: str, western: bool = False) -> str:
     """Return the text of the content of a user's file, see `read_text`.
 
@@ -186,20 +207,23 @@ def text_of(content: bytes, path: Path | str, what: str, western: bool = False) 
         Whether UTF-16 without its mark and the encoding of Windows in western countries are read too, as instruments
         write them.
     """
-    utf_16 = content.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE))  # Excel's "Unicode text"
-    if western and not utf_16:
-        zeros = [content[start::2].count(0) for start in (0, 1)]
-        utf_16 = max(zeros) > 0.3 * len(content) and min(zeros) == 0
-        content = (codecs.BOM_UTF16_LE if zeros[1] else codecs.BOM_UTF16_BE) * utf_16 + content
+    if western and not content.startswith(UTF_16):
+        content = _with_mark(content)
+    utf_16 = content.startswith(UTF_16)  # Excel's "Unicode text"
+    encoding = "utf-8-sig"
+    if utf_16:
+        encoding = "utf-16"
     try:
-        text = content.decode("utf-16" if utf_16 else "utf-8-sig")
+        text = content.decode(encoding)
     except UnicodeDecodeError as exc:
         if western and not utf_16:
             return text_of(content.decode("cp1252", "replace").encode(), path, what)
         remedy = "Save the file as UTF-8; in Excel choose 'CSV UTF-8'."
         wrong = f"is not {exc.encoding.upper()} text at byte {exc.start}"
         error = InputError(what, str(path), "text in UTF-8, or in UTF-16 with its mark", remedy, wrong)
-        raise (error if utf_16 else error.at(path, content.count(b"\n", 0, exc.start) + 1)) from None
+        if not utf_16:
+            error = error.at(path, content.count(b"\n", 0, exc.start) + 1)
+        raise error from None
     if "\0" in text:
         raise InputError(what, str(path), "a text", "Save the file as UTF-8.", "holds zero bytes, so it is no text")
     return text
@@ -208,7 +232,10 @@ def text_of(content: bytes, path: Path | str, what: str, western: bool = False) 
 @contextmanager
 def files_beside(path: Path | str | None) -> Iterator[None]:
     """Look for files in the folder of the case or study file `path` first, while that file is read."""
-    token = _beside.set(None if path is None else Path(path).parent)
+    folder = None
+    if path is not None:
+        folder = Path(path).parent
+    token = _beside.set(folder)
     try:
         yield
     finally:
@@ -266,20 +293,27 @@ def disk_error(exc: OSError, path: Path) -> WorkError:
     """Return the message for a failed write, with the remedy."""
     exc = _true_cause(exc, path)
     if exc.errno in (errno.ENOSPC, errno.EDQUOT):
-        what, remedy = "the disk is full", "Free some space"
+        what = "the disk is full"
+        remedy = "Free some space"
     elif exc.errno in (errno.EROFS, errno.EACCES, errno.EPERM):
-        what, remedy = f"it cannot be written ({exc.strerror})", "Change its permissions (or choose another --results)"
+        what = f"it cannot be written ({exc.strerror})"
+        remedy = "Change its permissions (or choose another --results)"
     else:
-        what, remedy = f"writing failed ({why_not(exc, path)})", "Repair the folder or the disk"
+        what = f"writing failed ({why_not(exc, path)})"
+        remedy = "Repair the folder or the disk"
     of_study = any((place / STUDY_MARK).is_file() for place in (path, *path.parents))
-    kept = ": every finished case is kept" if of_study else ""
+    kept = ""
+    if of_study:
+        kept = ": every finished case is kept"
     return WorkError(f"{path}: {what}. {remedy}, then start again{kept}.")
 
 
 def why_not(exc: OSError, path: Path) -> str:
     """Return in words why a path cannot be made: the system says of a link that leads nowhere that a file exists."""
     lost = next((place for place in (path, *path.parents) if is_link(place) and not place.exists()), None)
-    return str(exc.strerror or exc) if lost is None else f"{lost} is a link to something that does not exist"
+    if lost is None:
+        return str(exc.strerror or exc)
+    return f"{lost} is a link to something that does not exist"
 
 
 def _true_cause(exc: OSError, path: Path) -> OSError:
@@ -428,7 +462,8 @@ def _interrupt(number: int, frame: FrameType | None) -> None:
     interrupted while it is imported raises `ImportError` instead.
     """
     while frame is not None:
-        module, imported = str(frame.f_globals.get("__name__")), frame.f_locals.get("self")
+        module = str(frame.f_globals.get("__name__"))
+        imported = frame.f_locals.get("self")
         waits = module.startswith(("netCDF4", "xarray.backends", "weakref")) or frame.f_code.co_name == "__del__"
         if waits or (module == "importlib._bootstrap_external" and isinstance(imported, ExtensionFileLoader)):
             signal.setitimer(signal.ITIMER_REAL, 0.02)
@@ -496,7 +531,9 @@ def inert_cell(value: Any) -> Any:
     """
     if not isinstance(value, str) or not value.startswith(("=", "+", "-", "@", "\t", "\r")):
         return value
-    return value if re.fullmatch(r"[+-]?[\d.,]+(e[+-]?\d+)?|[+-]inf", value) else f"'{value}"
+    if re.fullmatch(r"[+-]?[\d.,]+(e[+-]?\d+)?|[+-]inf", value):
+        return value
+    return f"'{value}"
 
 
 def sha256(path: Path) -> str:
@@ -507,7 +544,9 @@ def sha256(path: Path) -> str:
 
 def cores() -> int:
     """Return the number of processors that this process may use; of the machine where the system does not say."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
 
 
 def memory() -> float:

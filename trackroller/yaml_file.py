@@ -79,7 +79,10 @@ class _Constructor(SafeConstructor):
 
     def refused(self, node: Any) -> InputError:
         """Return the error for an ambiguous scalar, or one that no number can hold."""
-        shown = node.value if len(node.value) <= 60 else f"{node.value[:57]}..."
+        if len(node.value) <= 60:
+            shown = node.value
+        else:
+            shown = f"{node.value[:57]}..."
         allowed = "an unambiguous value; YAML 1.1 and YAML 1.2 differ here, or the number is too large"
         remedy = "Write a plain decimal number, true or false; or put a text in quotes."
         return InputError(f"line {node.start_mark.line + 1}", shown, allowed, remedy)
@@ -106,7 +109,8 @@ _Constructor.add_constructor(AMBIGUOUS, _Constructor.ambiguous)
 
 def _check_size(text: str, what: str) -> None:
     """Refuse nesting that is too deep, more values than `MAX_VALUES`, and an alias of a value that contains it."""
-    open_sizes, names = [0], [None]
+    open_sizes = [0]
+    names = [None]
     anchors: dict[str | None, int] = {}
     for event in YAML(typ="safe").parse(io.StringIO(text)):
         size = 0
@@ -114,7 +118,8 @@ def _check_size(text: str, what: str) -> None:
             open_sizes.append(1)
             names.append(event.anchor)
         elif isinstance(event, CollectionEndEvent):
-            size, name = open_sizes.pop(), names.pop()
+            size = open_sizes.pop()
+            name = names.pop()
             anchors[name] = size
         elif isinstance(event, ScalarEvent):
             size = anchors[event.anchor] = 1
@@ -151,7 +156,8 @@ def parse_yaml(text: str, what: str) -> Any:
         too deep a nesting.
     """
     loader = YAML(typ="safe")
-    loader.Resolver, loader.Constructor = _Resolver, _Constructor
+    loader.Resolver = _Resolver
+    loader.Constructor = _Constructor
     try:
         _check_size(text, what)
         return loader.load(io.StringIO(text))
@@ -167,10 +173,8 @@ def parse_yaml(text: str, what: str) -> Any:
             raise InputError(
                 f"{what}, {where}", reason, "each key once", "Remove one of the two lines.", "holds a key twice"
             ) from None
-        allowed, remedy = (
-            "one document of plain YAML, without tags",
-            "Mend the line; texts with ': ' or ' #' need quotes.",
-        )
+        allowed = "one document of plain YAML, without tags"
+        remedy = "Mend the line; texts with ': ' or ' #' need quotes."
         raise InputError(f"{what}, {where}", None, allowed, remedy, f"is not YAML: {reason}") from None
     except (YAMLError, ValueError, RecursionError) as exc:
         reason = " ".join(str(exc).split())[:200]
@@ -235,7 +239,8 @@ def _parts(text: str) -> tuple[str, ...]:
 
 def _line_of(error: InputError, lines: Mapping[tuple[str, ...], int], elsewhere: Collection[str]) -> int | None:
     """Return the line of the entry of an error: the longest part of its field, or of its value, that is a key there."""
-    parts, value = _parts(error.field), _parts(str(error.value)[:200])
+    parts = _parts(error.field)
+    value = _parts(str(error.value)[:200])
     slices = [parts[i : i + n] for n in range(len(parts), -1, -1) for i in range(len(parts) - n + 1)]
     before = _parts(".".join(error.path))
     paths = [(*before, *some, *own) for some in slices for own in (value, ())]
@@ -314,7 +319,10 @@ def change_yaml(text: str, changes: Iterable[tuple[Sequence[str | int], str | No
         try:
             for key, after in pairwise(path):
                 if isinstance(place, CommentedMap) and place.get(key) is None:
-                    place[key] = CommentedSeq() if isinstance(after, int) else CommentedMap()
+                    if isinstance(after, int):
+                        place[key] = CommentedSeq()
+                    else:
+                        place[key] = CommentedMap()
                     place[key].fa.set_flow_style()
                 place = place[key]
             if value is None:
@@ -338,7 +346,9 @@ def _typed(editor: YAML, value: str, what: str) -> Any:
     try:
         parse_yaml(value, what)
     except InputError:
-        return DoubleQuotedScalarString(value) if needs_quotes(value) else value
+        if needs_quotes(value):
+            return DoubleQuotedScalarString(value)
+        return value
     return editor.load(value)
 
 
@@ -352,7 +362,10 @@ class _Representer(SafeRepresenter):
 
     def represent_text(self, text: str) -> Any:
         """Return the node of a text."""
-        return self.represent_scalar(f"{TAG}str", text, style='"' if needs_quotes(text) else None)
+        style = None
+        if needs_quotes(text):
+            style = '"'
+        return self.represent_scalar(f"{TAG}str", text, style=style)
 
 
 _Representer.add_representer(str, _Representer.represent_text)

@@ -18,7 +18,7 @@ import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
-from trackroller.study.store.sources import ROOMS
+from trackroller.study.store.program_digest import ROOMS
 from validation.mutants import DECISIONS, FORMULAS
 
 ROOT = Path(__file__).resolve().parents[1]

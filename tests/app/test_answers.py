@@ -21,7 +21,7 @@ from trackroller.app.fields import all_fields, slider
 from trackroller.app.lane import STALE, Lane
 from trackroller.app.materials import material, save_material
 from trackroller.app.picture import curve, file_of_roller, picture, texts
-from trackroller.app.picture import found as range_of
+from trackroller.app.picture import find_range as range_of
 from trackroller.app.spectrum import spectrum
 from trackroller.app.studies import checked, file_of_study, headlines, listing, page_of
 from trackroller.errors import InputError, WorkError

@@ -20,7 +20,7 @@ from trackroller.roller.expected_errors import error_attributes, expected_errors
 from trackroller.roller.options import Options
 from trackroller.study.cost import rate
 from trackroller.study.file.load import parse_study
-from trackroller.study.store.identity import fingerprints
+from trackroller.study.store.fingerprint import fingerprints
 
 RECIPE = Path(__file__).parents[2] / "CONTRIBUTING.md"
 

@@ -17,7 +17,7 @@ from trackroller.roller.case import to_table
 from trackroller.roller.explain import explain
 from trackroller.roller.options import Options
 from trackroller.study.file.load import parse_study
-from trackroller.study.store.identity import fingerprints
+from trackroller.study.store.fingerprint import fingerprints
 
 VARIANTS = json.loads((DATA / "contact.json").read_text(encoding="utf-8"))["variants"]
 PAPER, FREE = {}, {"motor_force": 0.0}

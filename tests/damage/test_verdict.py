@@ -10,7 +10,7 @@ from typer.testing import CliRunner
 import trackroller as tr
 from trackroller.cli.case import groups_of
 from trackroller.cli.main import app
-from trackroller.damage import LIMITS, asked, others
+from trackroller.damage import LIMITS, limits_of, others
 from trackroller.damage import judged as judged_limits
 from trackroller.damage.limit import Limit, SolvedRollers, Verdict
 from trackroller.damage.verdict import ENDS, STATES, states, verdict
@@ -96,11 +96,11 @@ def test_a_limit_that_a_placeholder_decides_is_open(used, state):
 def test_asked_limits_follow_from_the_groups():
     everything = [name for name in NAMES if name != "multiaxial"]  # which has no verdict
     for outputs in (("forces", "limits"), ("forces", "life", "limits")):
-        assert [own.name for own in asked(outputs)] == everything
-    assert [own.name for own in asked(("forces", "limits"), others(["static", "wear"]))] == ["static", "wear"]
-    assert [own.name for own in asked(("multiaxial", "limits"))] == list(LIMITS)
-    assert [own.name for own in asked(("life",))] == ["fatigue"] and judged_limits(("life",)) == ()
-    assert asked(("forces", "contact")) == ()
+        assert [own.name for own in limits_of(outputs)] == everything
+    assert [own.name for own in limits_of(("forces", "limits"), others(["static", "wear"]))] == ["static", "wear"]
+    assert [own.name for own in limits_of(("multiaxial", "limits"))] == list(LIMITS)
+    assert [own.name for own in limits_of(("life",))] == ["fatigue"] and judged_limits(("life",)) == ()
+    assert limits_of(("forces", "contact")) == ()
 
 
 def test_a_life_that_rests_on_a_placeholder_has_the_lives_at_both_ends_of_its_range():

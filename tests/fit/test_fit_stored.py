@@ -18,7 +18,7 @@ from trackroller.results.roller_answer import answer_of_roller, beyond_tests
 from trackroller.study.file.load import parse_study
 from trackroller.study.run import run_study
 from trackroller.study.store.folder import StudyFolder
-from trackroller.study.store.inputs import study_of_folder
+from trackroller.study.store.input_files import study_of_folder
 
 RIG = {"motor_force": 0, "friction_coefficient": 0.1, "axial_force": 20}
 

@@ -1,6 +1,7 @@
 """The page and the command of a roller that wears: sentences from the rows, figures, and a run that goes on."""
 
 import html
+import json
 import re
 import shlex
 from dataclasses import replace
@@ -16,6 +17,7 @@ from trackroller.cli.main import app
 from trackroller.report.figures.wear import course, profiles
 from trackroller.results.flags import SLIDING_WEAR
 from trackroller.results.wear_answer import answer_of_wear, deeper_contact
+from trackroller.roller.limit_notes import Placeholder, placeholder_line
 from trackroller.roller.wearing import Groove, travel_to_depth
 
 CASE = """
@@ -111,3 +113,46 @@ def test_a_place_that_hardly_wears_gives_no_warning_on_the_way_to_the_permissibl
     with np.errstate(all="raise", under="ignore"):
         assert travel_to_depth(one, two, 0.05) == pytest.approx(1.5)
         assert travel_to_depth(one, two, 0.2) == np.inf
+
+
+def worn_with(ds, damages, lives, end="travel", **inputs):
+    """Return a run with damage sums at its end and lives [km] by body, and with other inputs of its case."""
+    own = ds.assign({name: ds[name].copy(deep=True) for name in ("fatigue_damage", "life_travel", "life_travel_new")})
+    for body, damage, life, new in zip(("roller", "guide"), damages, *lives, strict=True):
+        own["fatigue_damage"].loc[{"body": body}] = damage
+        own["life_travel"].loc[{"body": body}] = life
+        own["life_travel_new"].loc[{"body": body}] = new
+    case = json.loads(ds.attrs["case"]) | inputs
+    return own.assign_attrs(case=json.dumps(case), end=end)
+
+
+def test_fatigue_within_the_run_is_in_the_headline_and_a_longer_life_has_the_run_as_its_low_end(whole):
+    last = float(whole.travel[-1])
+    cut = worn_with(whole, (3.0, 0.2), ((0.4 * last, np.nan), (last, 9 * last)))
+    answer = answer_of_wear(cut)
+    assert answer.headline["fatigue"] == {"body": "roller", "travel": 0.4 * last}
+    assert f"fatigue ends the roller after {0.4 * last:.3g} km" in headline(answer)
+    lives = answer.table.set_index("body")[["life_travel", "life_travel_high"]]
+    assert lives.loc["roller"].tolist() == [0.4 * last] * 2 and lives.loc["guide"].tolist() == [last, np.inf]
+    assert answer_of_wear(worn_with(whole, (0.3, 0.2), ((np.nan,) * 2, (last,) * 2))).headline["fatigue"] is None
+
+
+def test_a_required_travel_is_judged_by_fatigue_by_the_end_of_the_run_and_by_its_length(whole):
+    last = float(whole.travel[-1])
+    never, measured = ((np.nan,) * 2, (9 * last,) * 2), whole.assign_attrs(limits_notes="")
+    for required, own, end, state in (
+        (0.9 * last, never, "travel", "met"),
+        (1.1 * last, never, "travel", "open"),
+        (1.1 * last, never, "permissible", "missed"),
+        (0.9 * last, ((0.5 * last, np.nan), (last, last)), "travel", "missed"),
+        (0.4 * last, ((0.5 * last, np.nan), (last, last)), "travel", "met"),
+    ):
+        ds = worn_with(measured, (0.5, 0.5), own, end, required_travel=required)
+        answer = answer_of_wear(ds)
+        assert answer.headline["state"] == state and f"required {required:.3g} km: {state}" in headline(answer)
+    guessed = whole.assign_attrs(limits_notes=placeholder_line([Placeholder("wear", "PA6", "wear_coefficient")]))
+    ds = worn_with(guessed, (0.5, 0.5), never, required_travel=0.5 * last)
+    assert answer_of_wear(ds).headline["state"] == "open"  # another coefficient may end it before
+    ds = worn_with(guessed, (0.5, 0.5), ((0.2 * last, np.nan), (0.4 * last, last)), required_travel=0.5 * last)
+    assert answer_of_wear(ds).headline["state"] == "missed"  # fatigue of the new groove alone
+    assert "travel" not in answer_of_wear(guessed).not_given

@@ -79,7 +79,7 @@ import trackroller as tr
 from trackroller.roller.options import Options
 from trackroller.roller.case import to_table
 from trackroller.study.file.load import parse_study
-from trackroller.study.store.identity import fingerprints
+from trackroller.study.store.fingerprint import fingerprints
 from trackroller.study.file.schema import schema
 from trackroller.cli.case import case_of
 sys.path.insert(0, "docs")

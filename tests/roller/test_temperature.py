@@ -15,7 +15,7 @@ from trackroller.roller import temperature
 from trackroller.roller.case import to_table
 from trackroller.study.spectrum.file import load_spectrum
 from trackroller.study.spectrum.solve import solve_spectrum
-from trackroller.study.store.identity import fingerprints
+from trackroller.study.store.fingerprint import fingerprints
 
 TABLE = {
     "temperature": [20, 40, 60, 80, 100],

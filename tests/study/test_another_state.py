@@ -15,7 +15,7 @@ from test_edits import STUDY, command
 import trackroller as tr
 from trackroller.study.file.load import load_study
 from trackroller.study.run import run_study
-from trackroller.study.store import sources
+from trackroller.study.store import program_digest
 
 ROOT = Path("results/edited")
 
@@ -27,11 +27,11 @@ def stored(tmp_path, monkeypatch):
     Path("study.yaml").write_text(STUDY)
     run_study(load_study("study.yaml"), solver=fake_solver.solve)
     data = xr.load_dataset(ROOT / "study.nc")
-    monkeypatch.setattr(sources, "BY_VALUE", ())  # the materials' file counts too: another digest of the solver
-    sources.solver_digest.cache_clear()
+    monkeypatch.setattr(program_digest, "BY_VALUE", ())  # the materials' file counts too: another digest of the solver
+    program_digest.solver_digest.cache_clear()
     yield data
     monkeypatch.undo()
-    sources.solver_digest.cache_clear()
+    program_digest.solver_digest.cache_clear()
 
 
 def test_results_of_another_solver_say_so_and_are_solved_again_whole(stored):

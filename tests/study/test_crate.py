@@ -16,7 +16,7 @@ from trackroller.cli.main import app
 from trackroller.errors import InputError
 from trackroller.study.store.crate import CRATE, compare_results, damaged_files, read_crate
 from trackroller.study.store.folder import StudyFolder
-from trackroller.study.store.inputs import study_of_folder
+from trackroller.study.store.input_files import study_of_folder
 from trackroller.study.store.mark import MARK, signed
 
 MATERIALS = """

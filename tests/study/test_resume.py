@@ -21,7 +21,7 @@ from trackroller.study.file.load import parse_study
 from trackroller.study.run import run_study
 from trackroller.study.status import status_of
 from trackroller.study.store import chunks
-from trackroller.study.store.identity import Cases, chunk_name
+from trackroller.study.store.fingerprint import StudyCases, chunk_name
 from trackroller.study.store.ledger import study_folder, working_ledger
 
 HERE = Path(__file__).parents[1]
@@ -440,7 +440,7 @@ def test_more_samples_leave_the_cases_of_the_smaller_sample_solved(tmp_path, sol
     run(data | {"samples": small}, tmp_path)
     before = solved()
     plan, ds, _ = run(data | {"samples": large}, tmp_path)
-    cases = len(np.unique(Cases(plan.study).fingerprints))
+    cases = len(np.unique(StudyCases(plan.study).fingerprints))
     assert 0 < sum(before.values()) < sum(solved().values()) == cases, "each case of the larger sample once"
     run(data | {"samples": large}, tmp_path)
     assert sum(solved().values()) == cases, "planning again changes nothing"

@@ -171,3 +171,23 @@ def test_every_limit_is_checked_whose_inputs_are_given():
     value, low, high = (ds[f"life_shifts_by_limit{end}"].sel(limit="wear").values for end in ENDS)
     assert (low < 0.5 * value).all() and (2.0 * value < high).all()
     assert float(ds.pair_life_to_first_limit_shifts_low) <= float(ds.pair_life_to_first_limit_shifts)
+
+
+def test_a_limit_is_not_kept_in_a_block_without_a_result_and_its_known_damage_is_that_of_the_worse_track():
+    kick = {"name": "kick", "distance": 5, "radial_force": -30, "axial_force": 90, "guide_overrollings": 1}
+    loaded = LOADED | {"axial_force": 20}
+    ds = solved(loaded, EMPTY, kick, limits=("static", "fatigue", "shakedown"))
+    assert np.isnan(ds["peak_stress"].sel(block="kick")).any()
+    answer = answer_of_spectrum(ds)
+    assert answer.kind == "unknown" and {*answer.table["state"]} == {"unknown"} and len(answer.table) == 6
+    for body in ("roller", "guide"):
+        tracks = ds["damage"].sel(body=body).sum("block")
+        assert float(tracks[1]) > float(tracks[0])  # contact 2 carries the axial force
+        by_limit = ds["damage_by_limit"].sel(limit="fatigue", body=body)
+        known = ds["damage"].sel(body=body, contact=2)
+        np.testing.assert_array_equal(by_limit.transpose("block").values, known.transpose("block").values)
+        share = float(known.sel(block="loaded") / known.sum())
+        own = limit_row(answer, "fatigue", body)
+        assert own["share"] == pytest.approx(share) and own["block"] == f"loaded, {100 * share:.0f} %"
+    still = solved(loaded, EMPTY, kick | {"distance": 0, "guide_overrollings": 0}, limits=("static", "fatigue"))
+    assert "unknown" not in {*answer_of_spectrum(still).table["state"]}  # a block without travel does not count

@@ -15,7 +15,7 @@ from trackroller.roller.solver import solve
 from trackroller.study.file.load import load_study, parse_study
 from trackroller.study.progress import progress_bar
 from trackroller.study.run import run_study
-from trackroller.study.store.identity import Cases
+from trackroller.study.store.fingerprint import StudyCases
 from trackroller.study.store.manifest import digests_of
 
 NUMBERS = {"axial_force": {"uniform": [20, 50]}, "friction_coefficient": {"uniform": [0.1, 0.3]}}
@@ -65,7 +65,7 @@ def test_solved_cases_are_those_of_the_whole_design(tmp_path, monkeypatch, desig
     with pytest.warns(UserWarning, match=rf"Unfinished study: \d+ of {study.drawn.size} cases are solved"):
         solved = tr.open_study("results/stopped")
     numbers, whole = solved.data["case"].values, study.design()
-    repeated = study.drawn.size - len(np.unique(Cases(study).fingerprints))  # trajectories and blocks share cases
+    repeated = study.drawn.size - len(np.unique(StudyCases(study).fingerprints))  # trajectories and blocks share cases
     assert solved.unfinished and count <= len(numbers) <= count + repeated and len(numbers) == solved.design.size
     for name in study.factors:
         if name in solved.data.variables and name in whole.variables:

@@ -23,7 +23,9 @@ class Frame:
     """The live page in a notebook; `address` opens it elsewhere, and `close` ends its server."""
 
     def __init__(self, address: str, process: subprocess.Popen[str], height: int) -> None:
-        self.address, self.height, self._process = address, height, process
+        self.address = address
+        self.height = height
+        self._process = process
 
     def close(self) -> None:
         """End the server; studies that run go on."""
@@ -82,10 +84,14 @@ def frame(
 
     if isinstance(case, Case):
         checked = case
+    elif case is None:
+        checked = Case.from_dict({})
     else:
-        checked = Case.from_dict({} if case is None else case)
+        checked = Case.from_dict(case)
     words = {name: setting_text(value) for name, value in given_inputs(checked).items()}
-    options = [f"--port={port}"] * (port is not None) + [f"--allow-host={host}" for host in allow_hosts]
+    options = [f"--allow-host={host}" for host in allow_hosts]
+    if port is not None:
+        options.insert(0, f"--port={port}")
     command = python("trackroller.cli", "app", str(folder), "--no-browser", *options)
     process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, stdin=subprocess.DEVNULL)
     atexit.register(process.terminate)
@@ -95,11 +101,9 @@ def frame(
     if "http://" not in line:
         raise WorkError("the server of the page does not start; `trackroller app` says why in a terminal")
     address = line[line.index("http://") :].split()[0]
-    if case is None:
-        hash_ = ""
-    else:
-        hash_ = f"#{urllib.parse.urlencode(words or {'tab': 'roller'})}"
-    return Frame(address + hash_, process, height)
+    if case is not None:
+        address += f"#{urllib.parse.urlencode(words or {'tab': 'roller'})}"
+    return Frame(address, process, height)
 
 
 class _CallableModule(ModuleType):

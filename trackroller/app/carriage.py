@@ -11,7 +11,6 @@ import re
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import pydantic
 import xarray as xr
 
@@ -47,8 +46,8 @@ class Change(pydantic.BaseModel):
 
 def carriage_files() -> dict[str, Any]:
     """Return the carriage files of the folder, and the example with which the page begins."""
-    found = sorted(path.as_posix() for pattern in ("*.y*ml", "*/*.y*ml") for path in Path().glob(pattern))
-    return {"files": [name for name in found if _is_carriage(Path(name))], "example": EXAMPLE}
+    paths = sorted(path.as_posix() for pattern in ("*.y*ml", "*/*.y*ml") for path in Path().glob(pattern))
+    return {"files": [name for name in paths if _is_carriage(Path(name))], "example": EXAMPLE}
 
 
 def _is_carriage(path: Path) -> bool:
@@ -141,10 +140,9 @@ def _places(whole: Carriage) -> dict[str, Any]:
 def _loads(ds: xr.Dataset) -> dict[str, Any]:
     """Return the forces as numbers by load case and roller, and as a table with a row for each roller."""
     radial, axial = (ds[name].values for name in ("radial_force", "axial_force"))
-    rows = [
-        [str(name), *("lifted" if r == 0 else f"{cell(float(r))} / {cell(float(a))}" for r, a in both)]
-        for name, both in zip(ds["roller"].values, np.stack([radial, axial], 2).swapaxes(0, 1), strict=True)
-    ]
+    rows = []
+    for name, radials, axials in zip(ds["roller"].values, radial.T, axial.T, strict=True):
+        rows.append([str(name), *map(_force_cell, radials, axials)])
     note = "Radial forces below 0 press the roller on its rail; axial forces act on the roller along its own axis x_R."
     table = {
         "title": "Radial / axial force of the rollers by load case [N]",
@@ -157,15 +155,22 @@ def _loads(ds: xr.Dataset) -> dict[str, Any]:
         "axial": axial.tolist(),
         "worst": worst_place(ds)[1],
         "table": table,
-        **_said(answer_of_carriage(ds)),
+        **_headline(answer_of_carriage(ds)),
     }
 
 
-def _said(answer: Answer) -> dict[str, Any]:
+def _force_cell(radial: float, axial: float) -> str:
+    """Return the cell of a roller in a load case."""
+    if radial == 0:
+        return "lifted"
+    return f"{cell(float(radial))} / {cell(float(axial))}"
+
+
+def _headline(answer: Answer) -> dict[str, Any]:
     """Return the headline of a record and its warnings as texts."""
-    said = headline_of(answer)
+    headline = headline_of(answer)
     warnings = [warning_line(caution) for caution in answer.warnings]
-    return {"headline": {"lead": said.lead, "rest": said.rest}, "warnings": warnings}
+    return {"headline": {"lead": headline.lead, "rest": headline.rest}, "warnings": warnings}
 
 
 def carriage_lives(text: str, file: str = "") -> dict[str, Any]:
@@ -178,7 +183,7 @@ def _lives(ds: xr.Dataset) -> dict[str, Any]:
     answer = answer_of_carriage(ds)
     shown = [column.name for column in answer.columns]
     return {
-        **_said(answer),
+        **_headline(answer),
         "answer": answer.to_dict(),
         "tables": [limits_on_page(answer, shown), *(part_on_page(answer, part) for part in answer.parts)],
         "worst": str(ds.attrs.get("worst_roller", "")),

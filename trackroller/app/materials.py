@@ -46,8 +46,8 @@ def material(name: str) -> dict[str, Any]:
             mark = f"placeholder, {row['note']}"
         else:
             mark = row.get("note", "")
-        told = {"value": row.get("value", ""), "source": row.get("source", "not given"), "mark": mark}
-        rows.append({"field": prop.name, "symbol": prop.symbol, "label": prop.label, "unit": prop.unit, **told})
+        value = {"value": row.get("value", ""), "source": row.get("source", "not given"), "mark": mark}
+        rows.append({"field": prop.name, "symbol": prop.symbol, "label": prop.label, "unit": prop.unit, **value})
     return {"description": own.description, "family": own.family, "rows": rows}
 
 
@@ -90,8 +90,8 @@ def save_material(name: str, like: str, values: dict[str, str], source: str) -> 
         base = {"like": database.material(like, "like").name}
     if not changed:
         raise InputError("material", name, "at least one changed value", "Type another number into one of the fields.")
-    made = add_material(file, name, replace=True, source=source.strip(), **base, **changed)
-    return {"materials": material_rows(load_database()), "file": str(file), "doubts": doubts({}, [made])}
+    material = add_material(file, name, replace=True, source=source.strip(), **base, **changed)
+    return {"materials": material_rows(load_database()), "file": str(file), "doubts": doubts({}, [material])}
 
 
 def typed(text: str) -> float | str:

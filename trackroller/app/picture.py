@@ -49,8 +49,11 @@ STILL = 0.01  # of the largest local creepage: elements that creep less count as
 
 def read(values: Values) -> tuple[Case, dict[str, Any], dict[str, Any]]:
     """Return what `checked_case` does for the fields of the page; texts are read as those of `--set`."""
-    given = {n: parse_yaml(v, n) if isinstance(v, str) else v for n, v in values.items() if v not in ("", None)}
-    return checked_case(given)
+    fields = {name: value for name, value in values.items() if value not in ("", None)}
+    for name, value in fields.items():
+        if isinstance(value, str):
+            fields[name] = parse_yaml(value, name)
+    return checked_case(fields)
 
 
 @functools.lru_cache(maxsize=8)
@@ -63,8 +66,8 @@ def _solved(text: str, accuracy: str, groups: tuple[str, ...]) -> xr.Dataset:
 def _solve(case: Case | Sequence[Case], groups: Sequence[str], accuracy: str, options: dict[str, Any]) -> xr.Dataset:
     """Solve a case or several with the outputs of the page and those of the case file."""
     own = {"accuracy": accuracy, **options}
-    wanted = dict.fromkeys((*groups, *own.pop("outputs", ())))
-    return solve(case, tuple(wanted), **own)
+    outputs = dict.fromkeys((*groups, *own.pop("outputs", ())))
+    return solve(case, tuple(outputs), **own)
 
 
 def picture(values: Values, accuracy: str = "preview", complete: bool = False, inside: bool = False) -> dict[str, Any]:
@@ -86,15 +89,23 @@ def picture(values: Values, accuracy: str = "preview", complete: bool = False, i
     InputError
         If a value is wrong.
     """
-    groups = (*LIVE, *_JUDGED, "limits", *(("subsurface",) if inside else ()))
+    groups = (*LIVE, *_JUDGED, "limits")
+    if inside:
+        groups = (*groups, "subsurface")
     ds = _solved(json.dumps(values, sort_keys=True), accuracy, groups)
+    unknown: Limits | None = _UNKNOWN
+    if complete:
+        unknown = None
+    sections = []
+    if inside:
+        sections = _sections(ds)
     return {
-        **_facts(ds, None if complete else _UNKNOWN),
+        **_facts(ds, unknown),
         "accuracy": accuracy,
         "complete": complete,
         "drawing": drawing(ds),
         "patches": [_patch(patch) for patch in patches_of(ds, "pressure", "shear_lateral", "shear_rolling")],
-        "sections": _sections(ds) if inside else [],
+        "sections": sections,
     }
 
 
@@ -102,10 +113,10 @@ def picture(values: Values, accuracy: str = "preview", complete: bool = False, i
 def _facts(ds: xr.Dataset, ranges: Limits | None) -> dict[str, Any]:
     """Return the record of a roller, and what the page shows of it: headline, table of limits, warnings, inputs."""
     answer = answer_of_roller(ds, ranges)
-    said = headline_of(answer)
+    headline = headline_of(answer)
     return {
         "answer": answer.to_dict(),
-        "headline": {"lead": said.lead, "rest": said.rest},
+        "headline": {"lead": headline.lead, "rest": headline.rest},
         "limits": limits_on_page(answer),
         "parts": {part.name: part_on_page(answer, part) for part in answer.parts},
         "not_checked": {body: list(limits) for body, limits in answer.not_checked.items() if limits},
@@ -117,7 +128,10 @@ def _facts(ds: xr.Dataset, ranges: Limits | None) -> dict[str, Any]:
 
 def _bytes(values: np.ndarray, top: float) -> str:
     """Return numbers from 0 to `top` as base64 of one byte each."""
-    scaled = np.nan_to_num(values / top if top > 0 else 0.0 * values)
+    scaled = 0.0 * values
+    if top > 0:
+        scaled = values / top
+    scaled = np.nan_to_num(scaled)
     return base64.b64encode(np.round(255 * np.clip(scaled, 0, 1)).astype(np.uint8).tobytes()).decode()
 
 
@@ -203,12 +217,12 @@ def curve(values: Values, over: str, ends: list[float]) -> dict[str, Any]:
     else:
         along = np.linspace(low, high, POINTS)
     cases = []
-    kept = []
+    solved = []
     refused = ""
     for i, value in enumerate(along):
         try:
             cases.append(read({**values, over: float(value)})[0])
-            kept.append(i)
+            solved.append(i)
         except InputError as exc:
             refused = str(exc.errors[0])
     if not cases:
@@ -218,17 +232,17 @@ def curve(values: Values, over: str, ends: list[float]) -> dict[str, Any]:
     duty = read(values)[2].get("duty")
     names = every_name(ds, (), ("case",))
     regimes = ("rolling", "full_slip", "lift_off")
-    for one in outputs(ds, (), names, regimes, unlimited=True, scale="natural"):
+    for output in outputs(ds, (), names, regimes, unlimited=True, scale="natural"):
         column = np.full(POINTS, np.nan)
-        column[kept] = one.values
+        column[solved] = output.values
         if not np.isnan(column).all():
-            label = re.sub(r", eqs?\. \(\d+\)", "", one.long_name)  # the number of an equation of the paper
+            label = re.sub(r", eqs?\. \(\d+\)", "", output.long_name)  # the number of an equation of the paper
             with on_duty(duty):
-                columns[one.name] = {"label": label, "unit": head_unit(one.units), "values": column.tolist()}
+                columns[output.name] = {"label": label, "unit": head_unit(output.units), "values": column.tolist()}
     return {"over": over, "along": along.tolist(), "columns": columns, "refused": refused}
 
 
-def found(values: Values, over: str, condition: str) -> dict[str, Any]:
+def find_range(values: Values, over: str, condition: str) -> dict[str, Any]:
     """Find how far a parameter may go so that a condition holds; see `trackroller.find`.
 
     Parameters
@@ -247,20 +261,21 @@ def found(values: Values, over: str, condition: str) -> dict[str, Any]:
         The answer in words, and the ends of the range; they are NaN if no value meets the condition.
     """
     case, options, beside = read(values)
-    asked, said = _in_hours(condition, beside.get("duty"))
-    range_ = find(case, over, asked, **{name: value for name, value in options.items() if name != "outputs"})
-    return {"text": f"{said}{range_.text}", "ends": [range_.low, range_.high]}
+    in_hours, sentence = _in_hours(condition, beside.get("duty"))
+    settings = {name: value for name, value in options.items() if name != "outputs"}
+    range_ = find(case, over, in_hours, **settings)
+    return {"text": f"{sentence}{range_.text}", "ends": [range_.low, range_.high]}
 
 
 def _in_hours(condition: str, duty: Any) -> tuple[str, str]:
     """Return a condition whose last number is in years with hours in their place, and a sentence on them."""
     head, relation, number = condition.rpartition("=")
-    found = YEARS.fullmatch(number)
-    if found is None:
+    years_text = YEARS.fullmatch(number)
+    if years_text is None:
         return condition, ""
     if duty is None:
         raise InputError("find", number.strip(), "hours, or years beside a duty", EXAMPLE, "needs a duty")
-    hours = float(found[1]) / float(years(1.0, duty))
+    hours = float(years_text[1]) / float(years(1.0, duty))
     return f"{head}{relation} {hours!r}", f"{number.strip()} are {rounded(hours, 4)} h. "
 
 
@@ -269,13 +284,13 @@ def texts(values: Values) -> dict[str, str]:
     case, options, beside = read(values)
     given = given_inputs(case)
     fields = ", ".join(f"{name}={_python(value)}" for name, value in given.items())
-    more = "".join(f", {name}={value!r}" for name, value in options.items())
+    further = "".join(f", {name}={value!r}" for name, value in options.items())
     # a sheet of `ds` takes both from its attributes
     attributes = "".join(f"ds.attrs[{name!r}] = {json.dumps(value)!r}\n" for name, value in beside.items())
     return {
         "YAML": write_yaml(given | options | beside),
         "command": solve_command(given | options | beside),
-        "Python": f"import trackroller as tr\n\nds = tr.solve(tr.Case({fields}){more})\n{attributes}",
+        "Python": f"import trackroller as tr\n\nds = tr.solve(tr.Case({fields}){further})\n{attributes}",
     }
 
 

@@ -40,8 +40,8 @@ def spectrum(values: Values, by: str, blocks: list[dict[str, str]]) -> dict[str,
     if by not in TRAVEL:
         raise InputError("by", by, ", ".join(TRAVEL), "Choose what the blocks are given by.")
     case, options, beside = read(values)
-    base, taken = parts_for_spectrum(given_inputs(case) | options)
-    made = [
+    base, settings = parts_for_spectrum(given_inputs(case) | options)
+    loads = [
         {"name": block.get("name") or f"load {i}", by: typed(block.get("amount", ""))}
         | {name: typed(block.get(name, "")) for name in LOADS}
         for i, block in enumerate(blocks, 1)
@@ -49,17 +49,17 @@ def spectrum(values: Values, by: str, blocks: list[dict[str, str]]) -> dict[str,
     duty = {}
     if "duty" in beside:
         duty = {"duty": beside["duty"]}
-    file = {"name": "loads-of-the-roller", "base": base, **duty, "blocks": made, **taken}
+    file = {"name": "loads-of-the-roller", "base": base, **duty, "blocks": loads, **settings}
     return _answer(solve_spectrum(Spectrum.from_dict(file))) | {"text": write_yaml(file)}
 
 
 @lives_in_years
 def _answer(ds: xr.Dataset) -> dict[str, Any]:
     answer = answer_of_spectrum(ds)
-    said = headline_of(answer)
+    headline = headline_of(answer)
     return {
         "answer": answer.to_dict(),
-        "headline": {"lead": said.lead, "rest": said.rest},
+        "headline": {"lead": headline.lead, "rest": headline.rest},
         "warnings": [warning_line(caution) for caution in answer.warnings],
         "not_checked": {body: list(limits) for body, limits in answer.not_checked.items() if limits},
         "tables": [limits_on_page(answer), *(part_on_page(answer, part) for part in answer.parts)],

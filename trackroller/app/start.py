@@ -120,7 +120,8 @@ def _tell_where(browser: bool, hosts: list[str]) -> None:
         allowed = known["hosts"]
     except (OSError, ValueError, KeyError, TypeError):
         raise WorkError(f"{Path.cwd()}: another server of this folder is just starting. Try again.") from None
-    if new := [host for host in hosts if host not in allowed]:
+    new = [host for host in hosts if host not in allowed]
+    if new:
         where = ", ".join(new)
         raise WorkError(
             f"the page of this folder runs already and does not answer at {where}. End it, and start again."

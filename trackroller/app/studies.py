@@ -111,7 +111,10 @@ def _study(text: str) -> Study:
         searched = 0
         if config.method.proposes:
             searched = config.budget.designs * study.drawn.meta["inner_samples"]
-        cases = max(study.drawn.size, searched, config.until.at_most if config.until else 0)
+        grown = 0
+        if config.until:
+            grown = config.until.at_most
+        cases = max(study.drawn.size, searched, grown)
     if cases > MOST_CASES:
         allowed = f"at most {MOST_CASES:,} cases on this page"
         raise InputError("design", f"{cases:,} cases", allowed, "Start larger studies with `trackroller run`.")
@@ -121,11 +124,12 @@ def _study(text: str) -> Study:
 def _least_cases(study: Study) -> int:
     """Return about how many cases a study has, found without drawing its design."""
     method = study.config.method
-    drawn = method.sampled or method.proposes
-    crossed = []
-    if method.points or not drawn:
-        crossed = [len(f.levels) for f in study.parsed.values() if f.levels]
-    return math.prod(crossed) * (int(study.config.samples) if drawn else 1)
+    count = 1
+    if method.sampled or method.proposes:
+        count = int(study.config.samples)
+    if method.points or not (method.sampled or method.proposes):
+        count *= math.prod(len(factor.levels) for factor in study.parsed.values() if factor.levels)
+    return count
 
 
 def start(text: str) -> dict[str, Any]:
@@ -244,17 +248,20 @@ def _entry(name: str) -> dict[str, Any] | None:
     files = list(_stats(folder.root))
     newest = max((stat.st_mtime for stat in files), default=0.0)
     size = sum(stat.st_size for stat in files)
-    if works:
-        error = ""
-    else:
+    error = ""
+    if not works:
         error = progress.get("error") or _altered(folder.gathered, newest, size)
+    done = solved
     if works:
         state = "running"
+        done = progress.get("done", solved)
+    elif error:
+        state = "stopped"
+    elif whole:
+        state = "done"
+        done = total
     else:
-        if error:
-            state = "stopped"
-        else:
-            state = "done" if whole else "paused"
+        state = "paused"
     return {
         "name": name,
         "question": folder.earlier().get("description", ""),
@@ -262,7 +269,7 @@ def _entry(name: str) -> dict[str, Any] | None:
         "step": progress.get("step", "starting"),
         "error": error,
         "total": total,
-        "done": total if state == "done" else progress.get("done", solved) if works else solved,
+        "done": done,
         "failed": progress.get("failed"),
         "bytes": size,
         "date": datetime.datetime.fromtimestamp(newest).isoformat(" ", "minutes"),
@@ -327,11 +334,11 @@ def headlines(name: str) -> dict[str, Any]:
         "cases": len(results.table),
         "factors": {str(row[0]): f"{row[2]} {row[1]}".strip(" –") for row in table.rows} if table else {},
         "numbers": _numbers(results),
-        "short": _said(results),
+        "short": _headline(results),
     }
 
 
-def _said(results: Results) -> list[tuple[str, str]]:
+def _headline(results: Results) -> list[tuple[str, str]]:
     """Return the headline and the warnings of a study, each with its head."""
     answer = shown_answer(results)
     warnings = " · ".join(warning_line(caution) for caution in answer.warnings)

@@ -18,10 +18,11 @@ def limits_on_page(answer: Answer, shown: Sequence[str] = SHOWN) -> dict[str, An
     """Return the table of limits with its bars, without the columns that stand on the sheet alone."""
     rows = rows_of(answer, [column for column in answer.columns if column.name in shown])
     bars = UseBars.of(answer)
-    drawn: dict[str, Any] = {"bars": [], "axis": ""}
+    shown_bars: dict[str, Any] = {"bars": [], "axis": ""}
     if bars is not None:
-        drawn = {"bars": [str(bars.row(row)) for row in answer.table.to_dict("records")], "axis": str(bars.head())}
-    return {"name": "limits", "title": "Limits", **_texts(rows), **drawn, "note": ""}
+        lines = [str(bars.row(row)) for row in answer.table.to_dict("records")]
+        shown_bars = {"bars": lines, "axis": str(bars.head())}
+    return {"name": "limits", "title": "Limits", **_texts(rows), **shown_bars, "note": ""}
 
 
 def part_on_page(answer: Answer, part: Part) -> dict[str, Any]:

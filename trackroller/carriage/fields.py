@@ -99,10 +99,11 @@ def _in_cases(whole: Carriage, field: str, place: str, value: float) -> Carriage
 
 
 def _of_roller(whole: Carriage, field: str, place: str, value: float) -> Carriage:
-    rollers = (
-        replace(roller, at=_moved(roller.at, field, value)) if word_of(roller.name) == place else roller
-        for roller in whole.rollers
-    )
+    rollers = []
+    for roller in whole.rollers:
+        if word_of(roller.name) == place:
+            roller = replace(roller, at=_moved(roller.at, field, value))
+        rollers.append(roller)
     return replace(whole, rollers=tuple(rollers))
 
 
@@ -125,10 +126,12 @@ def _stretched(axis: int) -> Callable[[Carriage, float], Carriage]:
 
 
 def _payload(whole: Carriage, value: float) -> Carriage:
-    total = sum(one.value for one in whole.payloads)
-    shares = [one.value / total if total > 0 else 1 / len(whole.payloads) for one in whole.payloads]
+    total = sum(mass.value for mass in whole.payloads)
+    shares = [1 / len(whole.payloads) for _ in whole.payloads]
+    if total > 0:
+        shares = [mass.value / total for mass in whole.payloads]
     pairs = zip(whole.payloads, shares, strict=True)
-    return replace(whole, payloads=tuple(PointMass(value * share, one.at) for one, share in pairs))
+    return replace(whole, payloads=tuple(PointMass(value * share, mass.at) for mass, share in pairs))
 
 
 def _payload_place(axis: int) -> Callable[[Carriage, float], Carriage]:
@@ -148,7 +151,9 @@ def _pairs(field: str) -> Callable[[Carriage, float], Carriage]:
         def new(pair: Preload) -> Preload:
             if (pair.play == 0) != (field == "preload"):
                 return pair
-            return Preload(pair.pair, **{"force" if field == "preload" else "play": value})
+            if field == "preload":
+                return Preload(pair.pair, force=value)
+            return Preload(pair.pair, play=value)
 
         return replace(whole, preloads=tuple(map(new, whole.preloads)))
 

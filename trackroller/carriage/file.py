@@ -32,6 +32,7 @@ from trackroller.parameters import MATERIAL_FIELDS
 from trackroller.roller.aliases import ALIASES
 from trackroller.roller.case import Case
 from trackroller.roller.duty import STROKES, checked_duty, in_hours, is_of_strokes, refuse_overrollings
+from trackroller.roller.requirement import Requirement, checked_requirement
 from trackroller.roller.settings import LOADS, checked_case
 from trackroller.yaml_file import errors_by_line, parse_mapping
 
@@ -111,6 +112,8 @@ class MountedRoller:
         Options of the solver in the roller's file.
     given : mapping
         The roller's file.
+    required : mapping of str to Requirement
+        What the roller's file requires of outputs.
     stiffness : tuple of float, optional
         Radial and axial stiffness of the whole roller, in place of that of its contacts [N/mm].
     compliance : tuple of float
@@ -127,6 +130,7 @@ class MountedRoller:
     case: Case | None = None
     options: Mapping[str, Any] = field(default_factory=dict)
     given: Mapping[str, Any] = field(default_factory=dict)
+    required: Mapping[str, Requirement] = field(default_factory=dict)
     stiffness: tuple[float, float] | None = None
     compliance: tuple[float, float] = (0.0, 0.0)
     catalogue: CatalogueRoller | None = None
@@ -269,11 +273,12 @@ def written_out(source: Path | str | Mapping[str, Any], field: str = "carriage")
             values = {"name": path.stem} | parse_mapping(text, str(path))
             return written_out(values, field)
     whole = carriage_of(values)
-    out = dict(values)
-    out["rollers"] = {
-        roller.name: dict(entry) | ({} if roller.case is None else {"roller": _stated(roller)})
-        for roller, entry in zip(whole.rollers, values["rollers"].values(), strict=True)
-    }
+    rollers = {}
+    for roller, entry in zip(whole.rollers, values["rollers"].values(), strict=True):
+        rollers[roller.name] = dict(entry)
+        if roller.case is not None:
+            rollers[roller.name]["roller"] = _stated(roller)
+    out = {**values, "rollers": rollers}
     return {key: value for key, value in out.items() if value is not None}
 
 
@@ -287,20 +292,21 @@ def _stated(roller: MountedRoller) -> dict[str, Any]:
             where = f"rollers.{roller.name}.roller.{name}"
             raise InputError(where, "a mapping", "the name of a material", remedy, "is no name")
     plain = {name: value for name, value in given.items() if value is not None and value != ""}
-    return plain | {key: list(v) if isinstance(v, tuple) else v for key, v in roller.options.items()}
+    options = {key: list(value) for key, value in roller.options.items() if isinstance(value, tuple)}
+    return {**plain, **roller.options, **options}
 
 
 def carriage_of(values: Mapping[str, Any]) -> Carriage:
     """Return the carriage of a mapping with the keys of a file; see `load_carriage`."""
     wrong = Collector()
-    made: dict[str, Any] = {}
+    fields: dict[str, Any] = {}
     with wrong.part():
         check_names("carriage: key", values, FILE_FIELDS)
     for key, read in (
         ("mass", lambda value: _mass(value, "mass")),
         (
             "payloads",
-            lambda value: tuple(_mass(one, f"payloads[{i + 1}]") for i, one in enumerate(_list(value, "payloads"))),
+            lambda value: tuple(_mass(mass, f"payloads[{i + 1}]") for i, mass in enumerate(_list(value, "payloads"))),
         ),
         ("drive", _drive),
         ("rollers", _rollers),
@@ -310,26 +316,26 @@ def carriage_of(values: Mapping[str, Any]) -> Carriage:
     ):
         with wrong.part():
             if values.get(key) is not None:
-                made[key] = read(values[key])
+                fields[key] = read(values[key])
             elif key in ("mass", "rollers", "cases"):
                 raise InputError(key, None, _NEEDED[key], f"Add {_EXAMPLES[key]}.")
     wrong.check()
     with wrong.part():
         if values.get("preload") is not None:
-            made["preloads"] = _preloads(values["preload"], made["rollers"])
+            fields["preloads"] = _preloads(values["preload"], fields["rollers"])
     with wrong.part():
-        check_curves(made["cases"], made["rollers"])
+        check_curves(fields["cases"], fields["rollers"])
     with wrong.part():
-        if is_of_strokes(made.get("duty")):
-            made |= _by_strokes(made["duty"], made["cases"], made["rollers"])
+        if is_of_strokes(fields.get("duty")):
+            fields |= _by_strokes(fields["duty"], fields["cases"], fields["rollers"])
     with wrong.part():
-        _check_payloads(values["cases"], made)
+        _check_payloads(values["cases"], fields)
     with wrong.part():
-        made["name"] = checked_text(str(values.get("name", "carriage")), "name")
+        fields["name"] = checked_text(str(values.get("name", "carriage")), "name")
     with wrong.part():
-        made["description"] = checked_text(str(values.get("description", "")), "description", lines=True)
+        fields["description"] = checked_text(str(values.get("description", "")), "description", lines=True)
     wrong.check()
-    return Carriage(**made)
+    return Carriage(**fields)
 
 
 def _by_strokes(
@@ -353,10 +359,10 @@ def _by_strokes(
     return {"duty": in_hours(duty, hours_per_km), "stroke": duty["stroke"]}
 
 
-def _check_payloads(given: Sequence[Mapping[str, Any]], made: Mapping[str, Any]) -> None:
+def _check_payloads(entries: Sequence[Mapping[str, Any]], fields: Mapping[str, Any]) -> None:
     """Refuse a load case that states a share of payloads where the carriage has no payload."""
-    for case, entry in zip(made["cases"], given, strict=True):
-        if case.payload > 0 and entry.get("payload") is not None and not made.get("payloads"):
+    for case, entry in zip(fields["cases"], entries, strict=True):
+        if case.payload > 0 and entry.get("payload") is not None and not fields.get("payloads"):
             allowed = "a share of the payloads of the carriage"
             remedy = "Add payloads: [{value: 60 kg, at: [80, 0, 150]}], or remove payload here."
             raise InputError(
@@ -387,7 +393,9 @@ def _list(value: Any, where: str) -> list[Any]:
 
 
 def _number(value: Any, where: str, unit: str, allowed: str, lower: float = -1e12, upper: float = 1e12) -> float:
-    return number_in(value, where, f"{allowed} [{unit}]" if unit != "-" else allowed, lower, upper, unit)
+    if unit != "-":
+        allowed = f"{allowed} [{unit}]"
+    return number_in(value, where, allowed, lower, upper, unit)
 
 
 def _vector(value: Any, where: str, unit: str, allowed: str, remedy: str) -> np.ndarray:
@@ -432,18 +440,18 @@ def _rollers(value: Any) -> tuple[MountedRoller, ...]:
     if not isinstance(value, Mapping) or not value:
         raise InputError("rollers", value, "rollers by name", f"Write {_EXAMPLES['rollers']}.")
     wrong = Collector()
-    made = []
+    rollers = []
     files: dict[object, Any] = {}
     for name, entry in value.items():
         with wrong.part("rollers", str(name)):
-            made.append(_roller(checked_text(str(name), "name of a roller"), entry, files))
+            rollers.append(_roller(checked_text(str(name), "name of a roller"), entry, files))
     wrong.check()
-    if not any(roller.locating for roller in made):
+    if not any(roller.locating for roller in rollers):
         remedy = "Write kind: locating for the rollers that guide the carriage along their axes."
         raise InputError(
-            "rollers", ", ".join(r.name for r in made), "at least one locating roller", remedy, "float all"
+            "rollers", ", ".join(r.name for r in rollers), "at least one locating roller", remedy, "float all"
         )
-    return tuple(made)
+    return tuple(rollers)
 
 
 def _roller(name: str, value: Any, files: dict[object, Any]) -> MountedRoller:
@@ -452,43 +460,45 @@ def _roller(name: str, value: Any, files: dict[object, Any]) -> MountedRoller:
         value, where, ROLLER_FIELDS, "{at: [150, 40, 0], pushes: [0, -1, 0], x_R: [0, 0, 1], roller: r.yaml}"
     )
     wrong = Collector()
-    made: dict[str, Any] = {}
+    fields: dict[str, Any] = {}
     for key in ("at", "pushes", "x_R"):
         with wrong.part():
-            if entry.get(key) is None:
-                raise InputError(f"{where}.{key}", None, _POINT if key == "at" else "a direction [x, y, z]", "Add it.")
-            own = f"{where}.{key}"
+            allowed = "a direction [x, y, z]"
             if key == "at":
-                made[key] = _vector(entry[key], own, "mm", _POINT, _AT)
+                allowed = _POINT
+            if entry.get(key) is None:
+                raise InputError(f"{where}.{key}", None, allowed, "Add it.")
+            if key == "at":
+                fields[key] = _vector(entry[key], f"{where}.{key}", "mm", _POINT, _AT)
             else:
-                made[key] = _direction(entry[key], own)
+                fields[key] = _direction(entry[key], f"{where}.{key}")
     with wrong.part():
-        if (kind := entry.get("kind", KINDS[0])) not in KINDS:
+        kind = entry.get("kind", KINDS[0])
+        if kind not in KINDS:
             raise unknown_name(f"{where}.kind", str(kind), KINDS)
     with wrong.part():
-        made["roller"] = {}
+        fields["roller"] = {}
         if entry.get("roller") is not None:
-            made["roller"] = _case(entry["roller"], f"{where}.roller", files)
+            fields["roller"] = _case(entry["roller"], f"{where}.roller", files)
     with wrong.part():
-        made["stiffness"] = None
+        fields["stiffness"] = None
         if "stiffness" in entry:
-            made["stiffness"] = _stiffness(entry["stiffness"], f"{where}.stiffness")
+            fields["stiffness"] = _stiffness(entry["stiffness"], f"{where}.stiffness")
         series = [_stiffness(entry[key], f"{where}.{key}") for key in ("bearing", "structure") if key in entry]
-        made["compliance"] = tuple(sum(1 / one[i] for one in series) for i in (0, 1))
+        fields["compliance"] = tuple(sum(1 / one[i] for one in series) for i in (0, 1))
     with wrong.part():
-        made["catalogue"] = None
+        fields["catalogue"] = None
         if "catalogue" in entry:
-            made["catalogue"] = _catalogue(entry["catalogue"], f"{where}.catalogue")
+            fields["catalogue"] = _catalogue(entry["catalogue"], f"{where}.catalogue")
     wrong.check()
-    _check_directions(where, made["pushes"], made["x_R"])
-    own = made["roller"].get("case")
-    if made["catalogue"] is not None and own is not None and own.catalogue is not None:
+    _check_directions(where, fields["pushes"], fields["x_R"])
+    case = fields["roller"].get("case")
+    if fields["catalogue"] is not None and case is not None and case.catalogue is not None:
         allowed = "the catalogue once"
         remedy = "Remove it here: the one in the file of the roller counts its moment, too."
         raise InputError(f"{where}.catalogue", entry["catalogue"], allowed, remedy, "stands in both places")
-    locating = entry.get("kind", KINDS[0]) == KINDS[0]
-    more = {key: made[key] for key in ("stiffness", "compliance", "catalogue")} | made["roller"]
-    return MountedRoller(name, made["at"], made["pushes"], made["x_R"], locating, **more)
+    optional = {key: fields[key] for key in ("stiffness", "compliance", "catalogue")} | fields["roller"]
+    return MountedRoller(name, fields["at"], fields["pushes"], fields["x_R"], kind == KINDS[0], **optional)
 
 
 def _check_directions(where: str, pushes: np.ndarray, axis: np.ndarray) -> None:
@@ -521,14 +531,20 @@ def _case(value: Any, where: str, files: dict[object, Any]) -> dict[str, Any]:
 def _read_roller(value: Any, where: str) -> dict[str, Any]:
     """Return case, options and given values of the roller of a mapping or a file."""
     if isinstance(value, Mapping):
-        case, options, _ = checked_case(value)
-        return {"case": case, "options": options, "given": dict(value)}
+        case, options, beside = checked_case(value)
+        return {"case": case, "options": options, "given": dict(value), "required": _required(beside)}
     path = find_beside(value, where)
     text = read_text(path, "roller file")
     given = parse_mapping(text, str(path))
     with errors_by_line(text, file=str(path), aliases=ALIASES):
-        case, options, _ = checked_case(given)
-    return {"case": case, "options": options, "given": given}
+        case, options, beside = checked_case(given)
+    return {"case": case, "options": options, "given": given, "required": _required(beside)}
+
+
+def _required(beside: Mapping[str, Any]) -> dict[str, Requirement]:
+    """Return what the file of a roller requires, from its entries beside the case."""
+    found: dict[str, Requirement] = checked_requirement(beside.get("requirement", {}), beside.get("duty"))
+    return found
 
 
 def _stiffness(value: Any, where: str) -> tuple[float, float]:
@@ -554,20 +570,21 @@ def _catalogue(value: Any, where: str) -> CatalogueRoller:
 def _preloads(value: Any, rollers: Sequence[MountedRoller]) -> tuple[Preload, ...]:
     known = {roller.name: roller for roller in rollers}
     wrong = Collector()
-    made = []
-    seen: set[str] = set()
+    preloads = []
+    paired: set[str] = set()
     for i, entry in enumerate(_list(value, "preload")):
         where = f"preload[{i + 1}]"
         with wrong.part("preload", str(i)):
-            made.append(_preload(entry, where, known))
-            twice = seen & {*made[-1].pair}
+            preload = _preload(entry, where, known)
+            preloads.append(preload)
+            twice = paired & {*preload.pair}
             if twice:
                 raise InputError(
                     f"{where}.pair", sorted(twice)[0], "each roller in one pair", "Remove one of the pairs."
                 )
-            seen |= {*made[-1].pair}
+            paired |= {*preload.pair}
     wrong.check()
-    return tuple(made)
+    return tuple(preloads)
 
 
 def _preload(value: Any, where: str, known: Mapping[str, MountedRoller]) -> Preload:
@@ -578,46 +595,46 @@ def _preload(value: Any, where: str, known: Mapping[str, MountedRoller]) -> Prel
     check_names(f"{where}.pair", map(str, pair), known)
     if ("force" in entry) == ("play" in entry):
         raise InputError(where, dict(entry), "either force or play", "Write force: 100 N, or play: 0.05 mm.")
-    left, right = (known[str(name)] for name in pair)
-    way = right.at - left.at
-    off = np.linalg.norm(way - (way @ left.pushes) * left.pushes)
-    if left.pushes @ right.pushes > -1 + SQUARE or off > IN_LINE * max(float(np.linalg.norm(way)), 1e-9):
+    one, other = (known[str(name)] for name in pair)
+    way = other.at - one.at
+    off = np.linalg.norm(way - (way @ one.pushes) * one.pushes)
+    if one.pushes @ other.pushes > -1 + SQUARE or off > IN_LINE * max(float(np.linalg.norm(way)), 1e-9):
         allowed = "two rollers that press against each other on one line"
         raise InputError(f"{where}.pair", list(pair), allowed, "Name the roller on the other side of the rails.")
     if "force" in entry:
         return Preload(
-            (left.name, right.name), _number(entry["force"], f"{where}.force", "N", "a force >= 0", lower=0.0)
+            (one.name, other.name), _number(entry["force"], f"{where}.force", "N", "a force >= 0", lower=0.0)
         )
     play = _number(entry["play"], f"{where}.play", "mm", "a play >= 0", lower=0.0)
-    return Preload((left.name, right.name), play=play)
+    return Preload((one.name, other.name), play=play)
 
 
 def _cases(value: Any) -> tuple[LoadCase, ...]:
     wrong = Collector()
-    made = []
-    given = _list(value, "cases")
-    for i, entry in enumerate(given):
+    cases = []
+    entries = _list(value, "cases")
+    for i, entry in enumerate(entries):
         with wrong.part("cases", str(i)):
-            made.append(_load_case(entry, i + 1))
+            cases.append(_load_case(entry, i + 1))
     wrong.check()
-    if not made:
+    if not cases:
         raise InputError("cases", value, "a list of load cases that is not empty", f"Write {_EXAMPLES['cases']}.")
-    names = [case.name for case in made]
+    names = [case.name for case in cases]
     for name in names:
         if names.count(name) > 1:
             raise InputError("cases", name, "a name of its own for each load case", "Rename one of the cases.")
-    shares = [case.share for case in made]
-    if not any("share" in entry for entry in given):
-        return tuple(_with_share(case, 1 / len(made)) for case in made)
-    for case, entry in zip(made, given, strict=True):
-        if len(made) > 1 and "share" not in entry:
+    shares = [case.share for case in cases]
+    if not any("share" in entry for entry in entries):
+        return tuple(_with_share(case, 1 / len(cases)) for case in cases)
+    for case, entry in zip(cases, entries, strict=True):
+        if len(cases) > 1 and "share" not in entry:
             allowed = "the share of the travel, as other cases have one"
             raise InputError(f"case '{case.name}'.share", None, allowed, "Add share: 0.5, or remove all shares.")
     if abs(sum(shares) - 1) > 1e-6:
         raise InputError(
             "cases", f"{sum(shares):.6g}", "shares that add up to 1", "Change the shares.", "is the sum of the shares"
         )
-    return tuple(made)
+    return tuple(cases)
 
 
 def _with_share(case: LoadCase, share: float) -> LoadCase:
@@ -631,15 +648,15 @@ def _load_case(value: Any, number: int) -> LoadCase:
     name = checked_text(str(entry.get("name", f"case {number}")), "name of a load case")
     where = f"case '{name}'"
     wrong = Collector()
-    made = {}
+    fields = {}
     for key, read in _OF_CASE.items():
         with wrong.part():
             if entry.get(key) is not None:
-                made[key] = read(entry[key], f"{where}.{key}")
+                fields[key] = read(entry[key], f"{where}.{key}")
     wrong.check()
-    if math.isfinite(made.get("curve_radius", math.inf)) and "speed" not in made:
+    if math.isfinite(fields.get("curve_radius", math.inf)) and "speed" not in fields:
         raise InputError(f"{where}.speed", None, "the speed in the curve", "Add speed: 1 m/s.")
-    return LoadCase(name, **made)
+    return LoadCase(name, **fields)
 
 
 def _angle(value: Any, where: str) -> float:
@@ -663,12 +680,12 @@ def _radius(value: Any, where: str) -> float:
 
 
 def _forces(value: Any, where: str) -> tuple[tuple[np.ndarray, np.ndarray], ...]:
-    made = []
-    for one in _list(value, where):
-        entry = _entries(one, where, ("force", "at"), "{force: [0, 50 N, 0], at: [0, 0, 200]}")
+    forces = []
+    for item in _list(value, where):
+        entry = _entries(item, where, ("force", "at"), "{force: [0, 50 N, 0], at: [0, 0, 200]}")
         force = _vector(entry.get("force"), f"{where}.force", "N", "three forces [x, y, z] in N", "Write [0, 50, 0].")
-        made.append((force, _vector(entry.get("at"), f"{where}.at", "mm", _POINT, _AT)))
-    return tuple(made)
+        forces.append((force, _vector(entry.get("at"), f"{where}.at", "mm", _POINT, _AT)))
+    return tuple(forces)
 
 
 def _share_of_payloads(value: Any, where: str) -> float:

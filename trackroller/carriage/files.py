@@ -120,10 +120,10 @@ def study_of(whole: Carriage, ds: xr.Dataset, table: str) -> tuple[dict[str, Any
         of_travel = (*OF_LOADS, OVERROLLINGS)
     units = {name: PARAMETERS[name].unit for name in (*varying, *of_travel) if name in PARAMETERS}
     heads = [*HEADS.split(","), *of_travel, *varying]
-    rows: list[list[Any]] = [[f"{name} [{units[name]}]" if units.get(name, "-") != "-" else name for name in heads]]
+    rows: list[list[Any]] = [[_head(name, units.get(name, "-")) for name in heads]]
     for (i, j), case in sorted(cases_of(whole, ds).items()):
         fields = [getattr(case, name) for name in (*of_travel, *varying)]
-        shown = [value if isinstance(value, str) else f"{value:.10g}" for value in fields]
+        shown = [_cell(value) for value in fields]
         names = [inert_cell(name) for name in (whole.cases[i].name, whole.rollers[j].name)]
         rows.append([*names, f"{whole.cases[i].share:.10g}", *shown])
     out = io.StringIO()
@@ -183,24 +183,38 @@ def _check_same_options(whole: Carriage) -> None:
                 raise InputError(f"rollers.{roller.name}.roller", f"{key}: {own}", allowed, "Change one of the files.")
 
 
+def _head(name: str, unit: str) -> str:
+    """Return the head of a column."""
+    if unit == "-":
+        return name
+    return f"{name} [{unit}]"
+
+
+def _cell(value: Any) -> str:
+    """Return a value of a case as the cell of a table."""
+    if isinstance(value, str):
+        return value
+    return f"{value:.10g}"
+
+
 def _shared(whole: Carriage) -> tuple[dict[str, Any], list[str]]:
     """Return what the files of all rollers say alike, and the fields in which the rollers differ."""
     given = [
         {key: value for key, value in parts_for_spectrum(roller.given)[0].items() if key not in OF_LOADS}
         for roller in whole.rollers
     ]
-    if all(one == given[0] for one in given):
+    if all(entry == given[0] for entry in given):
         return given[0], []
     cases = [roller.case for roller in whole.rollers if roller.case is not None]
     fields = [{key: value for key, value in case.as_dict().items() if key not in OF_LOADS} for case in cases]
-    varying = [key for key in fields[0] if any(one[key] != fields[0][key] for one in fields)]
+    varying = [key for key in fields[0] if any(entry[key] != fields[0][key] for entry in fields)]
     for key in varying:
         if key in MAPPING_FIELDS:
             allowed = "the same for all rollers"
             remedy = "Write the spectrum of each roller with --spectrum instead."
             raise InputError(key, None, allowed, remedy, "differs among the rollers")
-    told = {key for key in fields[0] if not all(key in case.not_given for case in cases)}
-    return {key: value for key, value in fields[0].items() if key in told and key not in varying}, varying
+    given_fields = {key for key in fields[0] if not all(key in case.not_given for case in cases)}
+    return {key: value for key, value in fields[0].items() if key in given_fields and key not in varying}, varying
 
 
 def _short(value: Any) -> float:

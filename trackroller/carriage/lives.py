@@ -67,8 +67,11 @@ class Lives:
         self.order = np.argsort(group, kind="stable")
         _, self.start = np.unique(group[self.order], return_index=True)
         self.first = self.order[self.start]
-        self.solved, self.counts = solved, np.diff(np.append(self.start, len(group)))
-        self.share, self.hours, self.time = share, hours[self.first], share / speed
+        self.counts = np.diff(np.append(self.start, len(group)))
+        self.solved = solved
+        self.share = share
+        self.hours = hours[self.first]
+        self.time = share / speed
         self.summed = self._summed()
         self.ruling, self.rank = self._judged()
 
@@ -78,17 +81,18 @@ class Lives:
 
     def life(self, values: np.ndarray, units: str) -> np.ndarray:
         """Return a life with the damage of all load cases; in hours by their time, otherwise by their travel."""
+        weight = self.share
+        whole = np.ones(len(self.first))
         if units == "h":
-            weight, whole = self.time, self.hours
-        else:
-            weight, whole = self.share, np.ones(len(self.first))
+            weight = self.time
+            whole = self.hours
         shape = (-1, *(1,) * (values.ndim - 1))
         damage = self.of(block_damage(weight.reshape(shape), values))
         return np.asarray(whole.reshape(shape) * repetitions_to_failure(damage))
 
     def _judged(self) -> tuple[np.ndarray, np.ndarray]:
         """Return the case that stands for each roller, and what ranks the rollers."""
-        regime = self.solved["regime"].values * (self.share > 0)
+        regime = np.where(self.share > 0, self.solved["regime"].values, 0)
         name = next(n for n in ("pair_life_to_first_limit_hours", "pair_life_hours") if n in self.solved)
         damage = np.nan_to_num(block_damage(self.time, self.solved[name].values), nan=0.0, posinf=1e300)
         if "max_pressure" in self.solved:
@@ -115,7 +119,9 @@ class Lives:
                 out[f"{body}_life_hours"] = life
             out["pair_life_hours"], first = first_failure(out["roller_life_hours"], out["guide_life_hours"])
             out["first_to_fail"] = first.astype(self.solved["first_to_fail"].dtype)
-        return out | (self._by_limit(out) if "life_hours_by_limit" in self.solved else {})
+        if "life_hours_by_limit" in self.solved:
+            out |= self._by_limit(out)
+        return out
 
     def _by_limit(self, out: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
         """Return the lives by limit and to the first one, and which one it is; fatigue adds up track by track."""

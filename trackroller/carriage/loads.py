@@ -33,13 +33,16 @@ def force_on(mass: PointMass, case: LoadCase) -> np.ndarray:
         Its motion. A curve is level: it accelerates each mass horizontally by omega^2 times its own horizontal
         radius, omega = v/R at the origin. On a canted track this acceleration has a part along z.
     """
-    up, tilt = case.gradient, case.cant
+    up = case.gradient
+    tilt = case.cant
     weight = GRAVITY * np.array([-np.sin(up), np.sin(tilt) * np.cos(up), -np.cos(tilt) * np.cos(up)])
-    left = np.array([0.0, np.cos(tilt), np.sin(tilt)])  # horizontal, across the track
+    across = np.array([0.0, np.cos(tilt), np.sin(tilt)])  # horizontal, to the left of the track
     inward = 0.0
     if np.isfinite(case.curve_radius) and case.speed is not None:
-        inward = case.speed**2 * (case.curve_radius - mass.at @ left) / case.curve_radius**2 * 1e3  # m/s2, radii in mm
-    return mass.value * (weight - np.array([case.acceleration, 0.0, 0.0]) - inward * left)
+        inward = (
+            case.speed**2 * (case.curve_radius - mass.at @ across) / case.curve_radius**2 * 1e3
+        )  # m/s2, radii in mm
+    return mass.value * (weight - np.array([case.acceleration, 0.0, 0.0]) - inward * across)
 
 
 @dataclass(frozen=True)
@@ -126,7 +129,9 @@ def loads_of(carriage: Carriage, case: LoadCase, swing: float = 0.0) -> Loads:
     payload = np.zeros(6)
     other = np.zeros(6)
     for of_payload, force, at in _all_forces(carriage, case):
-        wrench = wrench_at(force if swing == 0 else _turned(force, swing), at)
+        if swing != 0:
+            force = _turned(force, swing)
+        wrench = wrench_at(force, at)
         if of_payload:
             payload = payload + wrench
         else:

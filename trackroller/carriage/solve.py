@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -29,18 +30,20 @@ from trackroller.carriage.statics import (
 )
 from trackroller.carriage.strokes import passes_per_km
 from trackroller.contact.hertz import contact_modulus, unit_approach
-from trackroller.damage import verdict
+from trackroller.damage import LIMITS, verdict
 from trackroller.damage.miner import block_damage
 from trackroller.errors import InputError
 from trackroller.materials import load_database
-from trackroller.parameters import BODIES
+from trackroller.parameters import BODIES, MATERIAL_FIELDS
+from trackroller.parameters.example import used_of
 from trackroller.roller.case import Case, to_table
-from trackroller.roller.dataset import file_attributes, validity_bit
+from trackroller.roller.dataset import NOTES, file_attributes, validity_bit
 from trackroller.roller.doubts import doubts, ratings
 from trackroller.roller.duty import OVERROLLINGS, overrollings_per_hour, with_duty, years
 from trackroller.roller.geometry import contact_geometry
+from trackroller.roller.requirement import LIVES_OF_PAIR
 from trackroller.roller.settings import LOADS
-from trackroller.roller.stored_inputs import DOUBTS
+from trackroller.roller.stored_inputs import DOUBTS, MATERIALS, NOT_GIVEN, material_values, plain_inputs
 
 LIFE = "pair_life_to_first_limit_hours"
 CONVENTIONS = (
@@ -120,9 +123,12 @@ def solve_carriage(
     loads, swings = _loads(whole, springs)
     ds = _solution(whole, springs, loads, swings).assign(_margins(whole, springs, loads, advanced))
     ds.attrs[DOUBTS] = json.dumps(doubts_of_rollers(whole, ds))
-    if lives and (without := [roller.name for roller in whole.rollers if roller.case is None]):
-        return ds.assign_attrs(without_case=", ".join(without))
-    return with_lives(ds, whole) if lives else ds
+    without_case = [roller.name for roller in whole.rollers if roller.case is None]
+    if not lives:
+        return ds
+    if without_case:
+        return ds.assign_attrs(without_case=", ".join(without_case))
+    return with_lives(ds, whole)
 
 
 def forces_of(whole: Carriage) -> xr.Dataset:
@@ -151,8 +157,8 @@ def _loads(whole: Carriage, springs: Springs) -> tuple[list[Loads], np.ndarray]:
 
 def _solution(whole: Carriage, springs: Springs, loads: list[Loads], swings: np.ndarray) -> xr.Dataset:
     """Return the forces of the rollers as a data set with places, load cases and conventions."""
-    found = [_equilibrium(whole, springs, one, case.name) for one, case in zip(loads, whole.cases, strict=True)]
-    variables = _forces(whole, found, loads)
+    states = [_equilibrium(whole, springs, one, case.name) for one, case in zip(loads, whole.cases, strict=True)]
+    variables = _forces(whole, states, loads)
     variables |= _of_catalogue(whole, variables) | _places(whole)
     if springs.hinge is not None:
         long_name = "angle to which the carriage swings about its line of rollers, in whose axes the forces stand"
@@ -193,10 +199,10 @@ def springs_of(whole: Carriage, unknown: Sequence[float] = ()) -> Springs:
         turning = [np.cross(roller.at, getattr(roller, way)) / length for roller in rollers]
         return np.hstack([[getattr(roller, way) for roller in rollers], turning])[:, 1:]
 
-    made = [_compliance(roller) for roller in rollers]
+    compliances = [_compliance(roller) for roller in rollers]
     for j, compliance in zip(_unknown(whole), unknown, strict=False):
-        made[j] = (0.0, 1.0, (compliance, compliance))
-    contact, tangent, series = (np.array(column) for column in zip(*made, strict=True))
+        compliances[j] = (0.0, 1.0, (compliance, compliance))
+    contact, tangent, series = (np.array(column) for column in zip(*compliances, strict=True))
     springs = Springs(
         radial=rows("pushes"),
         axial=rows("axis"),
@@ -243,7 +249,8 @@ def _preloaded(springs: Springs, whole: Carriage) -> Springs:
     force, play = np.zeros((2, len(places)))
     for preload in whole.preloads:
         for name in preload.pair:
-            force[places[name]], play[places[name]] = preload.force, preload.play / 2
+            force[places[name]] = preload.force
+            play[places[name]] = preload.play / 2
     return replace(springs, offset=springs.approach(force) - play)
 
 
@@ -272,7 +279,7 @@ def _reduced(wrench: np.ndarray, springs: Springs) -> np.ndarray:
 def _equilibrium(whole: Carriage, springs: Springs, loads: Loads, name: str) -> Equilibrium:
     """Return the forces of the rollers in a load case; an error names the case."""
     try:
-        found = equilibrium(springs, _reduced(loads.all, springs))
+        state = equilibrium(springs, _reduced(loads.all, springs))
     except Moves as error:
         allowed = "loads that rollers which only press can carry"
         tips = "does not hold"
@@ -284,11 +291,11 @@ def _equilibrium(whole: Carriage, springs: Springs, loads: Loads, name: str) -> 
         )
         raise InputError("case", name, allowed, remedy, f"{tips} the carriage: it {error.motion}") from None
     unknown = _unknown(whole)
-    if unknown and not (is_determinate(springs, found) and _decided(whole, loads, found)):
+    if unknown and not (is_determinate(springs, state) and _decided(whole, loads, state)):
         needs = f"the stiffness, because the statics alone does not decide the forces in case '{name}'"
         where = f"rollers.{whole.rollers[unknown[0]].name}.roller"
         raise InputError(where, None, needs, "Add roller: FILE, or stiffness: 5e4.")
-    return found
+    return state
 
 
 def _unknown(whole: Carriage) -> list[int]:
@@ -296,7 +303,7 @@ def _unknown(whole: Carriage) -> list[int]:
     return [j for j, roller in enumerate(whole.rollers) if roller.case is None and roller.stiffness is None]
 
 
-def _decided(whole: Carriage, loads: Loads, found: Equilibrium) -> bool:
+def _decided(whole: Carriage, loads: Loads, state: Equilibrium) -> bool:
     """Return whether other values of the unknown stiffnesses give the same forces, and lift the same rollers."""
     steps = 10.0 ** -np.arange(float(len(_unknown(whole))))
     for compliance in (1e-5 * steps, 1e-5 * steps[::-1]):
@@ -305,8 +312,8 @@ def _decided(whole: Carriage, loads: Loads, found: Equilibrium) -> bool:
             other = equilibrium(springs, _reduced(loads.all, springs))
         except Moves:
             return False
-        near = 1e-6 * float(found.radial.max(initial=0.0))
-        if not (np.allclose(other.radial, found.radial, 0, near) and np.allclose(other.axial, found.axial, 0, near)):
+        near = 1e-6 * float(state.radial.max(initial=0.0))
+        if not (np.allclose(other.radial, state.radial, 0, near) and np.allclose(other.axial, state.axial, 0, near)):
             return False
     return True
 
@@ -315,29 +322,33 @@ def _attrs(units: str, long_name: str, symbol: str = "") -> dict[str, str]:
     return {"units": units, "long_name": long_name, "symbol": symbol}
 
 
-def _forces(whole: Carriage, found: list[Equilibrium], loads: list[Loads]) -> dict[str, Any]:
+def _forces(whole: Carriage, states: list[Equilibrium], loads: list[Loads]) -> dict[str, Any]:
     """Return the forces of rollers and drive, and what the file says of the load cases, as variables."""
-    settled = np.array([one.converged for one in found])[:, None]
-    radial = np.where(settled, -np.array([one.radial for one in found]), np.nan)
-    axial = np.where(settled, np.array([one.axial for one in found]), np.nan)
+    settled = np.array([state.converged for state in states])[:, None]
+    radial = np.where(settled, -np.array([state.radial for state in states]), np.nan)
+    axial = np.where(settled, np.array([state.axial for state in states]), np.nan)
     axial = np.where(np.abs(axial) <= ROUNDING * np.abs(radial).max(axis=1, keepdims=True), 0.0, axial)
-    speeds = [np.nan if case.speed is None else case.speed for case in whole.cases]
+    speeds = np.array([case.speed for case in whole.cases], dtype=float)  # None becomes NaN
     return {
         "radial_force": (_RC, np.where(radial == 0, 0.0, radial), _attrs("N", "radial force", "F_rad")),
         "axial_force": (_RC, axial, _attrs("N", "axial force", "F_ax")),
         "approach": (
             _RC,
-            np.where(settled, np.array([one.approach for one in found]), np.nan),
+            np.where(settled, np.array([state.approach for state in states]), np.nan),
             _attrs("mm", "approach of the roller to its rail"),
         ),
-        "drive_force": (_C, np.array([one.drive for one in loads]), _attrs("N", "force of the drive along the track")),
+        "drive_force": (
+            _C,
+            np.array([state.drive for state in loads]),
+            _attrs("N", "force of the drive along the track"),
+        ),
         "converged": (
             _C,
-            np.array([one.converged for one in found]),
+            np.array([state.converged for state in states]),
             {"long_name": "whether the forces are an equilibrium of the rollers"},
         ),
         "share": (_C, np.array([case.share for case in whole.cases]), _attrs("1", "share of the travel")),
-        "speed": (_C, np.array(speeds), _attrs("m s-1", "speed")),
+        "speed": (_C, speeds, _attrs("m s-1", "speed")),
     }
 
 
@@ -363,8 +374,11 @@ def _margins(
     whole: Carriage, springs: Springs, loads: list[Loads], advanced: Callable[[int], object]
 ) -> dict[str, Any]:
     """Return the multipliers of payload and of all loads to one contact, to lift-off and to tipping."""
-    angles = [np.nan if roller.case is None else roller.case.contact_angle for roller in whole.rollers]
-    tangent = np.tan(np.radians(np.array(angles, dtype=float)))
+    angles = np.full(len(whole.rollers), np.nan)
+    for j, roller in enumerate(whole.rollers):
+        if roller.case is not None:
+            angles[j] = roller.case.contact_angle
+    tangent = np.tan(np.radians(angles))
     out: dict[str, list[float]] = {}
     for one in loads:
         payload, other = (_reduced(part, springs) for part in (one.payload, one.other))
@@ -412,7 +426,7 @@ def _of_catalogue(whole: Carriage, variables: Mapping[str, Any]) -> dict[str, An
 
 def cases_of(whole: Carriage, ds: xr.Dataset) -> dict[tuple[int, int], Case]:
     """Return the `Case` of each roller that carries load, by the numbers of load case and roller."""
-    made = {}
+    cases = {}
     passes = passes_per_km(whole)
     for i, j in np.argwhere(ds["radial_force"].values < 0).tolist():
         speed = whole.cases[i].speed
@@ -423,8 +437,8 @@ def cases_of(whole: Carriage, ds: xr.Dataset) -> dict[tuple[int, int], Case]:
                 loads["velocity"] = 60 * speed
             if np.isfinite(passes[j]):
                 loads[OVERROLLINGS] = float(overrollings_per_hour(passes[j], loads["velocity"]))
-            made[i, j] = replace(case, **loads)
-    return made
+            cases[i, j] = replace(case, **loads)
+    return cases
 
 
 def doubts_of_rollers(whole: Carriage, ds: xr.Dataset) -> list[str]:
@@ -443,8 +457,9 @@ def doubts_of_rollers(whole: Carriage, ds: xr.Dataset) -> list[str]:
         known = doubts(values, (database.material(values[f"{body}_material"]) for body in BODIES))
         for text in [*known, *_doubted_ratings(roller, ds["radial_force"].values[:, j])]:
             by_text.setdefault(text, []).append(roller.name)
-    one = len(whole.rollers) == 1
-    return [text if one else f"Roller {', '.join(names)}: {text}" for text, names in by_text.items()]
+    if len(whole.rollers) == 1:
+        return list(by_text)
+    return [f"Roller {', '.join(names)}: {text}" for text, names in by_text.items()]
 
 
 def _doubted_ratings(roller: MountedRoller, radial: np.ndarray) -> Iterator[str]:
@@ -461,10 +476,13 @@ def _doubted_ratings(roller: MountedRoller, radial: np.ndarray) -> Iterator[str]
 
 
 def _unused_loads(roller: MountedRoller) -> Iterator[str]:
-    """Yield a sentence for each force in the file of a roller, whose place the loads of the carriage take."""
+    """Yield a sentence for each force in the file of a roller, and for each requirement, that does not count."""
     for name in LOADS:
         if name in roller.given:
             yield f"{name} = {roller.given[name]} in its file does not count: the carriage gives it. Remove it there."
+    for name, own in roller.required.items():
+        if name not in LIVES_OF_PAIR or math.isfinite(own.most):
+            yield f"requirement.{name} in its file is not judged: of a carriage only a smallest life is."
 
 
 def _flags(solved: xr.Dataset) -> np.ndarray:
@@ -519,6 +537,7 @@ def with_lives(ds: xr.Dataset, whole: Carriage, solve: Callable[..., xr.Dataset]
     ends = np.full((n, 2), "", dtype=object)  # body and limit
     flags: Mapping[str, Any] = {}
     cases = cases_of(whole, ds)
+    checks = _Checks(n)
     groups: dict[str, list[tuple[int, int]]] = {}
     for place in cases:
         groups.setdefault(repr(whole.rollers[place[1]].options), []).append(place)
@@ -534,7 +553,9 @@ def with_lives(ds: xr.Dataset, whole: Carriage, solve: Callable[..., xr.Dataset]
         for end in lasts:
             lasts[end][j[lives.first]] = lives.summed[f"{LIFE}{end}"]
         ends[j[lives.first]] = _first_ends(lives, solved)
-        case_hours[i, j], regime[i, j] = solved[LIFE].values, solved["regime"].values
+        checks.add(j[lives.first], lives, solved)
+        case_hours[i, j] = solved[LIFE].values
+        regime[i, j] = solved["regime"].values
         flagged[i, j] = _flags(solved)
         damage[i, j] = block_damage(lives.time, solved[LIFE].values)  # of a km of travel
     meanings = {**flags, "flag_values": np.append(np.int8(-1), np.asarray(flags.get("flag_values", []), dtype=np.int8))}
@@ -563,8 +584,101 @@ def with_lives(ds: xr.Dataset, whole: Carriage, solve: Callable[..., xr.Dataset]
             years(lasts[""], whole.duty),
             _attrs("year", "years of the duty to the first limit"),
         )
+    database = load_database()
+    materials = [material_values(roller.case, database) for roller in whole.rollers if roller.case is not None]
+    variables |= checks.variables() | _inputs_of_rollers(whole, materials, pace)
     known = np.where(np.isnan(travel), np.inf, travel)
     worst = ""
     if np.isfinite(known).any():
         worst = ds["roller"].values[int(np.argmin(known))]
-    return ds.assign(variables).assign_attrs(worst_roller=str(worst))
+    attrs = checks.attributes() | {NOT_GIVEN: json.dumps(_not_given(whole))}
+    attrs |= {MATERIALS: json.dumps(_each_once(materials), default=str)}
+    return ds.assign(variables).assign_attrs(attrs, worst_roller=str(worst))
+
+
+class _Checks:
+    """The limits of the rollers of a carriage over their load cases.
+
+    Parameters
+    ----------
+    number : int
+        Rollers of the carriage; the limits of a roller that is never loaded are not known.
+    """
+
+    def __init__(self, number: int) -> None:
+        shape = (number, len(LIMITS), len(BODIES))
+        self.names = list(LIMITS)
+        self.used, self.hours = np.full(shape, np.nan), np.full(shape, np.nan)
+        self.state = np.zeros(shape, dtype=np.int8)
+        self.asked: list[str] = []
+        self.notes: list[str] = []
+
+    def add(self, rollers: np.ndarray, lives: Lives, solved: xr.Dataset) -> None:
+        """Take the limits of rollers that were solved together; one that is unknown in a load case is not known."""
+        places = [self.names.index(name) for name in solved["limit"].values.tolist()]
+        state = lives.summed["limit_state"].copy()
+        shares = (lives.share == 0)[:, None, None]
+        least = lives.of(np.where(shares, len(verdict.STATES), solved["limit_state"].values), np.minimum)
+        exceeded = verdict.STATES.index("exceeded")
+        state[(least == verdict.STATES.index("unknown")) & (state != exceeded)] = verdict.STATES.index("unknown")
+        into = np.ix_(rollers, np.array(places))
+        self.state[into] = state
+        self.used[into], self.hours[into] = lives.summed["utilisation"], lives.summed["life_hours_by_limit"]
+        self.asked += [name for name in solved["limit"].values.tolist() if name not in self.asked]
+        self.notes += [line for line in str(solved.attrs.get(NOTES, "")).split("\n") if line and line not in self.notes]
+
+    def variables(self) -> dict[str, Any]:
+        """Return utilisation, hours and state of each limit as variables, with their labels."""
+        dims = ("roller", "limit", "body")
+        flags = {
+            "flag_values": np.arange(len(verdict.STATES), dtype=np.int8),
+            "flag_meanings": " ".join(verdict.STATES),
+            "long_name": "whether the limit is kept over the load cases",
+        }
+        alone = _attrs("h", "hours of travel to the limit, with the damage of all load cases")
+        return {
+            "limit": ("limit", self.names, {"long_name": "limit"}),
+            "body": ("body", list(BODIES), {"long_name": "body"}),
+            "utilisation": (dims, self.used, _attrs("1", "largest utilisation over the load cases")),
+            "life_hours_by_limit": (dims, self.hours, alone),
+            "limit_state": (dims, self.state, flags),
+        }
+
+    def attributes(self) -> dict[str, str]:
+        """Return which limits were asked for, and what they lack, as attributes."""
+        return {"limits": " ".join(self.asked), NOTES: "\n".join(self.notes)}
+
+
+def _inputs_of_rollers(whole: Carriage, materials: list[dict[str, Any]], pace: np.ndarray) -> dict[str, Any]:
+    """Return the materials of the rollers, and the life that their files require, as variables.
+
+    A required travel is one of the carriage, which takes `pace` hours a km, (n,).
+    """
+    required = np.full(len(whole.rollers), np.nan)
+    for j, roller in enumerate(whole.rollers):
+        least = [own.least for name, own in roller.required.items() if name in LIVES_OF_PAIR]
+        travel = None if roller.case is None else roller.case.required_travel
+        if travel is not None:
+            least.append(float(travel * pace[j]))
+        required[j] = max(filter(math.isfinite, least), default=math.nan)
+    names: dict[str, Any] = {
+        field: (_R, [str(own[field]["name"]) for own in materials], {}) for field in MATERIAL_FIELDS
+    }
+    return names | {"required_hours": (_R, required, _attrs("h", "life that the file of the roller requires"))}
+
+
+def _each_once(materials: list[dict[str, Any]]) -> dict[str, Any]:
+    """Return the values of the materials of all rollers and rails, those of equal pairs once."""
+    pairs = {json.dumps(own, sort_keys=True, default=str): own for own in materials}
+    return {f"{name}_{k}": values for k, own in enumerate(pairs.values()) for name, values in own.items()}
+
+
+def _not_given(whole: Carriage) -> dict[str, Any]:
+    """Return the values of rollers that nobody gave and that the carriage does not give, by name."""
+    stated = {*LOADS, "travel"}
+    if all(case.speed is not None for case in whole.cases):
+        stated |= {"velocity"}
+    found: dict[str, Any] = {}
+    for case in (roller.case for roller in whole.rollers if roller.case is not None):
+        found |= used_of(plain_inputs(case), [name for name in case.not_given if name not in stated])
+    return found

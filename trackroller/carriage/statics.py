@@ -107,9 +107,10 @@ class Springs:
         pressed = np.maximum(approach, 0.0)
         with np.errstate(divide="ignore", invalid="ignore"):
             root = np.fmin(np.sqrt(pressed / self.contact), np.cbrt(pressed / self.radial_compliance))
-            for _ in range(
-                60 if self._mixed else 0
-            ):  # from above: the approach is a convex function of the cube root of the force
+            steps = 0
+            if self._mixed:
+                steps = 60
+            for _ in range(steps):  # from above: the approach is a convex function of the cube root of the force
                 over = self.contact * root**2 + self.radial_compliance * root**3 - pressed
                 slope = 2 * self.contact * root + 3 * self.radial_compliance * root**2
                 step = np.where(pressed > 0, over / slope, 0.0)
@@ -231,10 +232,10 @@ def equilibrium(
     radial = np.full(springs.locating.shape, size / springs.locating.size)
     moves: Moves | None = None
     while True:
-        found = _settled(springs, visited[-1], wrench, size, radial, start)
-        if fulfils(springs, wrench, found):
-            return found
-        carries = springs.locating & found.loaded
+        state = _settled(springs, visited[-1], wrench, size, radial, start)
+        if fulfils(springs, wrench, state):
+            return state
+        carries = springs.locating & state.loaded
         if any((carries == other).all() for other in visited):
             break
         try:
@@ -243,18 +244,18 @@ def equilibrium(
             moves = error
             break
         visited.append(carries)
-        radial = np.maximum(found.radial, 1e-6 * size)
+        radial = np.maximum(state.radial, 1e-6 * size)
     other = None
     if thorough:
-        other = _searched(springs, wrench, size, found.start, visited)
+        other = _searched(springs, wrench, size, state.start, visited)
     if other is not None:
         return other
     if moves is not None:
         raise moves
-    return replace(found, converged=False)
+    return replace(state, converged=False)
 
 
-def fulfils(springs: Springs, wrench: np.ndarray, found: Equilibrium) -> bool:
+def fulfils(springs: Springs, wrench: np.ndarray, state: Equilibrium) -> bool:
     """Return whether a state is an equilibrium of the rollers.
 
     Notes
@@ -263,19 +264,19 @@ def fulfils(springs: Springs, wrench: np.ndarray, found: Equilibrium) -> bool:
     force, and each force is that of its springs at the displacement.
     """
     size = _size(springs, wrench)
-    rest = wrench - springs.radial.T @ found.radial - springs.axial.T @ found.axial
-    radial, _ = springs.force(springs.offset + springs.radial @ found.start)
-    carries = springs.locating & found.loaded
-    stiffness = springs.axial_stiffness(np.maximum(found.radial, UNLOADED))
-    axial = np.where(carries, stiffness * (springs.axial @ found.start), 0.0)
+    residual = wrench - springs.radial.T @ state.radial - springs.axial.T @ state.axial
+    radial, _ = springs.force(springs.offset + springs.radial @ state.start)
+    carries = springs.locating & state.loaded
+    stiffness = springs.axial_stiffness(np.maximum(state.radial, UNLOADED))
+    axial = np.where(carries, stiffness * (springs.axial @ state.start), 0.0)
     largest = max(size, float(radial.max()), float(np.abs(axial).max()))
     return bool(
-        found.converged
-        and (found.radial >= 0).all()
-        and not found.axial[~carries].any()
-        and np.abs(rest).max() <= BALANCED * largest
-        and np.abs(found.radial - radial).max() <= SETTLED * largest
-        and np.abs(found.axial - axial).max() <= SETTLED * largest
+        state.converged
+        and (state.radial >= 0).all()
+        and not state.axial[~carries].any()
+        and np.abs(residual).max() <= BALANCED * largest
+        and np.abs(state.radial - radial).max() <= SETTLED * largest
+        and np.abs(state.axial - axial).max() <= SETTLED * largest
     )
 
 
@@ -298,9 +299,9 @@ def _searched(
     for carries in _other_sets(springs, visited):
         if not _can_balance(springs, carries, wrench):
             continue
-        found = _from_start(springs, carries, wrench, size, _stiff_place(springs, carries, wrench, size))
-        if fulfils(springs, wrench, found):
-            return found
+        state = _from_start(springs, carries, wrench, size, _stiff_place(springs, carries, wrench, size))
+        if fulfils(springs, wrench, state):
+            return state
     return None
 
 
@@ -316,16 +317,16 @@ def _enumerated(springs: Springs, wrench: np.ndarray, size: float, place: np.nda
     ]
     curve = np.tensordot(sets, shares[0] + shares[1], 1)
     approach = springs.offset + springs.radial @ place
-    rest = wrench - (sets * (stiffness * approach)) @ springs.radial
-    rest -= (sets * (of_axial * (springs.axial @ place))) @ springs.axial
+    residuals = wrench - (sets * (stiffness * approach)) @ springs.radial
+    residuals -= (sets * (of_axial * (springs.axial @ place))) @ springs.axial
     damping = 1e-14 * np.trace(curve[-1])  # where a set leaves the carriage free, it moves as little as possible
-    step = np.linalg.solve(curve + damping * np.eye(len(wrench)), rest[:, :, None])[:, :, 0]
+    step = np.linalg.solve(curve + damping * np.eye(len(wrench)), residuals[:, :, None])[:, :, 0]
     forces = stiffness * (approach + step @ springs.radial.T)
     good = (np.where(sets, forces, -forces) >= -TOUCHES * size).all(axis=1)
     for i in np.flatnonzero(good)[np.argsort(-sets[good].sum(axis=1), kind="stable")]:
-        found = _state(springs, sets[i] & springs.locating, wrench, size, place + step[i], True)
-        if fulfils(springs, wrench, found):
-            return found
+        state = _state(springs, sets[i] & springs.locating, wrench, size, place + step[i], True)
+        if fulfils(springs, wrench, state):
+            return state
     return None
 
 
@@ -388,8 +389,8 @@ def _check_balance(springs: Springs, carries: np.ndarray, wrench: np.ndarray) ->
     """Raise `Moves` if forces of the rollers that only press cannot balance a wrench."""
     axial = springs.axial[carries]
     columns = np.vstack([springs.radial, axial, -axial]).T
-    forces, rest = nnls(columns, wrench)
-    if rest > _INFEASIBLE * max(1e-30, float(np.abs(wrench).max())):
+    forces, residual = nnls(columns, wrench)
+    if residual > _INFEASIBLE * max(1e-30, float(np.abs(wrench).max())):
         raise Moves(motion_of(springs.basis @ (wrench - columns @ forces)))
 
 
@@ -403,7 +404,7 @@ def _settled(
         start = _minimum(springs.linear_at(size / radial.size), stiffness, wrench, np.zeros(len(wrench)), size)
     place = start
     converged = not (carries.any() and springs.contact.any())
-    for turn in range(1 if converged else MOST_PASSES):
+    for turn in range(MOST_PASSES):
         place = _minimum(springs, stiffness, wrench, place, size)
         if converged or turn not in NEWTON:
             coupled = None
@@ -415,7 +416,10 @@ def _settled(
             break
         new, _ = springs.force(springs.offset + springs.radial @ place)
         change = np.abs(new - radial).max()
-        radial = new if turn < 12 else (new + radial) / 2
+        if turn < 12:
+            radial = new
+        else:
+            radial = (new + radial) / 2
         stiffness = np.where(carries, springs.axial_stiffness(np.maximum(radial, least)), 0.0)
         converged = converged or bool(change <= 1e-9 * size)
         if converged:
@@ -454,9 +458,9 @@ def _coupled_forces(
         slide = springs.axial @ place
         stiffness = np.where(carries, springs.axial_stiffness(pressed), 0.0)
         slope = np.where(carries & (force > least), springs.axial_slope(pressed) * radial_stiffness, 0.0)
-        rest = springs.radial.T @ force + springs.axial.T @ (stiffness * slide) - wrench
+        residual = springs.radial.T @ force + springs.axial.T @ (stiffness * slide) - wrench
         curve = (springs.radial.T * radial_stiffness) @ springs.radial + (springs.axial.T * stiffness) @ springs.axial
-        return rest, curve + (springs.axial.T * (slope * slide)) @ springs.radial
+        return residual, curve + (springs.axial.T * (slope * slide)) @ springs.radial
 
     return at
 
@@ -469,22 +473,24 @@ def _coupled(
     None if the method does not come closer from `place`.
     """
     at = _coupled_forces(springs, carries, wrench, 1e-6 * size)
-    rest, curve = at(place)
-    norm = float(np.abs(rest).max())
+    residual, curve = at(place)
+    norm = float(np.abs(residual).max())
     for _ in range(MOST_STEPS):
         if norm <= 1e-11 * size:
             return place
         try:
-            step = np.linalg.solve(curve, -rest)
+            step = np.linalg.solve(curve, -residual)
         except np.linalg.LinAlgError:
             return None
         for share in (1.0, 0.5, 0.25, 0.125):
-            rest, curve = at(place + share * step)
-            new = float(np.abs(rest).max())
+            residual, curve = at(place + share * step)
+            new = float(np.abs(residual).max())
             if new < (1 - 0.1 * share) * norm:
                 break
         else:
-            return place if norm <= 1e-9 * size else None  # rounding ends the decrease
+            if norm <= 1e-9 * size:  # rounding ends the decrease
+                return place
+            return None
         place = place + share * step
         norm = new
     return None
@@ -503,7 +509,8 @@ def _minimum(
         slope = springs.radial.T @ force + of_axial @ place - wrench
         return energy, slope, (springs.radial.T * stiffness) @ springs.radial + of_axial
 
-    (energy, slope, curve), damping = at(place), 1e-12
+    energy, slope, curve = at(place)
+    damping = 1e-12
     for _ in range(400):
         if np.abs(slope).max() <= 1e-12 * size or damping > 1e4:
             break
@@ -515,7 +522,9 @@ def _minimum(
         if not flat and abs(float(slope @ step)) <= 1e-15 * abs(energy):
             break
         if better or flat:  # close to the minimum, rounding hides the decrease of the energy
-            place, (energy, slope, curve), damping = place + step, new, max(damping / 30, 1e-14)
+            place = place + step
+            energy, slope, curve = new
+            damping = max(damping / 30, 1e-14)
         else:
             damping *= 10
     return place
@@ -528,9 +537,9 @@ def _balanced(
     loaded = radial > 0
     rows = np.vstack([springs.radial[loaded], springs.axial[carries]])
     for _ in range(2):
-        rest = wrench - springs.radial.T @ radial - springs.axial.T @ axial
+        residual = wrench - springs.radial.T @ radial - springs.axial.T @ axial
         if rows.size:
-            change = np.linalg.lstsq(rows.T, rest, rcond=1e-12)[0]
+            change = np.linalg.lstsq(rows.T, residual, rcond=1e-12)[0]
         else:
             change = np.zeros(0)
         radial = radial.copy()
@@ -540,9 +549,9 @@ def _balanced(
     return np.maximum(radial, 0.0), axial
 
 
-def is_determinate(springs: Springs, found: Equilibrium) -> bool:
+def is_determinate(springs: Springs, state: Equilibrium) -> bool:
     """Return whether the sums of forces and moments give all forces of the rollers, whatever their stiffness is."""
-    rows = np.vstack([springs.radial[found.loaded], springs.axial[springs.locating & found.loaded]])
+    rows = np.vstack([springs.radial[state.loaded], springs.axial[springs.locating & state.loaded]])
     return rows.size == 0 or np.linalg.matrix_rank(rows, tol=1e-9) == len(rows)
 
 
@@ -572,11 +581,11 @@ def multipliers(springs: Springs, fixed: np.ndarray, varying: np.ndarray) -> tup
     def lowest(multiplier: float) -> float:
         """Return the smallest approach of the rollers that carry load; below 0 where they do not carry all loads."""
         try:
-            found = equilibrium(springs, fixed + multiplier * varying, given.start, searched)
+            state = equilibrium(springs, fixed + multiplier * varying, given.start, searched)
         except Moves:
             return -springs.length
-        smallest = float(found.approach[watched].min())
-        if found.converged:
+        smallest = float(state.approach[watched].min())
+        if state.converged:
             return smallest
         return min(smallest, -1e-12 * springs.length)
 
@@ -619,16 +628,16 @@ def to_one_contact(
     def spare(multiplier: float) -> float:
         """Return the smallest axial force that is left [N], of the rollers that carry load."""
         try:
-            found = equilibrium(springs, fixed + multiplier * varying)
+            state = equilibrium(springs, fixed + multiplier * varying)
         except Moves:
             return -1.0
-        if not found.converged:
+        if not state.converged:
             return -1.0
-        own = known & found.loaded
-        left = found.radial[own] * tangent[own] - np.abs(found.axial[own])
-        if own.any():
-            return float(left.min(initial=np.inf))
-        return -1.0
+        loaded = known & state.loaded
+        if not loaded.any():
+            return -1.0
+        unused = state.radial[loaded] * tangent[loaded] - np.abs(state.axial[loaded])
+        return float(unused.min(initial=np.inf))
 
     steps = np.geomspace(1.0, max(min(lift_off, LARGEST_MULTIPLIER), 1.0) * (1 - 1e-9), 25)
     if spare(1.0) <= 0:
@@ -661,7 +670,9 @@ def _tipping(springs: Springs, fixed: np.ndarray, varying: np.ndarray, holds: Ca
         b_eq=fixed / size,
         bounds=[(0, None)] * n + [(None, None)] * len(axial) + [(0, LARGEST_MULTIPLIER)],
     )
-    bound = float(most.x[-1]) if most.success else 1.0
+    bound = 1.0
+    if most.success:
+        bound = float(most.x[-1])
     if holds(bound * (1 - 1e-7)):
         if bound >= LARGEST_MULTIPLIER * (1 - 1e-9):
             return np.inf
@@ -670,7 +681,7 @@ def _tipping(springs: Springs, fixed: np.ndarray, varying: np.ndarray, holds: Ca
     while high > low * (1 + 1e-6):
         middle = np.sqrt(low * high)
         if holds(middle):
-            low, high = middle, high
+            low = middle
         else:
-            low, high = low, middle
+            high = middle
     return low

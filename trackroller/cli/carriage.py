@@ -98,10 +98,12 @@ def _write_example(file: Path | None, out: Path | None, others: Mapping[str, obj
     """Write or print the example; a file that is there stays."""
     from trackroller.carriage.example import EXAMPLE
 
-    more = [str(file)] * (file is not None) + [name for name, value in others.items() if value]
-    if more:
+    beside = [name for name, value in others.items() if value]
+    if file is not None:
+        beside.insert(0, str(file))
+    if beside:
         remedy = f"Write the example first: {START.format('shuttle.yaml')}"
-        raise InputError("--example", more[0], "nothing but -o beside it", remedy, "stands beside it")
+        raise InputError("--example", beside[0], "nothing but -o beside it", remedy, "stands beside it")
     if out is None:
         print(EXAMPLE, end="")
         return
@@ -142,7 +144,7 @@ def _target(out: Path | None, spectrum: str | None, study: bool) -> Path | None:
     option = "--spectrum"
     if spectrum is None:
         option = "--study"
-    if out is None or out.suffix.lower() not in YAML:
-        allowed = f"a file whose name ends in .yaml, which {option} writes"
-        raise InputError("--out", None if out is None else str(out), allowed, "Add -o shift.yaml.")
-    return writable(out)
+    if out is not None and out.suffix.lower() in YAML:
+        return writable(out)
+    allowed = f"a file whose name ends in .yaml, which {option} writes"
+    raise InputError("--out", out and str(out), allowed, "Add -o shift.yaml.")

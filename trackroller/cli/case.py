@@ -111,17 +111,17 @@ def _served(case: Case, options: Mapping[str, Any]) -> tuple[str, ...]:
     from trackroller.roller.options import Options
     from trackroller.roller.stages.outcome import solved_of, to_compute  # heavy: as above
 
-    wanted = Options(**{**options, "outputs": ("limits",)})
-    limits = to_compute(solved_of(to_table(case), {}, wanted), wanted)
+    of_limits = Options(**{**options, "outputs": ("limits",)})
+    limits = to_compute(solved_of(to_table(case), {}, of_limits), of_limits)
     return tuple(limit.group for limit in limits)
 
 
-def solve_case(case: Case, options: Mapping[str, Any], beside: Mapping[str, Any], **more: Any) -> xr.Dataset:
-    """Solve a case with what `case_of` returned beside it; `more` are further options of `solve`."""
+def solve_case(case: Case, options: Mapping[str, Any], beside: Mapping[str, Any], **further: Any) -> xr.Dataset:
+    """Solve a case with what `case_of` returned beside it; `further` are other options of `solve`."""
     tell_doubts(case)
     from trackroller.roller.solver import solve  # heavy: xarray and dask
 
-    return with_beside(solve(case, **{**options, **more}), beside)
+    return with_beside(solve(case, **{**options, **further}), beside)
 
 
 def writable(out: Path) -> Path:
@@ -182,7 +182,8 @@ def write_yaml_file(target: Path, values: Mapping[str, Any], comment: str = "") 
 
     A `comment` is a line below the mark.
     """
-    write_text(target, "\n".join([BY_US, *([comment] if comment else []), write_yaml(values)]))
+    parts = [BY_US, comment, write_yaml(values)]
+    write_text(target, "\n".join(part for part in parts if part))
 
 
 def free_for_page(page: Path) -> None:
@@ -225,8 +226,11 @@ def _options(given: Case, options: Mapping[str, Any], limits: str | None, sheet:
         return {}
     if limits is not None:
         return {"outputs": (*COMPLETE[:2], *groups_of(limits)), "not_checked": _left_out(limits)}
-    own = dict.fromkeys((*(SHEET_OUTPUTS if sheet else COMPLETE), "limits", *_served(given, options)))
-    return {"outputs": tuple(own)}
+    shown: tuple[str, ...] = COMPLETE
+    if sheet:
+        shown = SHEET_OUTPUTS
+    outputs = dict.fromkeys((*shown, "limits", *_served(given, options)))
+    return {"outputs": tuple(outputs)}
 
 
 def _target(out: Path | None) -> Path | None:
@@ -243,6 +247,13 @@ def _page(sheet: Path | None) -> Path | None:
     if sheet is None:
         return None
     return writable_page(sheet)
+
+
+def _name(case: Path | None) -> str:
+    """Return the name of a case for its page; an example without a file has none."""
+    if case is None:
+        return ""
+    return case.stem
 
 
 def solve_and_tell(  # noqa: PLR0913 - one argument for each option of the command
@@ -280,7 +291,7 @@ def solve_and_tell(  # noqa: PLR0913 - one argument for each option of the comma
     from trackroller.report.pages.sheet import print_facts, print_limits, write_sheet
 
     if page is not None:
-        write_sheet(dataset, page, case.stem if case is not None else "")
+        write_sheet(dataset, page, _name(case))
     shows_limits = limits is not None and not is_failed(dataset)
     if as_json:
         print(json_of(dataset))
@@ -317,9 +328,13 @@ def _find_and_tell(
     tell_doubts(case)
     from trackroller.roller.find import find  # heavy: xarray and dask
 
-    found = find(case, name, condition, **{key: value for key, value in options.items() if key != "outputs"})
-    print(json.dumps(found.as_dict(), allow_nan=False) if as_json else found.text)
-    return 0 if found.met else 1
+    settings_of_solve = {key: value for key, value in options.items() if key != "outputs"}
+    range_ = find(case, name, condition, **settings_of_solve)
+    if as_json:
+        print(json.dumps(range_.as_dict(), allow_nan=False))
+    else:
+        print(range_.text)
+    return int(not range_.met)
 
 
 def run_spectrum(file: Path | None, as_json: bool, out: Path | None, report: Path | None, log: Path | None) -> None:
@@ -395,7 +410,6 @@ def run_wear(
     from trackroller.report.pages.record import print_record
     from trackroller.report.pages.wear import write_wear
     from trackroller.results.wear_answer import answer_of_wear
-    from trackroller.roller.duty import with_duty
     from trackroller.roller.wear import wear
     from trackroller.study.store.netcdf import read_netcdf
 
@@ -417,7 +431,7 @@ def run_wear(
     dataset = wear(new, to, resume=before, tell=tell, **options)
     if target is not None:
         write_result(dataset, target)
-    worn = with_duty(dataset, beside.get("duty"))
+    worn = with_beside(dataset, beside)
     if page is not None:
         write_wear(worn, page)
     print_record(answer_of_wear(worn))

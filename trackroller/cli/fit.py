@@ -40,29 +40,29 @@ def fit_sn(  # noqa: PLR0913 - one argument for each option of the command
     """Fit an S-N line to coupons (columns amplitude, cycles, failed), and write the material and a page."""
     from trackroller.fit import coupons
 
-    made = coupons.fit_sn(
+    fit = coupons.fit_sn(
         table, name=name, load_type=load_type, stress_ratio=stress_ratio, group=group, slope=slope,
         scatter_in_cycles=scatter, like=like, prior=_priors(prior),
     )  # fmt: skip
-    _finish(made, file, replace, report)
+    _finish(fit, file, replace, report)
 
 
-def _finish(made: Fit, file: Path, replace: bool, page: Path | None) -> None:
+def _finish(fit: Fit, file: Path, replace: bool, page: Path | None) -> None:
     """Print what was fitted, and write material, posterior and page."""
     from trackroller.cli.case import writable_page
     from trackroller.files import all_or_none
     from trackroller.materials.file import slug
     from trackroller.report.pages.fit import sentences, write_fit
 
-    target = writable_page(page or Path(f"fit-{slug(made.name)}.html"))
-    for text in [*sentences(made), *made.notes, *made.not_given]:
+    target = writable_page(page or Path(f"fit-{slug(fit.name)}.html"))
+    for text in [*sentences(fit), *fit.notes, *fit.not_given]:
         print(text)
-    written = bool(set(made.material) - {"name", "like"}) and not made.unidentified
+    written = bool(set(fit.material) - {"name", "like"}) and not fit.unidentified
     with all_or_none(target):
-        write_fit(made, target)
+        write_fit(fit, target)
         if written:
-            made.write(file, replace=replace)
-            print(f"material '{made.name}' is in {file}")
+            fit.write(file, replace=replace)
+            print(f"material '{fit.name}' is in {file}")
     print(f"page: {target}")
 
 
@@ -94,10 +94,10 @@ def fit_bench(  # noqa: PLR0913 - one argument for each option of the command
     """
     from trackroller.fit import bench
 
-    made = bench.fit_bench(
+    fit = bench.fit_bench(
         table, values, name=name, body=body, slope=slope, scatter_in_cycles=scatter, like=like, prior=_priors(prior)
     )
-    _finish(made, file, replace, report)
+    _finish(fit, file, replace, report)
 
 
 @fit.command("wear")
@@ -165,14 +165,16 @@ def fit_next(  # noqa: PLR0913 - one argument for each option of the command
 
     if until is not None:
         check_factor(until)
-    made = fitted(table, values, body=body, slope=slope, scatter_in_cycles=scatter)
+    fit = fitted(table, values, body=body, slope=slope, scatter_in_cycles=scatter)
     study = load_study(candidates)
-    own = read_mapping(design, "case file")
-    found = next_tests(made, study.design(), own, tests, longest=math.inf if longest is None else longest)
-    heads, rows = next_rows(found)
+    case = read_mapping(design, "case file")
+    if longest is None:
+        longest = math.inf
+    plan = next_tests(fit, study.design(), case, tests, longest=longest)
+    heads, rows = next_rows(plan)
     print_table(heads, rows)
-    said = next_sentences(found)
+    sentences = next_sentences(plan)
     if until is not None:
-        said += until_sentences(tests_until(made, found, until), until)
-    for text in said:
+        sentences += until_sentences(tests_until(fit, plan, until), until)
+    for text in sentences:
         print(text)

@@ -53,8 +53,8 @@ StudyFile = Annotated[Path, typer.Argument(help="study file (YAML)", show_defaul
 AnyStudy = Annotated[str, typer.Argument(help="study file, or name of a study that was run", show_default=False)]
 
 
-def _version(wanted: bool) -> None:
-    if wanted:
+def _version(asked_for: bool) -> None:
+    if asked_for:
         typer.echo(f"trackroller {__version__}")
         raise typer.Exit
 
@@ -363,7 +363,17 @@ def _plain(error: UnicodeError) -> tuple[str, int]:
 
 def _plain_sign(sign: str) -> str:
     parts = unicodedata.normalize("NFKD", sign)  # a superscript 2 becomes 2, a letter loses its accent
-    return SIGNS.get(sign) or "".join(SIGNS.get(part, part if part.isascii() else "") for part in parts) or "?"
+    if sign in SIGNS:
+        return SIGNS[sign]
+    return "".join(_ascii_sign(part) for part in parts) or "?"
+
+
+def _ascii_sign(sign: str) -> str:
+    if sign in SIGNS:
+        return SIGNS[sign]
+    if sign.isascii():
+        return sign
+    return ""
 
 
 def _tell(line: str, code: int) -> int:

@@ -44,7 +44,9 @@ def _print_rows(rows_of: Callable[..., list[dict[str, str]]], *names: str) -> No
     from trackroller.report.terminal import print_table
 
     rows = rows_of(load_database(), *names)
-    heads = list(rows[0] if rows else ())
+    heads: list[str] = []
+    if rows:
+        heads = list(rows[0])
     print_table(heads, [[row.get(head, "") for head in heads] for row in rows])
 
 

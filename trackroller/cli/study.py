@@ -109,21 +109,32 @@ def print_explorer(study: str, results: Path, out: Path | None) -> None:
     from trackroller.report.explorer.page import write_explorer
     from trackroller.results.stored_study import open_study
 
-    found = find_folder(study, results)
-    if found is None and Path(study).exists():
+    path = results / study
+    folder_of_study = find_folder(study, results)
+    if folder_of_study is not None:
+        path = folder_of_study.root
+    elif Path(study).exists():
         path = Path(study)
-    else:
-        path = results / study if found is None else found.root
-    target = out if out is None else writable_page(out)
+    target = _page(out)
     if target is not None and target.suffix.lower() == ".pdf":
         raise InputError("--out", str(out), "a file whose name ends in .html; the explorer works in a browser")
     solved = open_study(path)
-    folder = StudyFolder(path if path.is_dir() else path.parent)
+    root = path
+    if not path.is_dir():
+        root = path.parent
+    folder = StudyFolder(root)
     if out is None and is_study(folder.root):
         folder.create()
     elif out is None:
         free_for_page(folder.root / EXPLORER)
     print(write_explorer(solved, target or place_of_pages(solved, folder) / EXPLORER))
+
+
+def _page(out: Path | None) -> Path | None:
+    """Return the path of a page, checked before anything is made."""
+    if out is None:
+        return None
+    return writable_page(out)
 
 
 def print_best(study: str, results: Path, out: Path | None, as_json: bool = False) -> None:
@@ -134,9 +145,8 @@ def print_best(study: str, results: Path, out: Path | None, as_json: bool = Fals
     from trackroller.results.results import shown_answer
     from trackroller.results.stored_study import open_study
 
-    target = out if out is None else writable_page(out)
-    found = find_folder(study, results)
-    if found is None and Path(study).is_dir():
+    target = _page(out)
+    if find_folder(study, results) is None and Path(study).is_dir():
         folder = Path(study)
     else:
         folder = find_study(study, results)[1].root
@@ -167,7 +177,8 @@ def print_status(study: str, results: Path, figures: bool) -> int:
     _print_left(status)
     if status.outdated:
         print_text("another version of the solver made the results: the next run solves every case anew", "outdated")
-    if regimes := [f"{count} {name}" for name, count in status.regimes.items() if count]:
+    regimes = [f"{count} {name}" for name, count in status.regimes.items() if count]
+    if regimes:
         print(f"regimes   {', '.join(regimes)}")
     for reason, count in status.by_reason.items():
         print(f"failed    {count} x {reason}")
@@ -180,8 +191,8 @@ def print_status(study: str, results: Path, figures: bool) -> int:
     if figures:
         from trackroller.report.build import draw_solved  # heavy: matplotlib
 
-        place, drawn = draw_solved(folder)
-        print(f"figures   {len(drawn)} in {place}")
+        place, names = draw_solved(folder)
+        print(f"figures   {len(names)} in {place}")
     return int(bool(status.corrupt))
 
 
@@ -193,8 +204,10 @@ def _print_left(status: Status) -> None:
             print(f"next      {status.upcoming}")
         if status.done:
             print("look      `trackroller report` and `explore` work on the solved cases")
+    elif status.gathered:
+        print("gathered  yes")
     else:
-        print("gathered  " + ("yes" if status.gathered else "not yet: run it once more"))
+        print("gathered  not yet: run it once more")
 
 
 def print_repeat(study: str, case: int, results: Path) -> int:
@@ -210,13 +223,13 @@ def print_repeat(study: str, case: int, results: Path) -> int:
 
 def _print_differences(compared: Mapping[str, Difference]) -> bool:
     """Print the variables that differ by more than rounding explains, and return whether there are any."""
-    found = {name: difference for name, difference in compared.items() if difference.found}
-    for name, (apart, allowed, scale) in found.items():
+    differing = {name: difference for name, difference in compared.items() if difference.found}
+    for name, (apart, allowed, scale) in differing.items():
         if apart < math.inf:
             print(f"{name}: differs by {apart:.1e} of {scale}; rounding explains {allowed:.0e}")
         else:
             print(f"{name}: is missing now, or has other gaps or words")
-    return bool(found)
+    return bool(differing)
 
 
 def _how_equal(compared: Mapping[str, Difference]) -> str:
@@ -253,8 +266,8 @@ def print_verified(folder: Path, results: Path) -> int:
     """Print the damaged files of a crate and return the exit code: 0 if there is none."""
     folder = _crate_at(folder, results)
     damaged = damaged_files(folder)
-    for name, what in damaged.items():
-        print(f"{what}: {name}")
+    for name, state in damaged.items():
+        print(f"{state}: {name}")
     if not damaged:
         print(f"{len(read_crate(folder))} files are as they were written")
     return int(bool(damaged))
@@ -271,7 +284,8 @@ def print_rerun(crate: Path, results: Path) -> int:
     ledger = run_study(study, results)
     compared = compare_results(stored, ledger.folder.gathered)
     differs = _print_differences(compared)
-    if new := [name for name, difference in compared.items() if math.isnan(difference.apart)]:
+    new = [name for name, difference in compared.items() if math.isnan(difference.apart)]
+    if new:
         print(f"not compared, because {stored} lacks them: {', '.join(new)}")
     if not differs:
         same = len(compared) - len(new)
@@ -344,8 +358,10 @@ def _explain(study: Study, no_shortcuts: bool) -> None:
 
 
 def _print_stages(table, options) -> None:
-    rows = [
-        (stage.name, f"{stage.count}" if stage.runs else "-", f"{stage.total} {stage.unit}", stage.why)
-        for stage in stages_of(table, options)
-    ]
+    rows = []
+    for stage in stages_of(table, options):
+        count = "-"
+        if stage.runs:
+            count = f"{stage.count}"
+        rows.append((stage.name, count, f"{stage.total} {stage.unit}", stage.why))
     print_table(("stage", "runs", "of", "why"), rows, right=(1, 2))

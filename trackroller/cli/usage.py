@@ -33,7 +33,10 @@ class Commands(TyperGroup):
         except TyperException as exc:
             text = exc.format_message().rstrip(".")
             context = getattr(exc, "ctx", None)
+            command = "trackroller"
+            if context:
+                command = context.command_path
             if text:  # a group of commands without arguments has printed its help
-                print_line(f"{text}. See `{context.command_path if context else 'trackroller'} --help`.")
+                print_line(f"{text}. See `{command} --help`.")
             code = exc.exit_code
         raise SystemExit(code)

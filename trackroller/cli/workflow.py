@@ -19,8 +19,8 @@ from trackroller.materials.file import find_user_file
 from trackroller.study.cost import duration
 from trackroller.study.file.load import load_study
 from trackroller.study.file.study import Study
+from trackroller.study.store.fingerprint import StudyCases
 from trackroller.study.store.folder import StudyFolder, Tell, check_for_workflow, unheard
-from trackroller.study.store.identity import Cases
 from trackroller.study.store.ledger import Ledger, read_ledger, study_folder, working_ledger
 from trackroller.study.store.put import claim
 
@@ -108,7 +108,7 @@ def workflow_ledger(config: Mapping[str, str], main: bool, tell: Tell = unheard)
     if main:
         check_for_workflow(folder.create().root)
     if study.decides:  # its rule plans each generation
-        return Ledger(Cases(study), folder)
+        return Ledger(StudyCases(study), folder)
     if main:
         return _held.enter_context(working_ledger(study, results, tell=tell))
     ledger = read_ledger(study, folder)
@@ -145,11 +145,11 @@ def captions(study: Study, folder: StudyFolder) -> dict[str, str]:
         The study's folder; without figures only the caption of the report is there.
     """
     index = folder.root / "figures" / "index.json"
-    drawn = []
+    figures = []
     if index.is_file():
-        drawn = json.loads(index.read_text(encoding="utf-8"))
+        figures = json.loads(index.read_text(encoding="utf-8"))
     texts = {"report": f"Study {study.name}: {study.config.description or 'no description'}"}
-    texts |= {item["name"]: f"{item['sentence']} {item['caption']}".strip() for item in drawn}
+    texts |= {item["name"]: f"{item['sentence']} {item['caption']}".strip() for item in figures}
     return {name: _as_paragraph(text) for name, text in texts.items()}
 
 
@@ -159,7 +159,8 @@ def _as_paragraph(text: str) -> str:
     A directive such as `.. include::` needs a line of its own, and every markup needs a punctuation mark. So all white
     space becomes single spaces, and each mark is escaped.
     """
-    words = " ".join("".join(c if c.isprintable() or c.isspace() else "?" for c in text).split())
+    printable = [sign if sign.isprintable() or sign.isspace() else "?" for sign in text]
+    words = " ".join("".join(printable).split())
     return re.sub(r"([^\w\s]|_)", r"\\\1", words)
 
 
@@ -175,9 +176,12 @@ def show_progress(folder: StudyFolder, to: TextIO = sys.stderr) -> None:
     """
     plan = folder.record()
     total = plan["distinct"]
-    done = total - sum(size for name, size in plan["chunks"].items() if not folder.chunk(name).is_file())
-    line = f"{folder.root.name}: {done:,} of {total:,} cases solved ({100 * done // max(total, 1)} %)"
-    print(line, file=to, flush=True, end="\r" if to.isatty() and done < total else "\n")
+    solved = total - sum(size for name, size in plan["chunks"].items() if not folder.chunk(name).is_file())
+    line = f"{folder.root.name}: {solved:,} of {total:,} cases solved ({100 * solved // max(total, 1)} %)"
+    end = "\n"
+    if to.isatty() and solved < total:
+        end = "\r"
+    print(line, file=to, flush=True, end=end)
 
 
 def hide_chatter(handlers: Iterable[logging.Handler], report: Callable[[], str]) -> None:
@@ -191,7 +195,7 @@ def hide_chatter(handlers: Iterable[logging.Handler], report: Callable[[], str])
         Returns the path of the report, which that message names.
     """
 
-    def wanted(record: logging.LogRecord) -> bool:
+    def is_shown(record: logging.LogRecord) -> bool:
         if record.getMessage().startswith("Nothing to be done"):
             record.msg = f"Nothing to be done. Report: {report()}"
             record.args = ()
@@ -199,7 +203,7 @@ def hide_chatter(handlers: Iterable[logging.Handler], report: Callable[[], str])
         return record.levelno > logging.INFO
 
     for handler in handlers:
-        handler.addFilter(wanted)
+        handler.addFilter(is_shown)
 
 
 def finished(folder: StudyFolder, seconds: float) -> str:

@@ -43,17 +43,17 @@ def add_own() -> None:
         If a file declares no limit, or a name that another limit has taken.
     """
     for name, limit in own.own_limits().items():
-        for kind, what in _KINDS.items():
-            taken = {one for known in LIMITS.values() for one in _names(known, kind)}
-            _refuse_taken(_names(limit, kind), taken, what)
+        for kind, noun in _KINDS.items():
+            names_in_use = {one for known in LIMITS.values() for one in _names(known, kind)}
+            _refuse_taken(_names(limit, kind), names_in_use, noun)
         LIMITS[name] = limit
 
 
-def _refuse_taken(names: Collection[str], taken: Collection[str], what: str) -> None:
-    """Refuse names that a limit declares and that are taken; `what` is what they name."""
-    clash = sorted({*names} & {*taken})
+def _refuse_taken(names: Collection[str], names_in_use: Collection[str], noun: str) -> None:
+    """Refuse names that a limit declares and that are in use; `noun` is what they name."""
+    clash = sorted({*names} & {*names_in_use})
     if clash:
-        wrong = f"is {what} already, so that no limit may declare it"
+        wrong = f"is {noun} already, so that no limit may declare it"
         raise InputError("limits", ", ".join(clash), "", "Choose another name.", wrong)
 
 
@@ -77,7 +77,7 @@ def _names(limit: Limit, kind: str) -> set[str]:
     return {one.name for one in declared}
 
 
-def asked(outputs: Collection[str], not_checked: Collection[str] = ()) -> tuple[Limit, ...]:
+def limits_of(outputs: Collection[str], not_checked: Collection[str] = ()) -> tuple[Limit, ...]:
     """Return the limits that groups of outputs ask for: those of single limits, and with `limits` all with a verdict.
 
     `not_checked` names limits that the verdict leaves out.
@@ -99,8 +99,9 @@ def groups_of(field: str, names: Collection[str]) -> tuple[str, ...]:
         if remedy:
             raise InputError(field, name, "limits that are loaded", remedy)
     check_names(field, names, (*known, "all"))
-    wanted = known if "all" in names else names
-    return (*dict.fromkeys(LIMITS[name].group for name in wanted), verdict.GROUP)
+    if "all" in names:
+        names = known
+    return (*dict.fromkeys(LIMITS[name].group for name in names), verdict.GROUP)
 
 
 def check_used(
@@ -124,7 +125,7 @@ def check_used(
     InputError
         For the first such field.
     """
-    asked_for = asked(outputs, not_checked)
+    asked_for = limits_of(outputs, not_checked)
     if given.get("duty") and not asked_for:
         wrong = "is used by no output: it turns lives into years"
         raise InputError("duty", given["duty"], "", "Add limits to outputs, or remove duty.", wrong)
@@ -138,7 +139,8 @@ def check_used(
 
 def fields_of(limit: Limit) -> set[str]:
     """Return the fields of a case that a limit has or requires."""
-    by_option = [name for own in limit.requires_by.values() for names in own.values() for name in names]
+    lists = [names for by_value in limit.requires_by.values() for names in by_value.values()]
+    by_option = [name for names in lists for name in names]
     of_materials = {one.name for other in LIMITS.values() for one in other.materials}
     own = {*(one.name for one in limit.parameters), *(one.name for one in limit.mappings)}
     return own | ({*limit.requires, *by_option} - of_materials)
@@ -165,8 +167,8 @@ def judged(outputs: Collection[str] = (verdict.GROUP,), not_checked: Collection[
 
 def computed(outputs: Collection[str], not_checked: Collection[str], life_criterion: str) -> tuple[Limit, ...]:
     """Return the limits asked for, after the one whose stress the life needs by its criterion."""
-    wanted = asked(outputs, not_checked)
-    paths = fatigue.LIMIT in wanted and life_criterion in fatigue.STRESS_OF
-    if paths and multiaxial.LIMIT not in wanted:
-        return (multiaxial.LIMIT, *wanted)
-    return wanted
+    limits = limits_of(outputs, not_checked)
+    paths = fatigue.LIMIT in limits and life_criterion in fatigue.STRESS_OF
+    if paths and multiaxial.LIMIT not in limits:
+        return (multiaxial.LIMIT, *limits)
+    return limits

@@ -37,7 +37,8 @@ class BearingLoads(NamedTuple):
     @classmethod
     def of(cls, solved: SolvedRollers) -> BearingLoads:
         """Return the loads of solved rollers."""
-        c, v = solved.cases, solved.values
+        c = solved.cases
+        v = solved.values
         forces = c["radial_force"], c["motor_force"], np.abs(c["axial_force"])
         return cls(*forces, v["tilting_moment"], v["yaw_moment"])
 
@@ -121,7 +122,8 @@ def life_at(life: np.ndarray, probability: float, slope: np.ndarray) -> np.ndarr
 
 def evaluate(solved: SolvedRollers) -> Values:
     """Return `bearing_life_hours` (L10) [h], `bearing_static_safety` and `bearing_utilisation` [1], (n,)."""
-    loads, b = BearingLoads.of(solved), FIELD.columns(solved.cases["bearing"])
+    loads = BearingLoads.of(solved)
+    b = FIELD.columns(solved.cases["bearing"])
     each = {name: b[name][:, None] for name in ("e", "X", "Y", "X0", "Y0")}
     dynamic, static = equivalent(*row_forces(loads, b["rows"], b["row_distance"]), each)
     hours = 1e6 * rating_life(dynamic, b["dynamic_rating"], b["kind"]) / solved.overrollings_per_hour[:, 0]

@@ -71,7 +71,8 @@ def catalogue_km(
 
 def evaluate(solved: SolvedRollers) -> Values:
     """Return `catalogue_load_factor` [1] and `catalogue_life_km` [km], (n,)."""
-    loads, c = BearingLoads.of(solved), FIELD.columns(solved.cases["catalogue"])
+    loads = BearingLoads.of(solved)
+    c = FIELD.columns(solved.cases["catalogue"])
     by_moment = np.where(np.isnan(c["moment"]), 0.0, loads.moment / c["moment"])
     factor = loads.radial / c["radial_force"] + loads.axial / c["axial_force"] + by_moment
     law = np.where(c["law"] == "", LAWS[0], c["law"])

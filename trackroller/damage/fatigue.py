@@ -32,7 +32,8 @@ def curve_of(solved: SolvedRollers) -> SNCurve:
 
 def amplitude(solved: SolvedRollers) -> np.ndarray:
     """Return the stress that enters the S-N curve by the option `life_criterion`, (n, contact, body) [MPa]."""
-    criterion, values = solved.options["life_criterion"], solved.values
+    criterion = solved.options["life_criterion"]
+    values = solved.values
     if criterion not in STRESS_OF:
         return values["peak_stress"]
     name = STRESS_OF[criterion]
@@ -88,7 +89,8 @@ def life(solved: SolvedRollers) -> Values:
     -----
     The error of a stress other than the peak is not estimated, so its life has no error either.
     """
-    stress, curve = amplitude(solved), curve_of(solved)
+    stress = amplitude(solved)
+    curve = curve_of(solved)
     published = solved.options["life_criterion"] not in STRESS_OF
     if published:
         error = solved.values["error_estimate"]
@@ -101,7 +103,7 @@ def life(solved: SolvedRollers) -> Values:
     roller, guide = np.moveaxis(hours.min(axis=1), 1, 0)
     pair, first = first_failure(roller, guide)
     pair = np.where(lifeless.any(axis=1), np.nan, pair)
-    return {
+    results = {
         "life_cycles": cycles,
         "life_error_estimate": np.where(np.isnan(cycles), np.nan, curve.slope(stress) * error),
         "life_hours": hours,
@@ -109,13 +111,17 @@ def life(solved: SolvedRollers) -> Values:
         "guide_life_hours": guide,
         "pair_life_hours": pair,
         "first_to_fail": first,
-    } | ({} if published else {"fatigue_stress": stress})
+    }
+    if not published:
+        results["fatigue_stress"] = stress
+    return results
 
 
 def verdict(solved: SolvedRollers, results: Values) -> Verdict:
     """Return the utilisation of the fatigue limit and the life at the failure probability, (n, body)."""
     p = solved.options["failure_probability"]
-    curve, stress = curve_of(solved).changed(failure_probability=p), amplitude(solved)
+    curve = curve_of(solved).changed(failure_probability=p)
+    stress = amplitude(solved)
     known = curve.scatters | (p == 0.5)
     living = known & ~_without_life(solved)[:, None, :]
     hours = curve.life_cycles(stress) / solved.overrollings_per_hour[:, None, :]

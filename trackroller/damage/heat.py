@@ -52,9 +52,10 @@ def cell_temperature(steps: tuple[float, float], nodes: tuple[int, int], decay: 
     (hx, hy), (nx, ny) = steps, nodes
     small, long = min(hx, hy), ny * hy
     # Below the first w all heat is still in its cell, and above the last it has spread or moved beyond the grid.
-    low = min(small / 8.0, math.sqrt(0.1 * small / decay) if decay > 0 else math.inf)
+    low = small / 8.0
     high = REACH * max(nx * hx, long)
     if decay > 0:
+        low = min(low, math.sqrt(0.1 * small / decay))
         high = min(high, (SPREAD + math.sqrt(SPREAD**2 + 4.0 * decay * (long + hy))) / (2.0 * decay))
     # heat that moves fast passes a cell in a short part of the logarithm of w
     step = STEP / max(1.0, math.sqrt(decay * long))
@@ -99,7 +100,8 @@ def flash(
         if not np.isfinite(heat[at]).all() or not np.isfinite(diffusivity[case]).all():
             return np.nan
         steps = [(axis[-1] - axis[0]) / (axis.size - 1) for axis in (t.x[at], t.y[at])]
-        nodes, decays = heat[at].shape[::-1], (speed[case] / (4.0 * diffusivity[case])).tolist()
+        nodes = heat[at].shape[::-1]
+        decays = (speed[case] / (4.0 * diffusivity[case])).tolist()
         kernels = {decay: cell_temperature((steps[0], steps[1]), nodes, decay) for decay in dict.fromkeys(decays)}
         lengths = [fft.next_fast_len(2 * n - 1, real=True) for n in heat[at].shape]
         spectra = fft.rfft2(heat[at], lengths) * fft.rfft2(np.stack(list(kernels.values())), lengths)
@@ -139,7 +141,10 @@ def evaluate(solved: SolvedRollers) -> Values:
 
     `drive_torque` [N mm], (n,), takes in the hysteresis of both contacts.
     """
-    m, v, c, t = solved.materials, solved.values, solved.cases, solved.tractions()
+    m = solved.materials
+    v = solved.values
+    c = solved.cases
+    t = solved.tractions()
     speed = c["velocity"] * 1e3 / 60.0
     conductivity = 1e-3 * m["thermal_conductivity"]
     diffusivity = 1e6 * m["thermal_conductivity"] / (m["density"] * m["heat_capacity"])
@@ -174,7 +179,8 @@ def evaluate(solved: SolvedRollers) -> Values:
     }
 
 
-_CB, _C = ("contact", "body"), ("contact",)
+_CB = ("contact", "body")
+_C = ("contact",)
 LIMIT = Limit(
     name="heat",
     title="heat (temperature limit of the material)",

@@ -38,10 +38,10 @@ class RollerTractions(Tractions):
 
         Contact 2 of a mirrored case repeats the values of contact 1.
         """
-        there = np.isfinite(self.x[:, :, 0])
-        there[:, 1] &= ~self.mirrored
-        out = np.full((*there.shape, *shape), np.nan)
-        for case, contact in np.argwhere(there).tolist():
+        has_patch = np.isfinite(self.x[:, :, 0])
+        has_patch[:, 1] &= ~self.mirrored
+        out = np.full((*has_patch.shape, *shape), np.nan)
+        for case, contact in np.argwhere(has_patch).tolist():
             out[case, contact] = values(case, contact)
         out[self.mirrored, 1] = out[self.mirrored, 0]
         return out
@@ -108,14 +108,15 @@ def _smooth_kernels(ratio: float, nodes: tuple[int, int], inner: tuple[int, int]
 
     from trackroller.halfspace.hats import hat_kernels
 
-    sides, lengths = (min(ratio, 1.0), min(1.0 / ratio, 1.0)), _lengths(nodes)
+    sides = (min(ratio, 1.0), min(1.0 / ratio, 1.0))
+    lengths = _lengths(nodes)
     small = 0.5 * min(side * n for side, n in zip(sides, inner, strict=True))
     kernels = fft.rfft2(hat_kernels(sides, nodes, small * DEPTHS, lengths, np.float32(0.0)), overwrite_x=True)
     # The transform of B-spline and hat is sinc^5; its inverse up to the sixth power of the wave number.
-    for axis, length in zip((3, 4), lengths, strict=True):
+    for axis, length, shape in zip((3, 4), lengths, ((-1, 1), (-1,)), strict=True):
         wave = 2.0 - 2.0 * np.cos(2.0 * np.pi * np.arange(kernels.shape[axis]) / length)
         inverse = 1.0 + 5.0 / 24.0 * wave + 47.0 / 1152.0 * wave**2
-        kernels *= inverse.reshape((-1, 1) if axis == 3 else -1).astype(np.float32)
+        kernels *= inverse.reshape(shape).astype(np.float32)
     return np.asarray(kernels)
 
 
@@ -140,8 +141,8 @@ def planes(loads: PatchLoads, depths: np.ndarray, poisson_ratio: np.ndarray) -> 
     from trackroller.halfspace.hats import planes_below
     from trackroller.halfspace.stress import FRICTION_SIGNS
 
-    more = math.ceil(PADDING * loads.tractions.shape[1])
-    padded = np.pad(loads.tractions, ((0, 0), (more, more), (0, 0))).astype(np.float32)
+    rows = math.ceil(PADDING * loads.tractions.shape[1])
+    padded = np.pad(loads.tractions, ((0, 0), (rows, rows), (0, 0))).astype(np.float32)
     return planes_below(padded, (loads.step_x, loads.step_y), depths, poisson_ratio, FRICTION_SIGNS)
 
 
@@ -172,10 +173,10 @@ def deep_planes(loads: PatchLoads, poisson_ratio: np.ndarray) -> np.ndarray:
 
     ladder = loads.on_ladder()
     _, ny, nx = ladder.tractions.shape
-    more = math.ceil(PADDING * ny)
+    rows = math.ceil(PADDING * ny)
     ratio = math.exp(RUNG * round(math.log(ladder.step_x / ladder.step_y * (nx - 2) / (ny - 2)) / RUNG))
-    kernels = _smooth_kernels(ratio * (ny - 2) / (nx - 2), (nx, ny + more), (nx - 2, ny - 2))
-    lengths = _lengths((nx, ny + more))
-    spectra = fft.rfft2(np.pad(ladder.tractions, ((0, 0), (more, 0), (0, 0))).astype(np.float32), lengths)
+    kernels = _smooth_kernels(ratio * (ny - 2) / (nx - 2), (nx, ny + rows), (nx - 2, ny - 2))
+    lengths = _lengths((nx, ny + rows))
+    spectra = fft.rfft2(np.pad(ladder.tractions, ((0, 0), (rows, 0), (0, 0))).astype(np.float32), lengths)
     bodies = body_spectra(spectra, kernels, poisson_ratio.astype(np.float32), np.array(FRICTION_SIGNS, np.float32))
-    return np.asarray(fft.irfft2(bodies, lengths, overwrite_x=True)[..., : ny + 2 * more, 1 : nx - 1])
+    return np.asarray(fft.irfft2(bodies, lengths, overwrite_x=True)[..., : ny + 2 * rows, 1 : nx - 1])

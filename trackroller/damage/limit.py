@@ -21,14 +21,17 @@ from trackroller.damage.mapping import MappingField
 from trackroller.numerics.parameter import Parameter
 from trackroller.numerics.variable import BODIES, REGIMES, Variable
 
-SN_SCATTER, TRACTIONS = "S-N scatter", "tractions"
+SN_SCATTER = "S-N scatter"
+TRACTIONS = "tractions"
 OF_GUIDE = ("guide_overrollings_per_hour",)  # fields of a case that concern the guide alone
 Values = dict[str, np.ndarray]  # results by name
 
 
 def missing(column: np.ndarray) -> np.ndarray:
     """Return where a column of a case has no value, (n,) bool: a number is NaN, or the text of a mapping is empty."""
-    return np.asarray(column == "" if column.dtype == object else np.isnan(column))
+    if column.dtype == object:
+        return np.asarray(column == "")
+    return np.asarray(np.isnan(column))
 
 
 def roller_overrollings(velocity: ArrayLike, rolling_radius: ArrayLike) -> np.ndarray:
@@ -270,7 +273,7 @@ class Limit:
 
 def variables(group: str, *rows: tuple[Any, ...]) -> tuple[Variable, ...]:
     """Return variables from rows of name, dimensions, unit, symbol, long name, and perhaps further fields (mapping)."""
-    return tuple(Variable(name, group, *rest[:4], **dict(*rest[4:])) for name, *rest in rows)
+    return tuple(Variable(name, group, *columns[:4], **dict(*columns[4:])) for name, *columns in rows)
 
 
 def optional(

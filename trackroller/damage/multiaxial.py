@@ -62,7 +62,8 @@ def stress_paths(t: RollerTractions, case: int, contact: int, poisson_ratio: np.
         Stresses, (body, path, time, 6) [MPa]. Each path ends with the unloaded state.
     """
     loads = t.loads(case, contact)
-    surface, below = planes(loads, np.zeros(1), poisson_ratio), deep_planes(loads, poisson_ratio)
+    surface = planes(loads, np.zeros(1), poisson_ratio)
+    below = deep_planes(loads, poisson_ratio)
     parts = surface.swapaxes(3, 4), _twice(_twice(below).swapaxes(3, 4))
     lines = [part.transpose(0, 1, 3, 4, 2).reshape(2, -1, part.shape[4], 6) for part in parts]
     out = np.zeros((2, sum(part.shape[1] for part in lines), max(part.shape[2] for part in lines) + 1, 6))
@@ -75,7 +76,8 @@ def evaluate(solved: SolvedRollers) -> Values:
     """Return stresses [MPa] and utilisations [1] of the criteria, (n, contact, body)."""
     from trackroller.damage.paths import governing  # numba compiles on import, and planning reads only the declaration
 
-    m, t = solved.materials, solved.tractions()
+    m = solved.materials
+    t = solved.tractions()
     limits = m["fatigue_limit"], m["fatigue_limit_torsion"]
     (k, findley_limit), (a, dang_van_limit) = findley_constants(*limits), dang_van_constants(*limits)
 

@@ -128,11 +128,11 @@ def _errors_of(path: Path) -> Iterator[None]:
     except (InputError, KeyboardInterrupt, MemoryError):
         raise
     except BaseException as error:
-        why = f"{type(error).__name__}: {error}".rstrip(": ")
-        wrong = f"stops with {why}"
+        reason = f"{type(error).__name__}: {error}".rstrip(": ")
+        wrong = f"stops with {reason}"
         remedy = "Correct this line, or leave out --allow-code."
-        told = InputError("limits", path.name, "a program without errors", remedy, wrong)
-        raise told.at(path, _line_of(error, path)) from error
+        of_user = InputError("limits", path.name, "a program without errors", remedy, wrong)
+        raise of_user.at(path, _line_of(error, path)) from error
 
 
 def _line_of(error: BaseException, path: Path) -> int:

@@ -65,7 +65,8 @@ def evaluate(solved: SolvedRollers) -> Values:
     The indices are mu_used - k/p_max of the weaker body, with mu_used as |F_T, F_A|/F_N of the whole patch and as the
     largest |tau|/p in it; the two differ under spin.
     """
-    v, strength = solved.values, solved.materials["yield_strength"]
+    v = solved.values
+    strength = solved.materials["yield_strength"]
     k = strength / np.sqrt(3.0)
     with np.errstate(divide="ignore", invalid="ignore"):
         used = np.hypot(v["lateral_force"], v["driving_force"]) / v["normal_force"]

@@ -218,12 +218,17 @@ class SNCurve:
 
         NaN where the curve of a material has no further piece.
         """
-        start, cycles, exponent = np.asarray(1.0), np.asarray(1.0), self.exponent
+        start = np.asarray(1.0)
+        cycles = np.asarray(1.0)
+        exponent = self.exponent
         yield start, cycles, exponent
-        for i in range(1, 0 if self.segments is None else self.segments.shape[-2]):
+        if self.segments is None:
+            return
+        for i in range(1, self.segments.shape[-2]):
             above, steeper = self._of_points(i)
             cycles = cycles * (above / start) ** -exponent
-            start, exponent = above, steeper
+            start = above
+            exponent = steeper
             yield start, cycles, exponent
 
     @property
@@ -234,7 +239,9 @@ class SNCurve:
     @property
     def scatter_ranges(self) -> tuple[np.ndarray, np.ndarray]:
         """Return the scatter of life T_N and of strength T_S [1], 1 without scatter."""
-        k, t_n, t_s = self.exponent, _known(self.scatter_cycles), _known(self.scatter_stress)
+        k = self.exponent
+        t_n = _known(self.scatter_cycles)
+        t_s = _known(self.scatter_stress)
         cycles = np.where(np.isnan(t_n), np.where(np.isnan(t_s), 1.0, t_s**k), t_n)
         return cycles, np.where(np.isnan(t_s), np.where(np.isnan(t_n), 1.0, t_n ** (1.0 / k)), t_s)
 
@@ -265,8 +272,11 @@ class SNCurve:
     @property
     def _below(self) -> np.ndarray:
         """Return the exponent below sigma_D: the one that the material gives, otherwise 2k - 1 by Haibach, or k."""
-        k, given = self.exponent, _known(self.second_exponent)
-        return np.where(np.isnan(given), 2 * k - 1 if self.rule == "haibach" else k, given)
+        given = _known(self.second_exponent)
+        by_rule = self.exponent
+        if self.rule == "haibach":
+            by_rule = 2 * self.exponent - 1
+        return np.where(np.isnan(given), by_rule, given)
 
     def slope(self, stress: ArrayLike) -> np.ndarray:
         """Return the exponent of the life at a stress [1]: k, and below sigma_D that of the rule or the second one.
@@ -331,4 +341,6 @@ class SNCurve:
 
 def _known(value: Any) -> np.ndarray:
     """Return a scatter as floats, NaN for None."""
-    return np.asarray(np.nan if value is None else value, dtype=float)
+    if value is None:
+        value = np.nan
+    return np.asarray(value, dtype=float)

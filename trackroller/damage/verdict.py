@@ -39,9 +39,9 @@ def _life(
 ) -> tuple[tuple[str, Any, str, str, str, Any], ...]:
     """Return the rows of a life and of the ends of its range."""
     ends = (("", "", ""), ("_low", "low end of the ", ", low end"), ("_high", "high end of the ", ", high end"))
-    more = LIFE | {"of": of}
+    fields = LIFE | {"of": of}
     return tuple(
-        (name + end, dims, "h", "", head + meaning, more | {"end": end[1:], "label": label + tail})
+        (name + end, dims, "h", "", head + meaning, fields | {"end": end[1:], "label": label + tail})
         for end, head, tail in ends
     )
 
@@ -142,6 +142,15 @@ def states(used: np.ndarray, life: np.ndarray, broken: np.ndarray, limits: Seque
     return np.where((bounded & (least > 1.0)) | broken, STATES.index("exceeded"), state)
 
 
+def _ends(hours: np.ndarray, low: np.ndarray | None, high: np.ndarray | None) -> list[np.ndarray]:
+    """Return the life of a limit and the ends of its range, which is the life itself where the limit gives none."""
+    if low is None:
+        low = hours
+    if high is None:
+        high = hours
+    return [hours, low, high]
+
+
 def verdict(places: Sequence[SolvedRollers], limits: Sequence[Limit], numbers: Sequence[int], unknown: int) -> Values:
     """Return how far each limit is used, hours to each and to the first, their ranges, and which one is first.
 
@@ -170,7 +179,8 @@ def verdict(places: Sequence[SolvedRollers], limits: Sequence[Limit], numbers: S
     tensile strength breaks at once.
     """
     shape = len(places), len(places[0].rolling_radius), len(limits), len(BODIES)
-    used, broken = np.full(shape, np.nan), np.zeros(shape[1:], dtype=bool)
+    used = np.full(shape, np.nan)
+    broken = np.zeros(shape[1:], dtype=bool)
     lives = {end: np.full(shape, np.nan) for end in ENDS}
     timed = np.zeros(len(limits), dtype=bool)
     lacking = broken
@@ -185,8 +195,8 @@ def verdict(places: Sequence[SolvedRollers], limits: Sequence[Limit], numbers: S
                 used[place, :, i] = np.where(concerned, own.utilisation, np.nan)
             if own.life_hours is not None:
                 timed[i] = True
-                for end, hours in zip(ENDS, (None, own.life_low, own.life_high), strict=True):
-                    lives[end][place, :, i] = np.where(concerned, own.life_hours if hours is None else hours, np.nan)
+                for end, hours in zip(ENDS, _ends(own.life_hours, own.life_low, own.life_high), strict=True):
+                    lives[end][place, :, i] = np.where(concerned, hours, np.nan)
             if own.at_once is not None:
                 broken[:, i] = own.at_once
     at_once = breaking(np.asarray(broken.any(axis=1)), limits)

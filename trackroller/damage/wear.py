@@ -36,7 +36,8 @@ KM_PER_HOUR = 0.06  # for 1 m/min
 # Relative error of the depth times the elements across a patch that 95 % of the patches of random rollers keep, against
 # finer elements. Measures of single patches, such as the roughness of the depth, did not tell the error any better.
 ERROR = {"kalker": 0.5, "kalker_table": 0.5, "sliding": 0.8}
-PLACES, WIDEST = 801, 20.0  # places across drawn profiles; half their width over the root of the depth [mm^0.5]
+PLACES = 801  # across drawn profiles
+WIDEST = 20.0  # half their width over the root of the depth [mm^0.5]
 TIE = 1e-9  # relative difference below which the outer one of two depths counts as the deeper one
 
 
@@ -117,11 +118,11 @@ def deepest(x: np.ndarray, depth: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     outward = np.array([1.0, -1.0])[:, None] * np.arange(x.shape[-1])
     at = np.argmax(np.nan_to_num(depth) * (1.0 + TIE * outward[:, None, :]), axis=-1)[..., None]
     inner = np.clip(at, 1, x.shape[-1] - 2)
-    left, top, right = (np.take_along_axis(depth, inner + i, axis=-1)[..., 0] for i in (-1, 0, 1))
-    curved = (at == inner)[..., 0] & (2.0 * top > left + right)
+    before, top, after = (np.take_along_axis(depth, inner + i, axis=-1)[..., 0] for i in (-1, 0, 1))
+    curved = (at == inner)[..., 0] & (2.0 * top > before + after)
     with np.errstate(divide="ignore", invalid="ignore"):
-        shift = np.where(curved, 0.5 * (right - left) / (2.0 * top - left - right), 0.0)
-    largest = np.where(curved, top + 0.25 * shift * (right - left), np.take_along_axis(depth, at, axis=-1)[..., 0])
+        shift = np.where(curved, 0.5 * (after - before) / (2.0 * top - before - after), 0.0)
+    largest = np.where(curved, top + 0.25 * shift * (after - before), np.take_along_axis(depth, at, axis=-1)[..., 0])
     step = (x[..., 1] - x[..., 0])[..., None]
     place = np.take_along_axis(np.broadcast_to(x[:, :, None, :], depth.shape), at, axis=-1)[..., 0] + shift * step
     return largest, np.where(largest > 0.0, place, np.nan)
@@ -136,8 +137,10 @@ def _gaps_at_edges(solved: SolvedRollers, t: RollerTractions) -> np.ndarray:
 
     def of_patch(case: int, contact: int) -> float:
         side = 1 - 2 * contact  # a gap counts x outward
-        x, loaded = side * t.x[case, contact], (t.pressure[case, contact] > 0.0).any(axis=0)
-        half, own = 0.5 * abs(x[1] - x[0]), x[loaded]
+        x = side * t.x[case, contact]
+        loaded = (t.pressure[case, contact] > 0.0).any(axis=0)
+        half = 0.5 * abs(x[1] - x[0])
+        own = x[loaded]
         height = solved.unworn_gap(case, contact, np.array([own.min() - half, *own, own.max() + half]))
         return float(max(min(height[0], height[-1]) - height.min(), 0.0))
 
@@ -151,7 +154,8 @@ def local_rates(pressure: np.ndarray, shear: np.ndarray, sliding: np.ndarray, ta
     canonical JSON of the case, "" for Archard's law.
     """
     if not table:
-        return [pressure * sliding] * 2
+        rate = pressure * sliding
+        return [rate, rate]
     own = TABLE.parsed(table)
     return [mass_loss(shear * sliding, own["work_rate"], own[body]) for body in BODIES]
 
@@ -216,12 +220,15 @@ def of_mechanics(solved: SolvedRollers) -> Values:
     locked = (solved.cases["motor_force"] > 0.0)[:, None, None, None] & np.isnan(t.slip_rolling) & (t.pressure >= 0.0)
     sliding = np.where(locked, 1.0, np.hypot(t.slip_lateral, t.slip_rolling))
     wide, long = (axis[..., 1] - axis[..., 0] for axis in (t.x, t.y))
-    cell, braked = wide * long, locked.any(axis=(2, 3))
+    cell = wide * long
+    braked = locked.any(axis=(2, 3))
     # constant friction: |tau| = mu p wherever surfaces slide, to more digits than an iteration has
-    constant, mu = solved.cases["friction_law"] == "", solved.cases["friction_coefficient"][:, None]
+    constant = solved.cases["friction_law"] == ""
+    mu = solved.cases["friction_coefficient"][:, None]
     shear = np.sum(np.hypot(t.shear_lateral, t.shear_rolling) * sliding, axis=(2, 3))
     rubbed = np.where(constant[:, None], mu * np.sum(t.pressure * sliding, axis=(2, 3)), shear) * cell
-    pressed, v = np.sum(t.pressure, axis=(2, 3)) * cell, solved.values
+    pressed = np.sum(t.pressure, axis=(2, 3)) * cell
+    v = solved.values
     known = np.where(braked, v["normal_force"], v["friction_energy_per_distance"])
     long = long * energy_ratio(known, np.where(braked, pressed, rubbed))
     lines = [wear_depth(rate, 0.0 * rate + 1.0, long, np.ones(len(rate))) for rate in _rates(solved, t, sliding)]
@@ -261,14 +268,16 @@ def sunk_area(depth: ArrayLike, guide_radius: ArrayLike, roller_radius: ArrayLik
     True
     """
     h, r, given = (np.asarray(value, dtype=float) for value in (depth, guide_radius, roller_radius))
-    straight, groove = np.isinf(given), given < 0.0
+    straight = np.isinf(given)
+    groove = given < 0.0
     other = np.where(straight, 1.0, np.abs(given))
     apart = np.where(groove, other - r + h, other + r - h)  # distance of the centres
     with np.errstate(divide="ignore", invalid="ignore"):
         # distance of the common chord from the centre of the roller's profile, and from that of the guide's
         far = 0.5 * (apart + (other - r) * ((other + r) / apart))
         near = np.where(straight, r - h, np.where(groove, far - apart, apart - far))
-    own, others = _segment(r, near), np.where(straight, 0.0, _segment(other, far))
+    own = _segment(r, near)
+    others = np.where(straight, 0.0, _segment(other, far))
     return np.asarray(np.where(groove, own - others, own + others))
 
 
@@ -281,10 +290,11 @@ def _segment(radius: np.ndarray, distance: np.ndarray) -> np.ndarray:
 def _worn_areas(solved: SolvedRollers) -> np.ndarray:
     """Return the area that goes until the permissible depth is reached, (n, contact) [mm2]; of drawn profiles too."""
     c = solved.cases
-    depth, radii = c["permissible_wear_depth"], (c["guide_profile_radius"], c["roller_profile_radius"])
+    depth = c["permissible_wear_depth"]
+    radii = (c["guide_profile_radius"], c["roller_profile_radius"])
     out = np.repeat(sunk_area(depth, *radii)[:, None], 2, axis=1)
-    drawn = (c["guide_profile"] != "") | (c["roller_profile"] != "")
-    for case in np.flatnonzero(drawn & ~np.isnan(depth)):
+    has_profile = (c["guide_profile"] != "") | (c["roller_profile"] != "")
+    for case in np.flatnonzero(has_profile & ~np.isnan(depth)):
         x = np.linspace(-1.0, 1.0, PLACES) * min(c["guide_profile_radius"][case], WIDEST * np.sqrt(depth[case]))
         for contact in range(2):
             gap = solved.unworn_gap(int(case), contact, x)
@@ -294,14 +304,17 @@ def _worn_areas(solved: SolvedRollers) -> np.ndarray:
 
 def evaluate(solved: SolvedRollers) -> Values:
     """Return depths, volume and life with its range, (n, contact, body), and the run-in distance [km], (n,)."""
-    c, v, hourly = solved.cases, solved.values, solved.overrollings_per_hour
+    c = solved.cases
+    v = solved.values
+    hourly = solved.overrollings_per_hour
     archard = solved.options["wear_law"] == "archard"
     if archard:
         k = solved.materials["wear_coefficient"]
     else:
         k = 1.0 / solved.materials["density"]
     k = (k * np.nan_to_num(c["wear_coefficient_factor"], nan=1.0)[:, None])[:, None, :]
-    depth, volume = k * v["_worn_depth"], k * v["_worn_volume"]
+    depth = k * v["_worn_depth"]
+    volume = k * v["_worn_volume"]
     travel = c["velocity"] * KM_PER_HOUR
     per_km = depth * (hourly / travel[:, None])[:, None, :]
     counted = np.where(np.isnan(hourly)[:, None, :], 0.0, per_km)  # a guide without overrollings does not count

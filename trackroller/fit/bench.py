@@ -26,7 +26,7 @@ from trackroller.errors import Collector, InputError, check_names, listing
 from trackroller.files import files_beside, find_beside
 from trackroller.fit.coupons import check_falls, check_held, deviation_of, priors_of
 from trackroller.fit.fitted import Fit, Group, check_texts
-from trackroller.fit.line import Line, Tests
+from trackroller.fit.line import Line, Tests, log_or_end
 from trackroller.fit.posterior import ln_range
 from trackroller.fit.solved_rollers import DEFAULTS, Solved, solved_rollers
 from trackroller.fit.table import LEAST, TestTable, read_tests
@@ -123,19 +123,13 @@ def fit_bench(  # noqa: PLR0913 - one argument for each choice of a fit
     >>> low < fit.material["fatigue_limit"] < high
     True
     """
-    if isinstance(fit, str):
-        wanted = [part.strip() for part in fit.split(",")]
-    else:
-        wanted = plain(fit, "fit")
-    if not isinstance(wanted, list):
-        raise InputError("fit", fit, f"a list of {', '.join(FITTED)}")
+    values = _values_to_fit(fit)
     check_texts(name=name, like=like)
     check_base(base)
-    check_names("fit", wanted, FITTED)
     slope, scatter_in_cycles = check_held(slope, scatter_in_cycles)
-    held = {"slope": slope, "scatter": scatter_in_cycles}
-    wanted = [name for name in wanted if held.get(name) is None]
-    if not wanted:
+    constants: dict[str, float | None] = {"slope": slope, "scatter": scatter_in_cycles}
+    values = [name for name in values if constants.get(name) is None]
+    if not values:
         raise InputError("fit", fit, "at least one value that is not held", "Name fatigue_strength as well.")
     if body is not None:
         check_names("body", [body], BODIES)
@@ -145,30 +139,31 @@ def fit_bench(  # noqa: PLR0913 - one argument for each choice of a fit
     travels = [_travel(rows, row, ends[row]) for row in rows]
     cases, options = _cases(rows, base)
     _check_hours(rows, travels, cases)
-    own = body or _body_of(rows, ends, wanted)
-    material = _material_of(rows, cases, own)
-    solved = _solved(rows, cases, options, own)
+    tested = body or _body_of(rows, ends, values)
+    material = _material_of(rows, cases, tested)
+    solved = _solved(rows, cases, options, tested)
     groups = []
-    if {"fatigue_strength", "slope", "scatter"} & set(wanted):
-        held = {
-            "slope": None if "slope" in wanted else slope or material.woehler_exponent,
-            "scatter": None if "scatter" in wanted else _scatter_of(material, scatter_in_cycles),
-        }
-        groups.append(_fatigue(rows, ends, travels, solved, own, material, held, prior))
-    if "wear_coefficient" in wanted:
-        groups.append(_wear(rows, ends, travels, cases, options, own))
-    if "friction_coefficient" in wanted:
+    if {"fatigue_strength", "slope", "scatter"} & set(values):
+        constants = dict.fromkeys(("slope", "scatter"))
+        if "slope" not in values:
+            constants["slope"] = slope or material.woehler_exponent
+        if "scatter" not in values:
+            constants["scatter"] = _scatter_of(material, scatter_in_cycles)
+        groups.append(_fatigue(rows, ends, travels, solved, tested, material, constants, prior))
+    if "wear_coefficient" in values:
+        groups.append(_wear(rows, ends, travels, cases, options, tested))
+    if "friction_coefficient" in values:
         groups.append(_friction(rows, cases, options))
-    given = {key: str(options.get(key, default)) for key, default in DEFAULTS.items()} | {"body": own}
+    given = {key: str(options.get(key, default)) for key, default in DEFAULTS.items()} | {"body": tested}
     notes = ["The values hold for the contact model, the life criterion and the accuracy of the fit."]
-    if "wear_coefficient" in wanted:
+    if "wear_coefficient" in values:
         notes.append(
             "Travels to a depth are the mean of the two closed forms of the limit wear; `trackroller fit wear` follows "
             "the profile of one groove instead."
         )
-    if "friction_coefficient" in wanted and len(groups) > 1:
+    if "friction_coefficient" in values and len(groups) > 1:
         notes.append("The rows were solved with the friction that they state, not with the fitted one.")
-    notes += _outside(rows, solved, own)
+    notes += _outside(rows, solved, tested)
     name = name or f"{material.name} fitted"
     return Fit("bench", name, tuple(groups), rows, like or material.name, given, notes, not_given_notes(cases))
 
@@ -179,18 +174,33 @@ def check_base(base: Any) -> None:
         raise InputError("base", base, "a mapping with fields of a case and options", "Give the values themselves.")
 
 
+def _values_to_fit(fit: Sequence[str] | str) -> list[str]:
+    """Return the names of the values to fit, from a list or a text with commas."""
+    if isinstance(fit, str):
+        values = [part.strip() for part in fit.split(",")]
+    else:
+        values = plain(fit, "fit")
+    if not isinstance(values, list):
+        raise InputError("fit", fit, f"a list of {', '.join(FITTED)}")
+    check_names("fit", values, FITTED)
+    return values
+
+
 def _check_names_once(rows: TestTable) -> None:
     """Refuse a test that stands twice, by its name, or by all of its cells."""
-    seen: dict[Any, int] = {}
+    first_rows: dict[Any, int] = {}
     for row in rows:
         name = rows.text(row, "test")
         key = name or json.dumps({k: str(v) for k, v in rows.rows[row].items()}, sort_keys=True)
         fails = rows.text(row, "end").lower() not in ("none", "")
-        if key in seen and (name or fails):
+        if key in first_rows and (name or fails):
             remedy = "Remove one of the two; if both were tested, name them in the column test."
-            wrong = f"stands in row {rows.lines[seen[key]]} as well"
-            raise rows.error(row, "test" if name else "travel_from", "each test once", remedy, wrong)
-        seen[key] = row
+            wrong = f"stands in row {rows.lines[first_rows[key]]} as well"
+            column = "travel_from"
+            if name:
+                column = "test"
+            raise rows.error(row, column, "each test once", remedy, wrong)
+        first_rows[key] = row
 
 
 def _end(rows: TestTable, row: int) -> End:
@@ -202,17 +212,17 @@ def _end(rows: TestTable, row: int) -> End:
     if not words or words[0] not in MODES:
         raise rows.error(row, "end", allowed, "Correct the cell.")
     mode = words[0]
-    rest = words[1:]
+    further = words[1:]
     body = ""
-    if rest and rest[0] in BODIES:
-        body = rest.pop(0)
+    if further and further[0] in BODIES:
+        body = further.pop(0)
     if mode in ("fatigue", "wear") and not body:
         raise rows.error(row, "end", allowed, f"Write {mode} roller, or {mode} guide.")
     if mode != "wear":
-        if rest:
+        if further:
             raise rows.error(row, "end", allowed, "Remove the further words.")
         return End(mode, body)
-    parts = split_quantity(" ".join(rest))
+    parts = split_quantity(" ".join(further))
     remedy = "Write the depth that was reached with its unit, such as wear roller 0.05 mm."
     if parts is None:
         raise rows.error(row, "end", "wear, body and depth", remedy)
@@ -305,9 +315,9 @@ def not_given_notes(cases: Sequence[Case]) -> list[str]:
     return []
 
 
-def _body_of(rows: TestTable, ends: Sequence[End], wanted: Collection[str]) -> str:
+def _body_of(rows: TestTable, ends: Sequence[End], values: Collection[str]) -> str:
     """Return the body that failed in the tests; refuse a table in which both did."""
-    if set(wanted) <= {"wear_coefficient"}:
+    if set(values) <= {"wear_coefficient"}:
         modes = {"wear"}
     else:
         modes = {"fatigue"}
@@ -316,18 +326,23 @@ def _body_of(rows: TestTable, ends: Sequence[End], wanted: Collection[str]) -> s
         row = next(row for row, end in enumerate(ends) if end.mode in modes and end.body == "guide")
         remedy = "Choose one with --body roller or --body guide; ends of the other one are suspensions."
         raise rows.error(row, "end", "ends of one body; rollers and guides failed", remedy)
-    return failed.pop() if failed else "roller"
+    if not failed:
+        return "roller"
+    return failed.pop()
 
 
 def _material_of(rows: TestTable, cases: Sequence[Case], body: str) -> Material:
     """Return the material of the tested body; refuse a table that mixes materials."""
     field = f"{body}_material"
     used = [getattr(case, field) for case in cases]
-    for row, one in enumerate(used):
-        if one != used[0]:
+    for row, material in enumerate(used):
+        if material != used[0]:
             remedy = "Fit each material from a table of its own."
             allowed = f"one material of the {body}; the table mixes it with that of row {rows.lines[0]}"
-            raise rows.error(row, field if field in rows.rows[row] else "base", allowed, remedy)
+            column = "base"
+            if field in rows.rows[row]:
+                column = field
+            raise rows.error(row, column, allowed, remedy)
     return load_database().material(used[0], field)
 
 
@@ -367,12 +382,12 @@ def _solved(rows: TestTable, cases: Sequence[Case], options: Mapping[str, Any], 
 
 def _outside(rows: TestTable, solved: Solved, body: str) -> list[str]:
     """Return notes on rows whose stresses lie outside the model."""
-    said = []
+    notes = []
     for name in ("half_space", "conformal"):
         lines = [str(rows.lines[row]) for row in rows if solved.flags[row, BODIES.index(body)] & FLAG[name]]
         if lines:
-            said.append(f"In row {listing(lines)} {VALIDITY[name].words}: the stress is an estimate.")
-    return said
+            notes.append(f"In row {listing(lines)} {VALIDITY[name].words}: the stress is an estimate.")
+    return notes
 
 
 def _fatigue(
@@ -382,7 +397,7 @@ def _fatigue(
     solved: Solved,
     body: str,
     material: Material,
-    held: Mapping[str, float | None],
+    constants: Mapping[str, float | None],
     prior: Mapping[str, Sequence[float]] | None,
 ) -> Group:
     """Return the line of fatigue of a body."""
@@ -402,21 +417,25 @@ def _fatigue(
         stated = rows.number(row, "contact", 1, 2)
         if stated not in (1, 2) and not math.isnan(stated):
             raise rows.error(row, "contact", "1 or 2, the contact that failed", "Correct the cell.")
-        if math.isnan(stated):
-            contact = worse
-        else:
-            contact = int(stated) - 1
-        for c in {contact, 1 - contact} if ended and not math.isnan(stated) else {contact}:
-            here = ended and c == contact
+        contacts = {worse}
+        failed = worse
+        if not math.isnan(stated):
+            failed = int(stated) - 1
+            contacts = {failed}
+        if ended and not math.isnan(stated):
+            contacts = {failed, 1 - failed}  # the other contact ran as long without a failure
+        for contact in contacts:
             start, stop = travels[row]
-            per_km = solved.per_km[row, c, b]
-            stress.append(math.log(solved.stress[row, c, b]))
-            low.append(math.log(start * per_km) if start > 0 else -math.inf)
-            high.append(math.log(stop * per_km) if here else math.inf)
+            if not ended or contact != failed:
+                stop = math.inf
+            per_km = solved.per_km[row, contact, b]
+            stress.append(math.log(solved.stress[row, contact, b]))
+            low.append(log_or_end(start * per_km))
+            high.append(log_or_end(stop * per_km))
             origin.append(row)
     known = np.isfinite(np.array(low)) | np.isfinite(np.array(high))
     tests = Tests(np.array(stress)[known], np.array(low)[known], np.array(high)[known])
-    return _fatigue_group(rows, tests, tuple(np.array(origin)[known].tolist()), material, held, prior)
+    return _fatigue_group(rows, tests, tuple(np.array(origin)[known].tolist()), material, constants, prior)
 
 
 def _fatigue_group(
@@ -424,11 +443,11 @@ def _fatigue_group(
     tests: Tests,
     origin: tuple[int, ...],
     material: Material,
-    held: Mapping[str, float | None],
+    constants: Mapping[str, float | None],
     prior: Mapping[str, Sequence[float]] | None,
 ) -> Group:
-    slope = held["slope"]
-    scatter = held["scatter"]
+    slope = constants["slope"]
+    scatter = constants["scatter"]
     last = len(rows) - 1
     if not tests.failed.any() and (slope is None or scatter is None):
         remedy = "Hold slope and scatter (--slope 8 --scatter 4) for a one-sided bound, or test until a roller fails."
@@ -449,10 +468,10 @@ def _fatigue_group(
     return Group("fatigue", line, priors_of(prior), at=material.cycles_at_fatigue_limit, rows=origin)
 
 
-def _scatter_of(material: Material, held: float | None) -> float:
+def _scatter_of(material: Material, constant: float | None) -> float:
     """Return the standard deviation of ln N that is held, or that of a material."""
-    if held is not None:
-        return deviation_of(held)
+    if constant is not None:
+        return deviation_of(constant)
     t_n = material.scatter_in_cycles
     t_s = material.scatter_in_stress
     if t_n is None and t_s is None:
@@ -460,7 +479,10 @@ def _scatter_of(material: Material, held: float | None) -> float:
         raise InputError(
             f"material '{material.name}'.scatter_in_cycles", None, "the scatter T_N, which is held", remedy
         )
-    cycles = t_n if t_n is not None else t_s**material.woehler_exponent  # type: ignore[operator]
+    if t_n is not None:
+        cycles = t_n
+    else:
+        cycles = t_s**material.woehler_exponent  # type: ignore[operator]
     return max(math.log(cycles) / math.log(ln_range(1.0)), 0.011)
 
 
@@ -473,21 +495,23 @@ def _wear(
     body: str,
 ) -> Group:
     """Return the line of wear of a body: ln of the travel over that of the unit wear coefficient."""
-    depths = [
-        end.depth if end.mode == "wear" and end.body == body else float(case.permissible_wear_depth or math.nan)
-        for end, case in zip(ends, cases, strict=True)
-    ]
+    depths = [float(case.permissible_wear_depth or math.nan) for case in cases]
+    for row, end in enumerate(ends):
+        if end.mode == "wear" and end.body == body:
+            depths[row] = end.depth
     used = [row for row in rows if not math.isnan(depths[row]) and depths[row] > 0]
     if not any(ends[row].mode == "wear" and ends[row].body == body for row in used):
         remedy = f"Leave wear_coefficient out of the fit, or write ends such as wear {body} 0.05 mm."
         raise rows.error(len(rows) - 1, "end", f"at least one end by wear of the {body}", remedy)
     unit = travels_to_depths([cases[row] for row in used], options, body, [depths[row] for row in used])
-    low, high = [], []
+    low = []
+    high = []
     for row, km in zip(used, unit, strict=True):
-        ended = ends[row].mode == "wear" and ends[row].body == body
         start, stop = travels[row]
-        low.append(math.log(start / km) if start > 0 else -math.inf)
-        high.append(math.log(stop / km) if ended else math.inf)
+        if ends[row].mode != "wear" or ends[row].body != body:
+            stop = math.inf
+        low.append(log_or_end(start / km))
+        high.append(log_or_end(stop / km))
     return wear_group(np.array(low), np.array(high), tuple(used))
 
 
@@ -495,8 +519,10 @@ def wear_group(low: np.ndarray, high: np.ndarray, rows: tuple[int, ...]) -> Grou
     """Return the line of wear from ln of travels over those of the unit coefficient, each of shape (n,)."""
     known = np.isfinite(low) | np.isfinite(high)
     tests = Tests(np.zeros(int(known.sum())), low[known], high[known])
-    few = int(tests.failed.sum()) < 2  # one depth tells the coefficient, but no scatter
-    line = Line(tests, scatter=HELD_SCATTER if few else None, sloped=False)
+    scatter = None
+    if int(tests.failed.sum()) < 2:  # one depth tells the coefficient, but no scatter
+        scatter = HELD_SCATTER
+    line = Line(tests, scatter=scatter, sloped=False)
     return Group("wear", line, scale=UNIT_WEAR, rows=tuple(np.array(rows)[known].tolist()))
 
 
@@ -545,7 +571,7 @@ def worn_alone(case: Case, body: str) -> dict[str, Any]:
 
 def _friction(rows: TestTable, cases: Sequence[Case], options: Mapping[str, Any]) -> Group:
     """Return the line of friction: ln of the coefficient by which each roller needs its measured drive force."""
-    found = []
+    coefficients = []
     used = []
     for row in rows:
         force = rows.number(row, "drive_force", LEAST)
@@ -554,12 +580,12 @@ def _friction(rows: TestTable, cases: Sequence[Case], options: Mapping[str, Any]
         if cases[row].motor_force != 0:
             remedy = "Set motor_force to 0 in this row, or leave drive_force empty."
             raise rows.error(row, "drive_force", "a force that moves a roller without motor", remedy)
-        found.append(_friction_of(rows, row, cases[row], options, force))
+        coefficients.append(_friction_of(rows, row, cases[row], options, force))
         used.append(row)
-    if len(found) < 2:
+    if len(coefficients) < 2:
         remedy = "Measure it on two rollers or more, or leave friction_coefficient out of the fit."
         raise rows.error(len(rows) - 1, "drive_force", "a force in two rows or more", remedy)
-    values = np.array(found)
+    values = np.array(coefficients)
     line = Line(Tests(np.zeros(len(values)), values, values), sloped=False)
     return Group("friction", line, rows=tuple(used))
 

@@ -118,7 +118,9 @@ def fit_sn(  # noqa: PLR0913 - one argument for each choice of a fit
     if stress_ratio is not None and not ratio < 1.0:
         raise InputError("stress ratio", stress_ratio, "a finite number below 1", "Give -1 for full reversal.")
     tests = _of_group(tests, group)
-    factor = LOAD_TYPES[load_type][0] if load_type else 1.0
+    factor = 1.0
+    if load_type:
+        factor = LOAD_TYPES[load_type][0]
     slope, scatter_in_cycles = check_held(slope, scatter_in_cycles)
     failed = _read_ends(tests)
     observed = _observed(tests, factor, failed)
@@ -126,24 +128,25 @@ def fit_sn(  # noqa: PLR0913 - one argument for each choice of a fit
     if slope is None:
         check_falls(tests, observed, "cycles")
     _check_identified(tests, observed, slope, scatter_in_cycles)
-    meet = _limit_shows(observed) if knee is None else knee
-    if scatter_in_cycles is None:
-        held = None
-    else:
-        held = deviation_of(scatter_in_cycles)
-    line = Line(observed, slope=slope, scatter=held, knee=meet)
+    has_limit = knee
+    if knee is None:
+        has_limit = _limit_shows(observed)
+    scatter = None
+    if scatter_in_cycles is not None:
+        scatter = deviation_of(scatter_in_cycles)
+    line = Line(observed, slope=slope, scatter=scatter, knee=bool(has_limit))
     _check_number(tests, line)
     priors = priors_of(prior)
     given = {
         "load type": load_type or "not given",
         "stress ratio": "not given" if stress_ratio is None else f"{ratio:g}",
     }
-    notes = [*_read_as(tests, failed), *_notes(load_type, ratio, meet, observed)]
-    if knee is None and meet and not line.limit_matters:
+    notes = [*_read_as(tests, failed), *_notes(load_type, ratio, bool(has_limit), observed)]
+    if knee is None and has_limit and not line.limit_matters:
         line = replace(line, knee=False)
         notes.append(NO_LIMIT)
-    own = Group("fatigue", line, priors, at=_stated_at(line))
-    return Fit("sn", name or "fitted material", (own,), tests, like, given, notes)
+    fatigue = Group("fatigue", line, priors, at=_stated_at(line))
+    return Fit("sn", name or "fitted material", (fatigue,), tests, like, given, notes)
 
 
 def _check_number(tests: TestTable, line: Line) -> None:
@@ -151,10 +154,14 @@ def _check_number(tests: TestTable, line: Line) -> None:
     lacking = len(line.free) + 1 - line.size
     if lacking <= 0:
         return
-    holdable = [held for name, held in HELD.items() if name in line.free]
-    remedy = f"Test {lacking} more specimen{'s' if lacking > 1 else ''}"
+    holdable = [option for name, option in HELD.items() if name in line.free]
+    remedy = f"Test {lacking} more specimens"
+    last_word = "and"
+    if lacking == 1:
+        remedy = "Test 1 more specimen"
+        last_word = "or"
     if lacking <= len(holdable):
-        remedy += f", or hold {listing(holdable, 'or' if lacking == 1 else 'and')}"
+        remedy += f", or hold {listing(holdable, last_word)}"
     fitted = f"{listing(line.free)} are {len(line.free)} values"
     allowed = f"more rows than fitted values; {fitted}"
     raise tests.placed(InputError("tests", line.size, allowed, f"{remedy}."))
@@ -176,12 +183,13 @@ def priors_of(given: Mapping[str, Sequence[float]] | None) -> dict[str, Normal]:
         remedy = "Name the value, such as {'slope': [8, 2]}."
         raise InputError("prior", given, f"a mapping from {listing([*PRIORS], 'or')} to two numbers", remedy)
     check_names("prior", given, PRIORS)
-    found = {}
+    priors = {}
     for name, pair in given.items():
         low, high = PRIORS[name]
-        first = "mean" if name == "slope" else "median"
+        first = "median"
         second = "standard deviation of ln"
         if name == "slope":
+            first = "mean"
             second = "standard deviation"
         allowed = f"[{first} from {low:.4g} to {high:.4g}, {second} from {LEAST_SPREAD:g} to {MOST_SPREAD:g}]"
         remedy = (
@@ -195,13 +203,13 @@ def priors_of(given: Mapping[str, Sequence[float]] | None) -> dict[str, Normal]:
         if not (low <= middle <= high and LEAST_SPREAD <= deviation <= MOST_SPREAD):
             raise InputError(f"prior.{name}", pair, allowed, remedy)
         if name == "slope":
-            found["slope"] = Normal(middle, deviation)
+            priors["slope"] = Normal(middle, deviation)
         elif name == "scatter_in_cycles":  # ln s of T_N = exp(2.563 s)
-            own = math.log(middle) / math.log(ln_range(1.0))
-            found["log_scatter"] = Normal(math.log(own), deviation / math.log(middle))
+            scatter = math.log(middle) / math.log(ln_range(1.0))
+            priors["log_scatter"] = Normal(math.log(scatter), deviation / math.log(middle))
         else:
-            found["log_strength"] = Normal(math.log(middle), deviation)
-    return found
+            priors["log_strength"] = Normal(math.log(middle), deviation)
+    return priors
 
 
 # how a value of a line is held, by its name: on the command line, in Python
@@ -217,25 +225,26 @@ def _range_of_scatter() -> tuple[float, float]:
 # bounds of the middle of a prior
 PRIORS = {"slope": BOUNDS["slope"], "scatter_in_cycles": _range_of_scatter(), "fatigue_strength": (1.0, MOST_STRESS)}
 EXAMPLES = {"slope": "8, 2", "scatter_in_cycles": "4, 0.5", "fatigue_strength": "500, 0.2"}
-LEAST_SPREAD, MOST_SPREAD = 1e-4, 1e4  # of a prior
+LEAST_SPREAD = 1e-4  # of a prior
+MOST_SPREAD = 1e4
 
 
 def _of_group(tests: TestTable, group: str | None) -> TestTable:
     """Return the rows of one group; refuse a table with several groups of which none is asked for."""
-    found = Counter(tests.text(row, "group") for row in tests)
+    counts = Counter(tests.text(row, "group") for row in tests)
     if group is not None:
         group = str(group)
         rows = [row for row in tests if tests.text(row, "group") == group]
         if not rows:
-            names = sorted(filter(None, found))
+            names = sorted(filter(None, counts))
             if not names:
                 raise InputError("group", group, "a group of the table, which has none", "Leave the group out.")
             raise InputError("group", group, f"a group of the table: {listing(names, 'or')}")
         return tests.keep(rows)
-    if len(found) > 1:
+    if len(counts) > 1:
         first = tests.text(0, "group")
         row = next(row for row in tests if tests.text(row, "group") != first)
-        allowed = f"one group; the table mixes {listing(sorted(map(repr, found)))}"
+        allowed = f"one group; the table mixes {listing(sorted(map(repr, counts)))}"
         raise tests.error(row, "group", allowed, "Choose one with --group NAME (group=), and fit each alone.")
     return tests
 
@@ -249,16 +258,16 @@ def _column_of_ends(tests: TestTable) -> str:
         raise tests.error(
             0, "censored", "one column that says which specimens failed", f"Remove {listing(heads, 'or')}."
         )
-    said = [
+    in_words = [
         column
         for column in ("status", "note")
         if column in names and all(says_how(tests.text(r, column)) for r in tests)
     ]
-    if not given and not said:
+    if not given and not in_words:
         allowed = "a column failed, with yes for a failure and no for a run-out; or a column runout, with the opposite"
         remedy = f"The table has {', '.join(tests.heads.get(name, name) for name in names)}."
         raise tests.placed(InputError("column failed", None, allowed, remedy))
-    return [*given, *said][0]
+    return [*given, *in_words][0]
 
 
 def _read_ends(tests: TestTable) -> list[bool]:
@@ -266,7 +275,7 @@ def _read_ends(tests: TestTable) -> list[bool]:
     column = _column_of_ends(tests)
     cells = [tests.text(row, column) for row in tests]
     marks = only_marks(cells)
-    found = []
+    failures = []
     for row, cell in enumerate(cells):
         failed = has_failed(cell, column, marks)
         if failed is None:
@@ -278,8 +287,8 @@ def _read_ends(tests: TestTable) -> list[bool]:
             if cell:
                 remedy = "Correct the cell."
             raise tests.error(row, column, allowed, remedy)
-        found.append(failed)
-    return found
+        failures.append(failed)
+    return failures
 
 
 def _read_as(tests: TestTable, failed: Sequence[bool]) -> list[str]:
@@ -288,13 +297,15 @@ def _read_as(tests: TestTable, failed: Sequence[bool]) -> list[str]:
     heads = {name: head for name, head in tests.heads.items() if name in (*NEEDED, "failed", "censored", "group")}
     if column in ("censored", "status", "note"):
         heads[column] = tests.heads.get(column, column)
-    said = []
+    sentences = []
     if heads:
-        said = [told_heads(heads, {"amplitude": " [MPa]"})]
+        sentences = [told_heads(heads, {"amplitude": " [MPa]"})]
     if column != "failed" or only_marks(tests.text(row, column) for row in tests):
         number = len(failed) - sum(failed)
-        said.append(f"By the column '{tests.heads.get(column, column)}' {number} of {len(failed)} specimens ran out.")
-    return said
+        sentences.append(
+            f"By the column '{tests.heads.get(column, column)}' {number} of {len(failed)} specimens ran out."
+        )
+    return sentences
 
 
 def _observed(tests: TestTable, factor: float, failed: Sequence[bool]) -> Tests:
@@ -312,7 +323,10 @@ def _observed(tests: TestTable, factor: float, failed: Sequence[bool]) -> Tests:
             raise tests.error(row, "cycles", "a whole number of load cycles", TRAVEL)
         stress.append(math.log(factor * amplitude))
         low.append(math.log(cycles))
-        high.append(math.log(cycles) if failed[row] else math.inf)
+        if failed[row]:
+            high.append(math.log(cycles))
+        else:
+            high.append(math.inf)
     if max(low) < math.log(FEWEST_CYCLES):
         longest = int(np.argmax(low))
         allowed = f"a life of at least {FEWEST_CYCLES:g} cycles in one row; this one is the longest"
@@ -322,7 +336,7 @@ def _observed(tests: TestTable, factor: float, failed: Sequence[bool]) -> Tests:
 
 def _check_duplicates(tests: TestTable, failed: Sequence[bool]) -> None:
     """Refuse a name that stands twice, and two failures without names that are equal to the last digit."""
-    seen: dict[tuple, int] = {}
+    first_rows: dict[tuple, int] = {}
     for row in tests:
         name = tests.text(row, "test")
         key: tuple[object, ...]
@@ -330,12 +344,15 @@ def _check_duplicates(tests: TestTable, failed: Sequence[bool]) -> None:
             key = ("test", name)
         else:
             key = ("", *(tests.number(row, n) for n in ("amplitude", "cycles")))
-        if (name or failed[row]) and key in seen:
-            other = tests.lines[seen[key]]
+        if (name or failed[row]) and key in first_rows:
+            other = tests.lines[first_rows[key]]
             remedy = "Remove one of the two; if both were tested, name them in a column `test`."
             wrong = f"stands in row {other} as well"
-            raise tests.error(row, "test" if name else "cycles", "each test once", remedy, wrong)
-        seen[key] = row
+            column = "cycles"
+            if name:
+                column = "test"
+            raise tests.error(row, column, "each test once", remedy, wrong)
+        first_rows[key] = row
 
 
 def deviation_of(scatter_in_cycles: float) -> float:
@@ -377,17 +394,19 @@ def check_falls(tests: TestTable, observed: Tests, column: str, rows: Sequence[i
     rows : sequence of int, optional
         Row of the table of each test; by default all rows in their order.
     """
-    own = observed.failed
-    if own.sum() < 3 or np.ptp(observed.stress[own]) < 1e-9:
+    failed = observed.failed
+    if failed.sum() < 3 or np.ptp(observed.stress[failed]) < 1e-9:
         return
     from scipy import stats  # heavy, and a sheet of a fitted material needs no regression
 
-    found = stats.linregress(observed.stress[own], observed.middle[own])
-    if found.slope > 0 and found.pvalue < 0.1:
-        place = int(np.flatnonzero(own)[np.argmax(observed.middle[own])])
+    regression = stats.linregress(observed.stress[failed], observed.middle[failed])
+    if regression.slope > 0 and regression.pvalue < 0.1:
+        place = int(np.flatnonzero(failed)[np.argmax(observed.middle[failed])])
         allowed = "lives that fall with the stress; these grow, as a line with a negative slope"
         remedy = "Look whether columns or groups were mixed up."
-        raise tests.error(place if rows is None else rows[place], column, allowed, remedy)
+        if rows is not None:
+            place = rows[place]
+        raise tests.error(place, column, allowed, remedy)
 
 
 def _check_identified(tests: TestTable, observed: Tests, slope: float | None, scatter: float | None) -> None:
@@ -423,26 +442,26 @@ def _stated_at(line: Line) -> float:
 
 def _notes(load_type: str | None, ratio: float, knee: bool, observed: Tests) -> list[str]:
     """Return sentences on how the line enters a life."""
-    said = []
+    sentences = []
     if load_type is None:
-        said.append("The load type was not given: the amplitudes are taken as von Mises amplitudes.")
+        sentences.append("The load type was not given: the amplitudes are taken as von Mises amplitudes.")
     else:
-        said.append(
+        sentences.append(
             f"Load type {load_type}: {LOAD_TYPES[load_type][1]}. A roller is rated by its peak von Mises stress."
         )
     if math.isnan(ratio):
-        said.append("The stress ratio was not given: the amplitudes are taken as fully reversed.")
+        sentences.append("The stress ratio was not given: the amplitudes are taken as fully reversed.")
     elif ratio != -1.0:
-        said.append(f"Stress ratio {ratio:g}: the amplitudes enter without a correction for the mean stress.")
+        sentences.append(f"Stress ratio {ratio:g}: the amplitudes enter without a correction for the mean stress.")
     levels = Counter(np.round(observed.stress, 9).tolist())
     failing = Counter(np.round(observed.stress[observed.failed], 9).tolist())
     mixed = [level for level in levels if 0 < failing.get(level, 0) < levels[level]]
     if knee and mixed:
-        said.append(
+        sentences.append(
             f"{len(mixed)} levels hold failures and run-outs. Their failures count for the slope with the chance to "
             "fail at the level; a fit of the failures alone, or of levels above the limit alone, finds another slope."
         )
-    return said
+    return sentences
 
 
 def of_words(words: Collection[str], field: str) -> dict[str, list[float]]:
@@ -453,14 +472,14 @@ def of_words(words: Collection[str], field: str) -> dict[str, list[float]]:
     InputError
         For a word of another form.
     """
-    found = {}
+    priors = {}
     for word in words:
         name, sign, pair = word.partition("=")
         numbers = [finite_number(part) for part in pair.split(",")]
         if not sign or len(numbers) != 2 or any(map(math.isnan, numbers)):
             raise InputError(field, word, "NAME=MIDDLE,DEVIATION, two finite numbers", "For example slope=8,2")
-        if name.strip() in found:
+        if name.strip() in priors:
             remedy = f"Give {name.strip()} once."
             raise InputError(field, word, "one prior for each value", remedy, f"stands beside another {name.strip()}")
-        found[name.strip()] = numbers
-    return found
+        priors[name.strip()] = numbers
+    return priors

@@ -87,17 +87,15 @@ def fit_wear(
     group = wear_group(observed, observed, tuple(rows))
     given = {key: str(options.get(key, default)) for key, default in DEFAULTS.items() if key != "life_criterion"}
     notes = [f"The profile of the {body} was followed; the other body kept its profile."]
+    material: Any = case.guide_material
     if body == "roller":
-        own = case.roller_material
-    else:
-        own = case.guide_material
-    if isinstance(own, str):
-        base_name = own
-    else:
-        base_name = getattr(own, "name", "material")
+        material = case.roller_material
+    base_name = getattr(material, "name", "material")
+    if isinstance(material, str):
+        base_name = material
     given |= {"body": body}
-    told = not_given_notes([case])
-    return Fit("wear", name or f"{base_name} worn", (group,), rows, like or base_name, given, notes, told)
+    not_given = not_given_notes([case])
+    return Fit("wear", name or f"{base_name} worn", (group,), rows, like or base_name, given, notes, not_given)
 
 
 def followed(values: Mapping[str, Any], options: Mapping[str, Any], body: str, depths: np.ndarray) -> np.ndarray:
@@ -119,9 +117,9 @@ def followed(values: Mapping[str, Any], options: Mapping[str, Any], body: str, d
     numpy.ndarray
         NaN for a depth that the profile does not reach.
     """
-    own = {name: value for name, value in options.items() if name not in ("normal", "outputs", "life_criterion")}
+    settings = {name: value for name, value in options.items() if name not in ("normal", "outputs", "life_criterion")}
     case = {**values, "permissible_wear_depth": 1.001 * float(depths.max())}
-    ds = wear(case, f"{FARTHEST:g}km", outputs=("forces",), **own)
+    ds = wear(case, f"{FARTHEST:g}km", outputs=("forces",), **settings)
     deep = ds["groove_depth"].sel(body=body).max("contact").values
     travel = ds["travel"].values
     grown = deep > 0
@@ -129,5 +127,5 @@ def followed(values: Mapping[str, Any], options: Mapping[str, Any], body: str, d
     known_depth = np.log(deep[grown])
     known_travel = np.log(travel[grown])
     before = np.minimum(np.log(depths) - known_depth[0], 0.0)
-    found = np.exp(np.interp(np.log(depths), known_depth, known_travel) + before)
-    return np.where(depths > (1.0 + REACHED) * deep.max(), np.nan, found)
+    travels = np.exp(np.interp(np.log(depths), known_depth, known_travel) + before)
+    return np.where(depths > (1.0 + REACHED) * deep.max(), np.nan, travels)

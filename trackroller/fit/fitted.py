@@ -81,22 +81,22 @@ class Group:
     @property
     def names(self) -> tuple[str, ...]:
         """Return the names of the values that the tests were to tell."""
-        own = OF_GROUP[self.kind]
-        found = [own[name] for name in self.line.free if name in own]
+        names_by_value = OF_GROUP[self.kind]
+        names = [names_by_value[name] for name in self.line.free if name in names_by_value]
         if self.kind == "fatigue" and not self.line.knee:
-            found.insert(0, "fatigue_limit")
-        return tuple(found)
+            names.insert(0, "fatigue_limit")
+        return tuple(names)
 
     @property
     def unidentified(self) -> tuple[str, ...]:
         """Return the names of values whose estimate lies at a bound, or that no failure bounds."""
-        own = OF_GROUP[self.kind]
+        names_by_value = OF_GROUP[self.kind]
         if not self.line.tests.failed.any():
             return self.names
-        found = {own[name] for name in self.line.at_bound if name in own}
-        if "woehler_exponent" in found and not self.line.knee:
-            found.add("fatigue_limit")  # it lies on the line far from the tests
-        return tuple(name for name in self.names if name in found)
+        at_bound = {names_by_value[name] for name in self.line.at_bound if name in names_by_value}
+        if "woehler_exponent" in at_bound and not self.line.knee:
+            at_bound.add("fatigue_limit")  # it lies on the line far from the tests
+        return tuple(name for name in self.names if name in at_bound)
 
     def estimate(self, name: str) -> float:
         """Return the value of the largest likelihood, NaN where the tests do not identify it."""
@@ -128,17 +128,20 @@ class Group:
         """Return the profile interval of a value by its name, in its unit; an open end is inf or 0."""
         if name == "fatigue_limit" and not self.line.knee:
             return Interval(*np.exp(self.line.interval_of_strength(math.log(self.at), 0.5, confidence)).tolist())
-        place = next(key for key, own in OF_GROUP[self.kind].items() if own == name)
-        found = self.line.interval(place, confidence)
-        low, high = (
-            math.inf if end >= self.line.bounds[place][1] else 0.0 if end <= self.line.bounds[place][0] else
-            float(self._of(name, self.line.best._replace(**{place: end}))) for end in found
-        )  # fmt: skip
+        place = next(key for key, output in OF_GROUP[self.kind].items() if output == name)
+        ends = self.line.interval(place, confidence)
         if self.kind == "wear" and place == "level":  # a longer travel is a smaller coefficient
-            ends = [0.0 if math.isinf(end) and end > 0 else math.inf if math.isinf(end) else
-                    self.scale * math.exp(-end) for end in found]  # fmt: skip
-            low, high = ends[1], ends[0]
-        return Interval(low, high)
+            return Interval(self.scale * math.exp(-ends.high), self.scale * math.exp(-ends.low))
+        return Interval(self._end(name, place, ends.low), self._end(name, place, ends.high))
+
+    def _end(self, name: str, place: str, end: float) -> float:
+        """Return an end of the interval of a value in its unit; inf or 0 at a bound of the line's value `place`."""
+        lower, upper = self.line.bounds[place]
+        if end >= upper:
+            return math.inf
+        if end <= lower:
+            return 0.0
+        return float(self._of(name, self.line.best._replace(**{place: end})))
 
     def band(self, name: str, confidence: float = CONFIDENCE) -> tuple[float, float, float]:
         """Return low end, median and high end of a value by the posterior."""
@@ -205,7 +208,7 @@ class Fit:
     @property
     def unidentified(self) -> tuple[str, ...]:
         """Return the names of the values that the tests do not identify."""
-        return tuple(name for own in self.groups for name in own.unidentified)
+        return tuple(name for names_by_value in self.groups for name in names_by_value.unidentified)
 
     @cached_property
     def material(self) -> dict[str, Any]:
@@ -213,16 +216,19 @@ class Fit:
 
         With `like`, a case takes the entry as a material: `Case(roller_material=fit.material)`.
         """
-        entry: dict[str, Any] = {"name": self.name} | ({"like": self.like} if self.like else {})
-        for own in self.groups:
-            entry |= {n: own.estimate(n) for n in own.names if n in ENTRY and n not in own.unidentified}
-            if own.kind == "fatigue" and "fatigue_limit" in entry:
+        entry: dict[str, Any] = {"name": self.name}
+        if self.like:
+            entry["like"] = self.like
+        for group in self.groups:
+            known = [name for name in group.names if name in ENTRY and name not in group.unidentified]
+            entry |= {name: group.estimate(name) for name in known}
+            if group.kind == "fatigue" and "fatigue_limit" in entry:
                 entry["cycles_at_fatigue_limit"] = self.knee
-                held = own.line.best
-                if "slope" not in own.line.free:
-                    entry["woehler_exponent"] = float(held.slope)
-                if "log_scatter" not in own.line.free:
-                    entry["scatter_in_cycles"] = float(ln_range(math.exp(held.log_scatter)))
+                best = group.line.best
+                if "slope" not in group.line.free:
+                    entry["woehler_exponent"] = float(best.slope)
+                if "log_scatter" not in group.line.free:
+                    entry["scatter_in_cycles"] = float(ln_range(math.exp(best.log_scatter)))
         return entry
 
     @property
@@ -246,9 +252,13 @@ class Fit:
         ends = [own.interval(name) for own, name in rows]
         columns |= {"low": [end.low for end in ends], "high": [end.high for end in ends]}
         failed = {own.kind: bool(own.line.tests.failed.any()) for own in self.groups}
-        bands = [own.band(name) if failed[own.kind] else (math.nan,) * 3 for own, name in rows]
-        for i, name in enumerate(("posterior_low", "posterior_median", "posterior_high")):
-            columns[name] = [band[i] for band in bands]
+        columns |= {name: [math.nan] * len(rows) for name in ("posterior_low", "posterior_median", "posterior_high")}
+        for row, (own, name) in enumerate(rows):
+            if failed[own.kind]:
+                low, median, high = own.band(name)
+                columns["posterior_low"][row] = low
+                columns["posterior_median"][row] = median
+                columns["posterior_high"][row] = high
         words = {
             "estimate": "value of the largest likelihood, missing where the tests do not identify it",
             "low": "low end of the 90 % profile interval",
@@ -284,8 +294,8 @@ class Fit:
                 f"{own.kind}_reference": own.line.reference,
                 f"{own.kind}_knee": int(own.line.knee),
             }
-            held = {"slope": own.line.slope, "scatter": own.line.scatter}
-            attributes |= {f"{own.kind}_held_{key}": value for key, value in held.items() if value is not None}
+            constants = {"slope": own.line.slope, "scatter": own.line.scatter}
+            attributes |= {f"{own.kind}_held_{key}": value for key, value in constants.items() if value is not None}
             if own.kind == "fatigue":
                 low, high, cycles = own.tested
                 attributes |= {"tested_stress": [low, high], "tested_cycles": cycles}
@@ -374,8 +384,10 @@ class Fit:
         failure_probability = share("failure_probability", failure_probability)
         confidence = share("confidence", confidence)
         stress, per_hour = worst_stress(design, self.given, self.name)
-        found = self.group("fatigue").line.interval_of_life(math.log(stress), failure_probability, confidence)
-        return Interval(*(float(np.exp(end)) / per_hour for end in found))
+        cycles = _unlogged(
+            self.group("fatigue").line.interval_of_life(math.log(stress), failure_probability, confidence)
+        )
+        return Interval(cycles.low / per_hour, cycles.high / per_hour)
 
     def estimate(self, quantity: str, *, amplitude: float = math.nan, failure_probability: float = 0.5) -> float:
         """Return the most likely value of a quantity, as `interval` names them."""
@@ -468,17 +480,16 @@ def _unlogged(interval: Interval) -> Interval:
 
 def _positive(name: str, value: Any, purpose: str) -> float:
     """Return an amplitude [MPa] or a number of cycles; refuse other values."""
+    unit, low, high = "-", 1.0, MOST_CYCLES
+    allowed = f"a finite number from {low:g} to {high:g}"
     if name == "amplitude":
         unit, low, high = "MPa", LEAST_STRESS, MOST_STRESS
-    else:
-        unit, low, high = "-", 1.0, MOST_CYCLES
-    if value is None:
-        number = math.nan
-    else:
+        allowed = f"a finite number from {low:g} to {high:g} MPa"
+    number = math.nan
+    if value is not None:
         number = finite_number(value, unit, name)
     if not low <= number <= high:
-        shown = " MPa" if name == "amplitude" else ""
-        raise InputError(name, value, f"a finite number from {low:g} to {high:g}{shown}, for {purpose}")
+        raise InputError(name, value, f"{allowed}, for {purpose}")
     return number
 
 

@@ -74,23 +74,23 @@ def read_heads(heads: Iterable[str], known: Collection[str], names: Mapping[str,
         If two heads stand for one column.
     """
     columns = {other: column for column, others in names.items() for other in (column, *others.split())}
-    found: dict[str, Head] = {}
-    taken: dict[str, str] = {}
+    renamed: dict[str, Head] = {}
+    heads_of_columns: dict[str, str] = {}
     for head in map(str, heads):
         name, unit = split_head(head)
         if name in known:
-            one = Head(name, unit)
+            meaning = Head(name, unit)
         else:
-            one = _read_head(name, unit, columns)
-            if not one.column:
+            meaning = _read_head(name, unit, columns)
+            if not meaning.column:
                 continue
-            found[head] = one
-        if one.column in taken:
-            remedy = f"Remove one of the columns {taken[one.column]} and {head}."
-            wrong = f"stands for {one.column}, as {taken[one.column]} does"
-            raise InputError("column", head, f"one column for {one.column}", remedy, wrong)
-        taken[one.column] = head
-    return found
+            renamed[head] = meaning
+        if meaning.column in heads_of_columns:
+            remedy = f"Remove one of the columns {heads_of_columns[meaning.column]} and {head}."
+            wrong = f"stands for {meaning.column}, as {heads_of_columns[meaning.column]} does"
+            raise InputError("column", head, f"one column for {meaning.column}", remedy, wrong)
+        heads_of_columns[meaning.column] = head
+    return renamed
 
 
 def _read_head(name: str, unit: str, columns: Mapping[str, str]) -> Head:

@@ -54,7 +54,9 @@ Solved = Callable[[float, np.ndarray], np.ndarray]
 Profile = Callable[[float, np.ndarray], tuple[float, np.ndarray]]
 NEAR = 0.02  # in ln S, how far below a stress a fatigue limit is tried first
 SAME_MAXIMUM = 1e-6  # difference of ln L within which two maxima count as one
-MOST_LIMITS, LIMIT_SCATTERS = 40, (0.01, 0.04, 0.15, 0.5)  # at which the likelihood is looked at for starts
+# at which the likelihood is looked at for starts
+MOST_LIMITS = 40
+LIMIT_SCATTERS = (0.01, 0.04, 0.15, 0.5)
 MOST_STARTS = 6  # limits from which Newton's method starts
 MOST_FURTHER = 2  # starts for a value of a profile that is less likely than an interval allows
 STEPS = np.arange(-2.0, 6.1, 0.5).tolist()  # of ln N, at which finite lives are tried below a fatigue limit
@@ -136,19 +138,14 @@ class Line:
     @cached_property
     def free(self) -> tuple[str, ...]:
         """Return the names of the values that are fitted."""
+        constant = set()
         if self.slope is not None or not self.sloped:
-            held = {"slope"}
-        else:
-            held = set()
+            constant.add("slope")
         if self.scatter is not None:
-            held |= {"log_scatter"}
-        else:
-            held |= set()
-        if self.knee:
-            held |= set()
-        else:
-            held |= {"log_limit", "log_limit_scatter"}
-        return tuple(name for name in NAMES if name not in held)
+            constant.add("log_scatter")
+        if not self.knee:
+            constant |= {"log_limit", "log_limit_scatter"}
+        return tuple(name for name in NAMES if name not in constant)
 
     @cached_property
     def bounds(self) -> dict[str, tuple[float, float]]:
@@ -173,13 +170,17 @@ class Line:
         return float(own.mean())
 
     @cached_property
-    def _held(self) -> np.ndarray:
+    def _constants(self) -> np.ndarray:
         """Return the values that are held, NaN for free ones, as `Values` orders them."""
+        slope = math.nan
+        log_scatter = math.nan
         if not self.sloped:
             slope = 0.0
-        else:
-            slope = math.nan if self.slope is None else self.slope
-        return np.array([math.nan, slope, math.nan if self.scatter is None else math.log(self.scatter), 0.0, 0.0])
+        elif self.slope is not None:
+            slope = self.slope
+        if self.scatter is not None:
+            log_scatter = math.log(self.scatter)
+        return np.array([math.nan, slope, log_scatter, 0.0, 0.0])
 
     @cached_property
     def _places(self) -> list[int]:
@@ -192,7 +193,7 @@ class Line:
 
     def values(self, points: np.ndarray) -> Values:
         """Return the values at points (..., p) of the free ones, each of shape (...)."""
-        every = np.broadcast_to(self._held, (*np.shape(points)[:-1], len(NAMES))).copy()
+        every = np.broadcast_to(self._constants, (*np.shape(points)[:-1], len(NAMES))).copy()
         every[..., self._places] = points
         return Values(*np.moveaxis(every, -1, 0))
 
@@ -242,13 +243,14 @@ class Line:
     def _distinct(self) -> dict[str, tuple[np.ndarray, ...]]:
         """Return stress, ends and number of equal tests, by the kind of their end."""
         rows = np.stack([self.tests.stress, self.tests.low, self.tests.high], axis=1)
-        found, times = np.unique(rows, axis=0, return_counts=True)
+        different, times = np.unique(rows, axis=0, return_counts=True)
+        _, low, high = different.T
         kinds = {
-            "observed": found[:, 1] == found[:, 2],
-            "inspected": (found[:, 1] < found[:, 2]) & np.isfinite(found[:, 2]),
-            "suspended": np.isposinf(found[:, 2]),
+            "observed": low == high,
+            "inspected": (low < high) & np.isfinite(high),
+            "suspended": np.isposinf(high),
         }
-        return {kind: (*found[own].T, times[own]) for kind, own in kinds.items() if own.any()}
+        return {kind: (*different[of_kind].T, times[of_kind]) for kind, of_kind in kinds.items() if of_kind.any()}
 
     @cached_property
     def estimate(self) -> np.ndarray:
@@ -266,14 +268,14 @@ class Line:
         def loss(points: np.ndarray) -> np.ndarray:
             return -self.log_likelihood(points)
 
-        found = sorted((least(loss, start, self.limits) for start in self._starts()), key=_value)
+        minima = sorted((least(loss, start, self.limits) for start in self._starts()), key=_value)
         if self.knee and self.tests.failed.any():
-            found += [least(loss, start, self.limits) for start in self._starts_by_limit()]
-        lowest = min(map(_value, found))
+            minima += [least(loss, start, self.limits) for start in self._starts_by_limit()]
+        lowest = min(map(_value, minima))
         # of places that are equally likely the first one stays, so that further starts change no last digit
-        found.sort(key=lambda one: max(_value(one) - lowest, SAME_MAXIMUM))
-        different = found[:1]
-        for one in found[1:]:
+        minima.sort(key=lambda one: max(_value(one) - lowest, SAME_MAXIMUM))
+        different = minima[:1]
+        for one in minima[1:]:
             if all(abs(_value(one) - _value(other)) > SAME_MAXIMUM for other in different):
                 different.append(one)
         return [place for place, _ in different]
@@ -316,25 +318,24 @@ class Line:
         x = self.tests.stress - self.reference
         y = self.tests.middle
         failed = self.tests.failed
-        own = failed if failed.any() else np.ones_like(failed)
-        x, y = x[own], y[own]
+        if failed.any():
+            x, y = x[failed], y[failed]
         spread = float(((x - x.mean()) ** 2).sum())
         fitted = 8.0
         if spread > 1e-12:
             fitted = -float((x * (y - y.mean())).sum()) / spread
-        if self.slope is None:
-            tried = [fitted, *slopes]
+        if not self.sloped:
+            starts = [0.0]
+        elif self.slope is not None:
+            starts = [float(np.clip(self.slope, *BOUNDS["slope"]))]
         else:
-            tried = [self.slope]
-        found = []
-        for slope in tried if self.sloped else [0.0]:
-            held = 0.0
-            if self.sloped:
-                held = float(np.clip(slope, *BOUNDS["slope"]))
-            along = y + held * x
+            starts = [float(np.clip(slope, *BOUNDS["slope"])) for slope in (fitted, *slopes)]
+        lines = []
+        for slope in starts:
+            along = y + slope * x
             scatter = max(float(np.std(along)), 0.1)
-            found.append(Values(float(along.mean()), held, math.log(scatter), 0.0, math.log(0.05)))
-        return found
+            lines.append(Values(float(along.mean()), slope, math.log(scatter), 0.0, math.log(0.05)))
+        return lines
 
     def _starts_by_limit(self) -> list[np.ndarray]:
         """Return the likeliest values with some fatigue limits, and those without a limit."""
@@ -354,7 +355,7 @@ class Line:
             limits = np.append(limits[0], np.quantile(self.tests.stress, np.linspace(0.0, 1.0, MOST_LIMITS - 1)))
         lines = self._lines_of_failures((5.0, 12.0, 25.0))
         lines.append(replace(self, knee=False).best)  # on it a run-out is a long life
-        found = [
+        points = [
             [
                 self._point(own._replace(log_limit=limit, log_limit_scatter=math.log(scatter)))
                 for own in lines
@@ -362,7 +363,7 @@ class Line:
             ]
             for limit in limits.tolist()
         ]
-        return np.clip(np.array(found), *self.limits.T)
+        return np.clip(np.array(points), *self.limits.T)
 
     def _point(self, values: Values) -> np.ndarray:
         """Return the free ones of values, (p,)."""
@@ -376,10 +377,10 @@ class Line:
         confidence : float
             Share of intervals that hold the true value, such as 0.9.
         """
-        left = max(self.size - len(self.free), 1)
-        square = float(stdtrit(left, 0.5 + 0.5 * confidence)) ** 2
+        freedom = max(self.size - len(self.free), 1)
+        square = float(stdtrit(freedom, 0.5 + 0.5 * confidence)) ** 2
         # with one or two tests more than values, t^2/2 would be far too wide: the mean of complete data has this form
-        return min(0.5 * square, 0.5 * self.size * math.log1p(square / left))
+        return min(0.5 * square, 0.5 * self.size * math.log1p(square / freedom))
 
     def log_life(self, values: Values, log_stress: float, probability: float) -> np.ndarray:
         """Return ln N at which a share of specimens has failed; inf below a fatigue limit that more survive.
@@ -441,7 +442,9 @@ class Line:
         endless = any(math.isinf(life(point)) for point in likely)
         if not endless:
             endless = self._endless(log_stress, probability) >= self._goal(confidence)
-        return Interval(low, math.inf if endless else high)
+        if endless:
+            return Interval(low, math.inf)
+        return Interval(low, high)
 
     def _finite_lives(
         self, log_stress: float, probability: float, confidence: float, level: Solved
@@ -461,10 +464,10 @@ class Line:
         """Return the largest ln L of lines whose fatigue limit at a failure probability is a stress."""
         place = self.free.index("log_limit")
 
-        def loss(rest: np.ndarray) -> np.ndarray:
-            limit = log_stress - np.exp(rest[..., -1]) * float(ndtri(probability))
+        def loss(others: np.ndarray) -> np.ndarray:
+            limit = log_stress - np.exp(others[..., -1]) * float(ndtri(probability))
             inside = (limit >= self.limits[place, 0]) & (limit <= self.limits[place, 1])
-            return np.where(inside, -self.log_likelihood(np.insert(rest, place, limit, axis=-1)), LARGE)
+            return np.where(inside, -self.log_likelihood(np.insert(others, place, limit, axis=-1)), LARGE)
 
         limits = np.delete(self.limits, place, axis=0)
         return max(-least(loss, np.delete(start, place), limits)[1] for start in self.maxima)
@@ -508,10 +511,8 @@ class Line:
         place = self.free.index(name)
         low, high = self.bounds[name]
         begins = [(float(point[place]), point) for point in self._likely(confidence)]
-        found = self._ends(begins, place, _itself, confidence)
-        open_low = found.low <= low
-        open_high = found.high >= high
-        return Interval(low if open_low else found.low, high if open_high else found.high)
+        ends = self._ends(begins, place, _itself, confidence)
+        return Interval(max(ends.low, low), min(ends.high, high))
 
     def _ends(
         self, begins: Sequence[tuple[float, np.ndarray]], place: int, solved: Solved, confidence: float
@@ -525,10 +526,9 @@ class Line:
         if not self.tests.failed.any():
             return self._without_failures(place, solved, confidence)
         goal = self._goal(confidence)
+        bounds = -math.inf, math.inf
         if place:
             bounds = self.limits[place]
-        else:
-            bounds = -math.inf, math.inf
         profile = self._profile(place, solved, goal)
         low, high = math.inf, -math.inf
         for value, point in begins:
@@ -551,18 +551,18 @@ class Line:
             further = np.clip(np.delete(np.concatenate(points), place, axis=1), *limits.T)
 
         def profile(value: float, start: np.ndarray) -> tuple[float, np.ndarray]:
-            def loss(rest: np.ndarray) -> np.ndarray:
-                own = solved(value, rest)
-                points = np.insert(rest, place, np.where(np.isfinite(own), own, 0.0), axis=-1)
+            def loss(others: np.ndarray) -> np.ndarray:
+                own = solved(value, others)
+                points = np.insert(others, place, np.where(np.isfinite(own), own, 0.0), axis=-1)
                 return np.where(np.isfinite(own), -self.log_likelihood(points), LARGE)
 
             if not len(start):
                 return -float(loss(start)), start
-            found = least(loss, start, limits)
-            if -found[1] < goal and len(further):
+            minimum = least(loss, start, limits)
+            if -minimum[1] < goal and len(further):
                 for other in further[np.argsort(loss(further), kind="stable")[:MOST_FURTHER]]:
-                    found = min(found, least(loss, other, limits), key=_value)
-            return -found[1], found[0]
+                    minimum = min(minimum, least(loss, other, limits), key=_value)
+            return -minimum[1], minimum[0]
 
         return profile
 
@@ -600,9 +600,11 @@ def least(loss: Callable[[np.ndarray], np.ndarray], start: np.ndarray, limits: n
         new = np.clip(point + step, *limits.T)
         if -(new - point) @ gradient < TOLERANCE:
             break
-        found = expanded(loss, new)
-        if found[0] < value:
-            point, (value, gradient, curvature), damping = new, found, 0.1 * damping
+        expansion = expanded(loss, new)
+        if expansion[0] < value:
+            point = new
+            value, gradient, curvature = expansion
+            damping = 0.1 * damping
         else:
             damping = max(10.0 * damping, 1e-2 * float(np.abs(np.diag(curvature)).max()), 1e-3)
     return point, value
@@ -627,9 +629,16 @@ def expanded(loss: Callable[[np.ndarray], np.ndarray], point: np.ndarray) -> tup
     return float(values[0]), (up - down) / (2.0 * STEP), curvature
 
 
-def _value(found: tuple[np.ndarray, float]) -> float:
-    """Return the value of what `least` found."""
-    return found[1]
+def log_or_end(value: float) -> float:
+    """Return ln of a number >= 0: -inf for 0, inf for inf."""
+    if value == 0:
+        return -math.inf
+    return math.log(value)
+
+
+def _value(minimum: tuple[np.ndarray, float]) -> float:
+    """Return the value at a minimum that `least` returned."""
+    return minimum[1]
 
 
 def _itself(value: float, others: np.ndarray) -> np.ndarray:
@@ -641,7 +650,8 @@ def _between(low: np.ndarray, high: np.ndarray) -> np.ndarray:
     """Return ln(Phi(high) - Phi(low)), accurate in both tails."""
     flip = low > 0
     low, high = np.where(flip, -high, low), np.where(flip, -low, high)
-    upper, lower = log_ndtr(high), log_ndtr(low)
+    upper = log_ndtr(high)
+    lower = log_ndtr(low)
     return np.asarray(upper + np.log1p(-np.minimum(np.exp(lower - upper), 1.0 - 1e-15)))
 
 
@@ -660,14 +670,16 @@ def _end(
     while True:
         outer = inner + side * step
         if not bounds[0] < outer < bounds[1]:
-            outer = float(bounds[0] if side < 0 else bounds[1])
+            outer = float(bounds[1])
+            if side < 0:
+                outer = float(bounds[0])
             if profile(outer, start)[0] >= goal:
                 return outer
-        value, found = profile(outer, start)
+        value, point = profile(outer, start)
         if value < goal:
             break
         inner = outer
-        start = found
+        start = point
         step = 2.0 * step
         if abs(inner - best) > FARTHEST:
             return side * math.inf
@@ -675,9 +687,10 @@ def _end(
         middle = 0.5 * (inner + outer)
         if abs(outer - inner) < 1e-4 * max(1.0, abs(inner - best)):
             break
-        value, found = profile(middle, start)
+        value, point = profile(middle, start)
         if value >= goal:
-            inner, outer, start = middle, outer, found
+            inner = middle
+            start = point
         else:
-            inner, outer, start = inner, middle, start
+            outer = middle
     return 0.5 * (inner + outer)

@@ -135,7 +135,7 @@ def ranked(
         See `next_tests`.
     """
     line = own.line
-    draws = _drawn(own.posterior, seed)
+    draws = _fewer_points(own.posterior, seed)
     goal = np.asarray(line.log_life(draws.values, stresses[0][-1], failure_probability))
     if not np.isfinite(goal).all():
         remedy = "Give a design that is loaded above the fatigue limit."
@@ -184,12 +184,12 @@ class _Candidate:
         observed = -0.5 * z**2 - np.log(self.scatter)
         return np.where((outcome >= self.limit)[:, None], log_ndtr(-z), observed)
 
-    def drawn(self, points: np.ndarray, normal: np.ndarray) -> np.ndarray:
+    def sampled(self, points: np.ndarray, normal: np.ndarray) -> np.ndarray:
         """Return the end under the values of some points, with standard normal numbers, both (m,)."""
         return np.minimum(self.mean[points] + self.scatter[points] * normal, self.limit)
 
 
-def _drawn(posterior: Posterior, seed: int) -> Posterior:
+def _fewer_points(posterior: Posterior, seed: int) -> Posterior:
     """Return a posterior with fewer points of equal weight."""
     rng = np.random.default_rng(seed)
     rows = rng.choice(len(posterior.weight), POINTS, p=posterior.weight)
@@ -229,11 +229,10 @@ def _stresses(cases: Sequence[Case], options: Mapping[str, Any], body: str) -> S
     solved = solved_rollers(cases, options)
     for i, regime in enumerate(solved.regime):
         if regime != "rolling":
+            case = f"candidate {i + 1}"
             if i == len(cases) - 1:
-                what = "design"
-            else:
-                what = f"candidate {i + 1}"
-            raise InputError(what, regime, "a roller that rolls", "Change its loads, or leave it out.")
+                case = "design"
+            raise InputError(case, regime, "a roller that rolls", "Change its loads, or leave it out.")
     b = BODIES.index(body)
     worse = np.argmax(solved.stress[:, :, b], axis=1)
     rows = np.arange(len(cases))
@@ -247,7 +246,7 @@ def _remaining(tests: Sequence[_Candidate], goal: np.ndarray, points: np.ndarray
     """Return the mean variance of ln B10 after tests whose ends are drawn."""
     log_weight = np.zeros((len(points), len(goal)))
     for i, test in enumerate(tests):
-        log_weight += test.log_likelihood(test.drawn(points, normal[:, i]))
+        log_weight += test.log_likelihood(test.sampled(points, normal[:, i]))
     weight = np.exp(log_weight - log_weight.max(axis=1, keepdims=True))
     weight /= weight.sum(axis=1, keepdims=True)
     mean = weight @ goal
@@ -270,9 +269,9 @@ def _ranked(
     after = [float(alone.min())]
     while len(chosen) < tests:
         before = [candidates[i] for i in chosen]
-        left = np.array([_remaining([*before, one], centred, points, normal) for one in candidates])
-        chosen.append(int(np.argmin(left)))
-        after.append(float(left.min()))
+        variances = np.array([_remaining([*before, one], centred, points, normal) for one in candidates])
+        chosen.append(int(np.argmin(variances)))
+        after.append(float(variances.min()))
     random = [
         _remaining([candidates[i] for i in rng.integers(0, len(candidates), tests)], centred, points, normal)
         for _ in range(12)
@@ -349,7 +348,7 @@ def tests_until(fit: Fit, plan: xr.Dataset, factor: float, *, campaigns: int = C
         zeros = np.zeros(campaigns)
         return _campaigns(zeros, zeros)
     rng = np.random.default_rng(seed)
-    found = []
+    campaigns_run = []
     for row in rng.choice(len(own.posterior.weight), campaigns, p=own.posterior.weight):
         truth = Values(*(float(np.broadcast_to(value, own.posterior.weight.shape)[row]) for value in values))
         place = np.arange(MOST_TESTS) % len(chosen)
@@ -363,8 +362,11 @@ def tests_until(fit: Fit, plan: xr.Dataset, factor: float, *, campaigns: int = C
         tests = Tests(x, np.minimum(end, limits), np.where(end < limits, end, np.inf))
         number = _first(line, tests, design, p, math.log(factor))
         hours = np.exp(tests.low) / rate[place]
-        found.append((number, hours[: int(number)].sum() if math.isfinite(number) else math.inf))
-    return _campaigns(*np.array(found, float).T)
+        if math.isfinite(number):
+            campaigns_run.append((number, hours[: int(number)].sum()))
+        else:
+            campaigns_run.append((number, math.inf))
+    return _campaigns(*np.array(campaigns_run, float).T)
 
 
 def check_factor(factor: Any) -> float:
@@ -407,11 +409,12 @@ def _first(line: Line, tests: Tests, log_stress: float, probability: float, goal
     while not narrow(high):
         if high >= MOST_TESTS:
             return math.inf
-        low, high = high, min(2 * high, MOST_TESTS)
+        low = high
+        high = min(2 * high, MOST_TESTS)
     while high - low > 1:
         middle = (low + high) // 2
         if narrow(middle):
-            low, high = low, middle
+            high = middle
         else:
-            low, high = middle, high
+            low = middle
     return float(high)

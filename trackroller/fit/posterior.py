@@ -19,7 +19,8 @@ from scipy.special import gammaincinv, ndtri
 
 from trackroller.fit.line import NAMES, Line, Values, expanded
 
-COARSE, FINE = 4096, 16384  # points of the first sets, and of the last
+COARSE = 4096  # points of the first sets
+FINE = 16384  # points of the last set
 ROUNDS = 3  # sets that only find mean and covariance
 FREEDOM = 4.0  # of the t distribution, whose tails must be heavier than those of the posterior
 WIDER = 1.3  # factor on the standard deviations of the posterior that was found
@@ -162,8 +163,8 @@ def posterior(line: Line, priors: Mapping[str, Normal] | None = None, at: float 
         middle = weight @ points
         spread = (points - middle).T @ (weight[:, None] * (points - middle))
         factor = np.linalg.cholesky(spread + 1e-12 * np.eye(p))
-    kept = weight > KEPT * weight.max()
-    return Posterior(line.values(points[kept]), weight[kept] / weight[kept].sum())
+    counts = weight > KEPT * weight.max()
+    return Posterior(line.values(points[counts]), weight[counts] / weight[counts].sum())
 
 
 @functools.cache

@@ -54,8 +54,8 @@ class StoredFit:
 
     def cycles(self, stress: float, probability: float) -> Interval:
         """Return the 90 % interval of the cycles under a stress [MPa] at a failure probability."""
-        found = self.line.interval_of_life(math.log(stress), probability)
-        return Interval(*(float(np.exp(end)) for end in found))
+        interval = self.line.interval_of_life(math.log(stress), probability)
+        return Interval(*(float(np.exp(end)) for end in interval))
 
     def extrapolates(self, stress: float | np.ndarray, cycles: float | np.ndarray) -> np.ndarray:
         """Return whether stresses [MPa] or lives lie beyond the tests, of the same shape."""
@@ -89,18 +89,22 @@ def stored_fit(name: str, values: Mapping[str, Any], file: Path | None = None) -
     if path is None or not path.is_file():
         return None
     try:
-        found = _read(path, name, path.stat().st_mtime_ns)
+        stored = _read(path, name, path.stat().st_mtime_ns)
     except KeyError as missing:
         allowed = "a file that `trackroller fit` of this version wrote"
         raise InputError("fit", str(path), allowed, "Fit the tests again.", f"lacks {missing}") from None
-    if found is None:
+    if stored is None:
         return None
-    fit, strength = found
+    fit, strength = stored
     ratio = values.get("fatigue_strength_ratio")
-    own = values.get("fatigue_limit", math.nan if ratio is None else ratio * values["tensile_strength"])
+    limit = values.get("fatigue_limit", math.nan)
+    if "fatigue_limit" not in values and ratio is not None:
+        limit = ratio * values["tensile_strength"]
     knee = values.get("cycles_at_fatigue_limit", math.nan)
-    agrees = all(abs(a - b) <= SAME * abs(b) for a, b in zip((own, knee), strength, strict=True))
-    return fit if agrees else None
+    agrees = all(abs(a - b) <= SAME * abs(b) for a, b in zip((limit, knee), strength, strict=True))
+    if agrees:
+        return fit
+    return None
 
 
 def fits_of_case(ds: xr.Dataset) -> tuple[dict[str, StoredFit], dict[str, str]]:
@@ -116,7 +120,7 @@ def fits_of_case(ds: xr.Dataset) -> tuple[dict[str, StoredFit], dict[str, str]]:
     tuple of dict
         Fits by body; and for a material whose fit had other options, these options in words.
     """
-    found = {}
+    fits = {}
     others = {}
     for body in BODIES:
         values = materials_of(ds)[f"{body}_material"]
@@ -127,8 +131,8 @@ def fits_of_case(ds: xr.Dataset) -> tuple[dict[str, StoredFit], dict[str, str]]:
         if other:
             others[fit.name] = " and ".join(other)
         else:
-            found[body] = fit
-    return found, others
+            fits[body] = fit
+    return fits, others
 
 
 @functools.lru_cache(maxsize=16)
@@ -155,18 +159,18 @@ def _read(path: Path, name: str, changed: int) -> tuple[StoredFit, tuple[float, 
 
 def _fit_of(ds: xr.Dataset, name: str) -> tuple[StoredFit, tuple[float, float]]:
     """Return the fit of a data set of this version, with strength and knee of its material."""
-    held = {key: ds.attrs.get(f"fatigue_held_{key}") for key in ("slope", "scatter")}
+    constants = {key: ds.attrs.get(f"fatigue_held_{key}") for key in ("slope", "scatter")}
     tests = Tests(*(ds[f"fatigue_test_{part}"].values for part in ("stress", "low", "high")))
     line = Line(
         tests,
-        slope=held["slope"],
-        scatter=held["scatter"],
+        slope=constants["slope"],
+        scatter=constants["scatter"],
         knee=bool(ds.attrs["fatigue_knee"]),
         specimens=int(ds.attrs["fatigue_tests"]),
     )
     names = {n: n.removeprefix("fatigue_") for n in map(str, ds.data_vars) if n.startswith("fatigue_")}
-    own = Posterior.from_dataset(ds[list(names)].rename(names))
+    posterior = Posterior.from_dataset(ds[list(names)].rename(names))
     given = {key.removeprefix(HOLDS): str(value) for key, value in ds.attrs.items() if key.startswith(HOLDS)}
     tested = (*map(float, ds.attrs["tested_stress"]), float(ds.attrs["tested_cycles"]))
-    fit = StoredFit(name, line, own, given, tested, int(ds.attrs["rows"]))  # type: ignore[arg-type]
+    fit = StoredFit(name, line, posterior, given, tested, int(ds.attrs["rows"]))  # type: ignore[arg-type]
     return fit, (float(ds.attrs["fatigue_limit"]), float(ds.attrs["cycles_at_fatigue_limit"]))

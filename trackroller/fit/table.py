@@ -99,7 +99,10 @@ class TestTable:
         if _is_empty(cell):
             return math.nan
         unit = UNITS.get(column, "-")
-        allowed = _allowed_number("" if unit in PLAIN else f" {unit}", lower, upper)
+        shown = f" {unit}"
+        if unit in PLAIN:
+            shown = ""
+        allowed = _allowed_number(shown, lower, upper)
         try:
             value = finite_number(cell, unit, column)
         except InputError:
@@ -115,8 +118,8 @@ class TestTable:
 
     def keep(self, rows: Sequence[int]) -> TestTable:
         """Return the table with some of its rows."""
-        kept = [self.rows[i] for i in rows], [self.lines[i] for i in rows]
-        return TestTable(*kept, self.path, self.digest, self.heads)
+        lines = [self.lines[i] for i in rows]
+        return TestTable([self.rows[i] for i in rows], lines, self.path, self.digest, self.heads)
 
     def __len__(self) -> int:
         return len(self.rows)
@@ -189,24 +192,24 @@ def read_tests(
         For a file that is not readable, a misspelt or missing column, and an empty table.
     """
     if isinstance(table, (str, Path)):
-        found, place = _tests_of_file(Path(table), known, optional, others)
+        tests, place = _tests_of_file(Path(table), known, optional, others)
     else:
-        found = _from_rows(table, known, others)
+        tests = _from_rows(table, known, others)
         place = 0
-    names = list(dict.fromkeys(name for row in found.rows for name in row))
+    names = list(dict.fromkeys(name for row in tests.rows for name in row))
     wrong = Collector()
     for name in names:
         with wrong.part():
             if name not in known:
-                raise found.placed(unknown_name("column", split_head(str(name))[0], known), place)
+                raise tests.placed(unknown_name("column", split_head(str(name))[0], known), place)
     for name in needed:
         with wrong.part():
             if name not in names and not wrong.errors:
                 allowed = f"a column {name}{_with_unit(name)}"
                 remedy = f"The table has {', '.join(names) or 'no columns'}."
-                raise found.placed(InputError(f"column {name}", None, allowed, remedy), place)
+                raise tests.placed(InputError(f"column {name}", None, allowed, remedy), place)
     wrong.check()
-    return found
+    return tests
 
 
 def _with_unit(name: str) -> str:
@@ -223,14 +226,14 @@ def _tests_of_file(
         heads = read_heads(written, known, others)
     except InputError as error:
         raise error.at(path, line) from None
-    names = {split_head(head)[0]: one for head, one in heads.items()}
-    numbers = {name: UNITS[one.column] for name, one in names.items() if one.column in UNITS}
-    empty = {head for head, one in heads.items() if one.column in optional}
-    found, place = from_file(path, {*optional, *empty}, further=numbers)
-    columns = {name: one for name, one in {**heads, **names}.items() if name in found.rows[0]}
-    rows = [dict(_renamed(name, cell, columns.get(name)) for name, cell in row.items()) for row in found.rows]
-    read_as = {one.column: name for name, one in columns.items()}
-    return TestTable(rows, found.lines, found.path, found.digest, read_as), place
+    names = {split_head(head)[0]: meaning for head, meaning in heads.items()}
+    numbers = {name: UNITS[meaning.column] for name, meaning in names.items() if meaning.column in UNITS}
+    empty = {head for head, meaning in heads.items() if meaning.column in optional}
+    tests, place = from_file(path, {*optional, *empty}, further=numbers)
+    columns = {name: meaning for name, meaning in {**heads, **names}.items() if name in tests.rows[0]}
+    rows = [dict(_renamed(name, cell, columns.get(name)) for name, cell in row.items()) for row in tests.rows]
+    read_as = {meaning.column: name for name, meaning in columns.items()}
+    return TestTable(rows, tests.lines, tests.path, tests.digest, read_as), place
 
 
 def _renamed(name: str, cell: Any, head: Head | None) -> tuple[str, Any]:
@@ -263,10 +266,10 @@ def from_file(
     """
     wrong = Collector()
     with noted_reads() as read:
-        found = read_table(path, field, row, wrong, optional=optional, further=further)
+        cells = read_table(path, field, row, wrong, optional=optional, further=further)
     wrong.check()
-    rows = [dict(zip(found.names, line, strict=True)) for line in found.lines.values()]
-    return TestTable(rows, list(found.lines), path, read[path.resolve()][1]), found.head
+    rows = [dict(zip(cells.names, line, strict=True)) for line in cells.lines.values()]
+    return TestTable(rows, list(cells.lines), path, read[path.resolve()][1]), cells.head
 
 
 def _from_rows(table: Any, known: Collection[str], others: Mapping[str, str]) -> TestTable:
@@ -274,7 +277,7 @@ def _from_rows(table: Any, known: Collection[str], others: Mapping[str, str]) ->
     if table is None:
         raise InputError(FIELD, None, allowed)
     if hasattr(table, "columns"):
-        given = rows_of(table, FIELD)
+        entries = rows_of(table, FIELD)
     elif isinstance(table, Mapping):
         columns = {name: plain(values, str(name)) for name, values in table.items()}
         for name, values in columns.items():
@@ -282,18 +285,19 @@ def _from_rows(table: Any, known: Collection[str], others: Mapping[str, str]) ->
                 raise InputError(f"{FIELD}: {name}", values, "a list with one value for each test")
         if len({len(values) for values in columns.values()}) > 1:
             raise InputError(FIELD, list(columns), "columns of the same length")
-        given = [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
+        entries = [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
     else:
-        given = plain(table, FIELD)
-        if not isinstance(given, list) or not all(isinstance(row, Mapping) for row in given):
+        entries = plain(table, FIELD)
+        if not isinstance(entries, list) or not all(isinstance(row, Mapping) for row in entries):
             remedy = "Name the columns, such as {'amplitude': [...], 'cycles': [...], 'failed': [...]}."
             raise InputError(FIELD, table, allowed, remedy)
-    if not given:
+    if not entries:
         raise InputError(FIELD, None, "a table with at least one test")
-    heads = read_heads(dict.fromkeys(str(head) for row in given for head in row), known, others)
-    written = {head: f"{one.column} [{one.unit}]" if one.unit else one.column for head, one in heads.items()}
-    rows = [dict(_cell(written.get(str(head), str(head)), value) for head, value in row.items()) for row in given]
-    read_as = {one.column: head for head, one in heads.items()}
+    heads = read_heads(dict.fromkeys(str(head) for row in entries for head in row), known, others)
+    written = {head: meaning.column for head, meaning in heads.items()}
+    written |= {head: f"{meaning.column} [{meaning.unit}]" for head, meaning in heads.items() if meaning.unit}
+    rows = [dict(_cell(written.get(str(head), str(head)), value) for head, value in row.items()) for row in entries]
+    read_as = {meaning.column: head for head, meaning in heads.items()}
     return TestTable(rows, list(range(1, len(rows) + 1)), heads=read_as)
 
 

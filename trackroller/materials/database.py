@@ -182,7 +182,8 @@ class MaterialDatabase:
 
     def _unknown_pair(self, names: list[tuple[str, ...]], level: str) -> InputError:
         label = tuple(body[-1] for body in names)
-        known = ", ".join("-".join(sorted(p) if len(p) == 2 else [*p, *p]) for p in self.friction_table)
+        pairs = [sorted(pair) for pair in self.friction_table]  # one name stands for both bodies
+        known = ", ".join(f"{pair[0]}-{pair[-1]}" for pair in pairs)
         remedy = (
             "Give friction_coefficient in the case, add the pair under `friction:` in your materials file, "
             "or give the material a `family` that has a friction coefficient."

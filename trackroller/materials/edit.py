@@ -144,10 +144,10 @@ def _with_entry(text: str, path: Path, name: str, entry: dict[str, Any], replace
     editor.indent(mapping=2, sequence=4, offset=2)
     data = editor.load(text)
     # ruamel.yaml would drop the comments of a file without entries, so they are put before the new section.
+    comments = ""
     if data is None:
-        kept, data = text.rstrip() + "\n", CommentedMap()
-    else:
-        kept, data = "", data
+        comments = text.rstrip() + "\n"
+        data = CommentedMap()
     if data.get("materials") is None:
         data["materials"] = CommentedMap()
     materials = data["materials"]
@@ -160,7 +160,7 @@ def _with_entry(text: str, path: Path, name: str, entry: dict[str, Any], replace
     materials.setdefault(_text(name), CommentedMap()).update(_block(entry))
     out = io.StringIO()
     editor.dump(data, out)
-    return kept + out.getvalue()
+    return comments + out.getvalue()
 
 
 def _block(entry: Mapping[str, Any]) -> Any:

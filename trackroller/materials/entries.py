@@ -153,7 +153,9 @@ class EntryParser:
             raise InputError(where, entry, f"a mapping with {', '.join(REQUIRED)}")
         given = self._given(where, entry, known)
         like = entry.get("like")
-        base = known.get(name if like is None else like)
+        if like is None:
+            like = name
+        base = known.get(like)
         records, points = self._with_curve(where, entry, given, base)
         missing = [key for key in REQUIRED if key not in records]
         if missing:
@@ -163,7 +165,6 @@ class EntryParser:
             raise InputError(where, given_names, "", remedy, wrong)
         numbers = {key: value.value for key, value in records.items()}
         numbers["fatigue_limit"] = numbers["fatigue_strength_ratio"] * numbers["tensile_strength"]
-        fields_of_line = {POINTS: points} if points else {}
         for key in contradictions(numbers).keys() - given.keys():  # inherited, but a given value excludes it
             del records[key]
         table: Any = entry.get(FIELD)
@@ -171,17 +172,10 @@ class EntryParser:
             table = {**table, "source": self.source(table["source"])}
         if FIELD not in entry and base and isinstance(base.temperature_dependence, TemperatureTable):
             table = base.temperature_dependence.without(given)  # a value that is given replaces its inherited column
-        fields: dict[str, Any] = (
-            {key: value.value for key, value in records.items()}
-            | fields_of_line
-            | {
-                "name": name,
-                FIELD: table,
-                "records": records,
-                "family": entry.get("family") or (base.family if base else ""),
-                "description": entry.get("description") or (base.description if base and "like" not in entry else ""),
-            }
-        )
+        fields: dict[str, Any] = {key: value.value for key, value in records.items()}
+        if points:
+            fields[POINTS] = points
+        fields |= {"name": name, FIELD: table, "records": records, **_words(entry, base)}
         try:
             return Material(**fields)
         except InputError as error:
@@ -213,25 +207,32 @@ class EntryParser:
         """
         if entry.get(POINTS) is not None:
             return self._line_by_points(where, entry, given)
-        own = given.keys() & {*CURVE, *FREE}
-        inherited = base.sn_points if base else ()
-        if not own:
+        of_curve = given.keys() & {*CURVE, *FREE}
+        inherited: Points = ()
+        if base:
+            inherited = base.sn_points
+        if not of_curve:
             return inherited, None
-        if not own <= set(FREE) or not (inherited or own == set(FREE)):
+        is_complete = of_curve == set(FREE)
+        changes_inherited = bool(inherited) and of_curve <= set(FREE)
+        if not is_complete and not changes_inherited:
             return (), None
-        if len(inherited) > 2 and own != set(FREE):
+        if len(inherited) > 2 and not is_complete:
             wrong = f"would change a part of the {POINTS} of the material that it changes"
-            name = min(own)
+            name = min(of_curve)
             allowed = f"{', '.join(FREE)} together"
             raise InputError(f"{where}.{name}", given[name].value, allowed, f"Or give {POINTS}.", wrong)
-        strength = getattr(base, STRENGTH, None)
-        if STRENGTH in given:
-            strength = given[STRENGTH].value
+        values: dict[str, Any] = {name: getattr(base, name, None) for name in (*FREE, STRENGTH)}
+        values |= {name: given[name].value for name in (*FREE, STRENGTH) if name in given}
+        limit, knee, exponent, strength = values.values()
         if strength is None:
             return (), None
-        limit, knee, exponent = (given[name].value if name in given else getattr(base, name) for name in FREE)
-        former = base.records if base else {}
-        sources = {key: given[name] if name in given else former[key] for key, name in SOURCE_OF.items()}
+        sources = {}
+        for key, name in SOURCE_OF.items():
+            if name in given:
+                sources[key] = given[name]
+            elif base:
+                sources[key] = base.records[key]
         return free_line(limit, knee, exponent, strength), sources
 
     def _line_by_points(
@@ -247,11 +248,18 @@ class EntryParser:
         mark = {key: record[key] for key in ("source", "placeholder", "note") if key in record}
         line = self.value(ALTERNATIVES["fatigue_limit"], {"value": points[-1][0], **mark}, where)
         # R_m may lie below the line, so that the bounds of these numbers do not hold beside points
-        beside = {name: v["value"] if isinstance(v, Mapping) else v for name, v in entry.items() if name in CURVE}
-        numbers = {name: number_or_nan(value) for name, value in beside.items() if value is not None}
+        numbers = {}
+        for name in CURVE:
+            value = entry.get(name)
+            if isinstance(value, Mapping):
+                value = value["value"]
+            if value is not None:
+                numbers[name] = number_or_nan(value)
         numbers |= {name: given[name].value for name in FREE if name in given}
-        strength = given.get(STRENGTH)
-        refuse_other_line(points, numbers, strength.value if strength else None, where)
+        strength = None
+        if STRENGTH in given:
+            strength = given[STRENGTH].value
+        refuse_other_line(points, numbers, strength, where)
         return points, dict.fromkeys(CURVE, line)
 
     def _given(self, where: str, entry: Mapping[Any, Any], known: Mapping[str, Material]) -> dict[str, Value]:
@@ -287,7 +295,9 @@ class EntryParser:
     def wear(self, entry: Any) -> dict[tuple[str, str], Value]:
         """Return the wear coefficients of one entry of the wear list, by the body that wears and its partner."""
         pair, given = self._of_pair(entry, "wear", "body", BODIES_OF_PAIR, PROPERTIES["wear_coefficient"])
-        return {pair if body == "first" else (pair[1], pair[0]): value for body, value in given.items()}
+        first, second = pair
+        by_bodies = {"first": (first, second), "second": (second, first)}
+        return {by_bodies[body]: value for body, value in given.items()}
 
     def _of_pair(
         self, entry: Any, section: str, kind: str, keys: tuple[str, ...], prop: Parameter
@@ -313,6 +323,16 @@ class EntryParser:
         if not levels:
             raise InputError(where, dict(entry), f"one of {', '.join(keys)}")
         return (pair[0], pair[1]), levels
+
+
+def _words(entry: Mapping[Any, Any], base: Material | None) -> dict[str, str]:
+    """Return family and description of an entry; a material with the same name or under `like` lends them."""
+    words = {"family": entry.get("family") or "", "description": entry.get("description") or ""}
+    if base and not words["family"]:
+        words["family"] = base.family
+    if base and not words["description"] and "like" not in entry:
+        words["description"] = base.description
+    return words
 
 
 def inline_material(entry: Mapping[str, Any], known: Mapping[str, Material]) -> Material:

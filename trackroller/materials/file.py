@@ -159,7 +159,10 @@ def _checked(data: Any, file: str, over: MaterialDatabase | None) -> MaterialDat
         with wrong.part("wear", str(i)):
             wear |= parser.wear(entry)
     wrong.check()
-    return MaterialDatabase(materials, friction, (*(over.files if over else ()), file), wear)
+    files: tuple[str, ...] = (file,)
+    if over:
+        files = (*over.files, file)
+    return MaterialDatabase(materials, friction, files, wear)
 
 
 def _sections(data: Any, file: str, wrong: Collector) -> dict[str, Any]:

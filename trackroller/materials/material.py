@@ -181,20 +181,23 @@ class Material(_OfLimits):  # type: ignore[misc, valid-type]
 
     def _ends(self) -> dict[str, tuple[float, float]]:
         """Return the worse and the better end of each placeholder of a limit; one without a range has none."""
-        return {
-            name: r.range[::-1] if name in LESS_IS_BETTER else r.range
-            for name, r in self.records.items()
-            if r.placeholder and r.range is not None and name in OF_LIMITS
-        }
+        ends = {}
+        for name, record in self.records.items():
+            if record.placeholder and record.range is not None and name in OF_LIMITS:
+                low, high = record.range
+                ends[name] = (low, high)
+                if name in LESS_IS_BETTER:
+                    ends[name] = (high, low)
+        return ends
 
-    def moved(self, position: float, held: Collection[str] = ()) -> Material:
+    def moved(self, position: float, fixed: Collection[str] = ()) -> Material:
         """Return the material with its placeholders of limits at another place in their ranges.
 
         Parameters
         ----------
         position : float
             -1 for the worse end of each range, 0 for the value, 1 for the better end; linear between them.
-        held : collection of str
+        fixed : collection of str
             Names of values that stay, because the user gave what replaces their range.
 
         Returns
@@ -208,10 +211,13 @@ class Material(_OfLimits):  # type: ignore[misc, valid-type]
         """
         values: dict[str, Any] = {}
         for name, (worse, better) in self._ends().items():
-            if name in held:
+            if name in fixed:
                 continue
             value = self.records[name].value
-            values[name] = value + abs(position) * ((better if position > 0 else worse) - value)
+            end = worse
+            if position > 0:
+                end = better
+            values[name] = value + abs(position) * (end - value)
         if position:
             return dataclasses.replace(self, **values)
         return self

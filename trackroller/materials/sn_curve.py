@@ -192,7 +192,8 @@ def _take_limit(known: dict[str, Value], given: Mapping, inherited: Mapping, whe
 def _solve(known: dict[str, Value], where: str) -> None:
     """Add the one value of the curve that is missing."""
     missing = next(name for name in CURVE if name not in known)
-    ratio, low, high, k = (known[name].value if name in known else math.nan for name in CURVE)
+    values = dict.fromkeys(CURVE, math.nan) | {name: value.value for name, value in known.items()}
+    ratio, low, high, k = (values[name] for name in CURVE)
     try:
         value = {
             "fatigue_strength_ratio": lambda: (high / low) ** (-1.0 / k),

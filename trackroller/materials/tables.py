@@ -53,8 +53,8 @@ def material_details(database: MaterialDatabase, name: str) -> list[dict[str, st
     if material.sn_points:
         of_limit = "the last point of sn_points"
         of_exponent = "of the last two points of sn_points"
-        ratio = material.records.get("fatigue_strength_ratio")
-        record = Value(nan, "MPa, -", ratio.source if ratio else "not given", bool(ratio and ratio.placeholder))
+        ratio = material.records.get("fatigue_strength_ratio", Value(nan, "-", "not given"))
+        record = Value(nan, "MPa, -", ratio.source, ratio.placeholder)
         shown = "; ".join(f"{stress:g}, {cycles:g}" for stress, cycles in material.sn_points)
         rows.append(_row("sn_points", "sigma_a, N", record) | {"value": shown})
     limit = Value(material.fatigue_limit, "MPa", of_limit, origin="derived")

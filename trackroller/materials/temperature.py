@@ -65,8 +65,10 @@ class TemperatureTable:
     def without(self, names: Collection[str]) -> TemperatureTable | None:
         """Return the table without the columns `names`; None if no column is left."""
         dropped: dict[str, Any] = {name: () for name in self.columns if name in names}
-        left = replace(self, **dropped)
-        return left if left.columns else None
+        table = replace(self, **dropped)
+        if not table.columns:
+            return None
+        return table
 
     def as_dict(self) -> dict[str, Any]:
         """Return the table as a material file holds it."""

@@ -164,13 +164,12 @@ def central_composite(count: int) -> np.ndarray:
     ----------
     Box & Wilson (1951), J. R. Stat. Soc. B 13, 1-45.
     """
+    remedy = _RANGE
+    if count > 8:
+        remedy = "Screen the factors first (morris or plackett_burman) and keep the influential ones."
     if not 1 <= count <= 8:
-        raise InputError(
-            "design",
-            f"central_composite with {count} numeric factors",
-            "1 to 8 numeric factors",
-            "Screen the factors first (morris or plackett_burman) and keep the influential ones." if count else _RANGE,
-        )
+        name = f"central_composite with {count} numeric factors"
+        raise InputError("design", name, "1 to 8 numeric factors", remedy)
     if count == 1:  # pyDOE needs two factors
         return np.array([[-1.0], [1.0], [-1.0], [1.0], [0.0]])
     from pydoe import ccdesign  # heavy, and other designs do not need it
@@ -197,13 +196,11 @@ def box_behnken(count: int) -> np.ndarray:
     ----------
     Box & Behnken (1960), Technometrics 2, 455-475.
     """
+    remedy = _RANGE
+    if count:
+        remedy = "Use central_composite (up to 8 factors), or lhs."
     if not 3 <= count <= 7:
-        raise InputError(
-            "design",
-            f"box_behnken with {count} numeric factors",
-            "3 to 7 numeric factors",
-            "Use central_composite (up to 8 factors), or lhs." if count else _RANGE,
-        )
+        raise InputError("design", f"box_behnken with {count} numeric factors", "3 to 7 numeric factors", remedy)
     if count not in _BLOCKS:
         from pydoe import bbdesign  # heavy, as above
 
@@ -251,8 +248,9 @@ def plackett_burman(count: int) -> np.ndarray:
 def _paley(order: int) -> np.ndarray:
     """Return the Hadamard matrix of Paley's first construction, shape (order, order), first column +1."""
     q = order - 1
-    squares = {i * i % q for i in range(1, q)}
-    legendre = np.array([0.0] + [1.0 if i in squares else -1.0 for i in range(1, q)])
+    legendre = np.full(q, -1.0)
+    legendre[0] = 0.0
+    legendre[np.arange(1, q) ** 2 % q] = 1.0
     matrix = np.ones((order, order))
     matrix[1:, 1:] = -(legendre[(np.arange(q)[:, None] - np.arange(q)) % q] + np.eye(q))
     return matrix
@@ -293,14 +291,20 @@ def effects(y: np.ndarray, coded: np.ndarray, listed: np.ndarray, quadratic: boo
     beta, *_ = np.linalg.lstsq(matrix, y, rcond=None)
     residual = y - matrix @ beta
     free = len(residual) - matrix.shape[1]
-    covariance = np.linalg.inv(matrix.T @ matrix) * (residual @ residual / free if free > 0 else np.nan)
-    wide = student.ppf(0.975, free) if free > 0 else np.nan
+    wide = np.nan
+    variance = np.nan
+    if free > 0:
+        wide = student.ppf(0.975, free)
+        variance = residual @ residual / free
     out["r_squared"] = np.array(1 - (residual @ residual) / ((y - y.mean()) ** 2).sum())
+    covariance = np.linalg.inv(matrix.T @ matrix) * variance
     for i in range(count):
         contrast = _contrast(i, bool(listed[i]), terms, beta)
         size = contrast @ beta
         half = wide * np.sqrt(contrast @ covariance @ contrast)
-        out["effect"][i], out["effect_low"][i], out["effect_high"][i] = size, size - half, size + half
+        out["effect"][i] = size
+        out["effect_low"][i] = size - half
+        out["effect_high"][i] = size + half
     for p, term in enumerate(terms):
         if term[0] == "square":
             out["curvature"][term[1]] = beta[p]

@@ -36,9 +36,11 @@ from scipy.stats import norm
 from trackroller.methods.intervals import Z
 
 FEW = 10  # a column with at most so many different values is a list: nothing is smoothed along it
-CELLS_X, CELLS_Y = 64, 96  # of ranks
-WIDTHS = (0.01, 0.02, 0.04, 0.08, 0.16)  # of the smoothing, in ranks from 0 to 1
-FOLDS, ROUNDS = 10, 2  # of the cross-validation
+CELLS_X = 64  # of ranks
+CELLS_Y = 96
+WIDTHS: tuple[float, ...] = (0.01, 0.02, 0.04, 0.08, 0.16)  # of the smoothing, in ranks from 0 to 1
+FOLDS = 10  # of the cross-validation
+ROUNDS = 2
 
 
 class Delta(NamedTuple):
@@ -69,13 +71,13 @@ def delta(y: np.ndarray, x: np.ndarray, ordered: bool = True, seed: int = 0) -> 
     x_cells = _cells(x, CELLS_X, ordered)
     y_cells = _cells(y, CELLS_Y, True)
     pairs = _kernels(x_cells, y_cells)
-    held, own = _separation(x_cells, y_cells, pairs, seed)
+    held_out, own = _separation(x_cells, y_cells, pairs, seed)
     rows = len(y)
-    overfit = min(1.0, max(0.0, (own - held) / max(own, 1e-300)))
+    overfit = min(1.0, max(0.0, (own - held_out) / max(own, 1e-300)))
     weight = 0.632 / (1 - 0.368 * overfit)
-    value = weight * held + (1 - weight) * own
+    value = weight * held_out + (1 - weight) * own
     free = min(1.0, 2 * _different(x_cells.place), 2 * _different(y_cells.place)) ** 0.5
-    half = Z * 0.5 * free * (1 - value**2) ** 0.5 / rows**0.5 + (1 - overfit) ** 0.5 * max(0.0, own - held)
+    half = Z * 0.5 * free * (1 - value**2) ** 0.5 / rows**0.5 + (1 - overfit) ** 0.5 * max(0.0, own - held_out)
     noise = float(norm.ppf(1 - 0.05 / len(pairs))) * 0.5 * free / rows**0.5
     return Delta(value, max(0.0, value - half), min(1.0, max(value + half, noise)), noise)
 
@@ -111,7 +113,10 @@ def _kernels(x: _Cells, y: _Cells) -> list[tuple[np.ndarray, np.ndarray]]:
             return _kernel(cells.number, width)
         return np.eye(cells.number)
 
-    return [(along(x, width), along(y, width)) for width in (WIDTHS if x.smooth or y.smooth else WIDTHS[:1])]
+    widths: tuple[float, ...] = WIDTHS[:1]
+    if x.smooth or y.smooth:
+        widths = WIDTHS
+    return [(along(x, width), along(y, width)) for width in widths]
 
 
 def _separation(x: _Cells, y: _Cells, kernels: list[tuple[np.ndarray, np.ndarray]], seed: int) -> tuple[float, float]:
@@ -122,7 +127,7 @@ def _separation(x: _Cells, y: _Cells, kernels: list[tuple[np.ndarray, np.ndarray
     rows = len(x.place)
     size = x.number * y.number
     rng = np.random.default_rng(seed)
-    held = np.zeros(len(kernels))
+    held_out = np.zeros(len(kernels))
     own = np.zeros(len(kernels))
     for _ in range(ROUNDS):
         part = rng.permutation(rows) % FOLDS
@@ -131,15 +136,15 @@ def _separation(x: _Cells, y: _Cells, kernels: list[tuple[np.ndarray, np.ndarray
         whole = new.sum(axis=0)
         number = new.sum(axis=(1, 2))[:, None, None]
         unlinked = whole.sum(axis=1)[:, None] * whole.sum(axis=0) / rows**2
-        made = (whole - new) / (rows - number) - unlinked
+        training = (whole - new) / (rows - number) - unlinked
         tried = new - number * unlinked
         all_rows = whole / rows
         for i, (along_x, along_y) in enumerate(kernels):
-            rule = np.sign(along_x @ made @ along_y)
-            held[i] += (rule * tried).sum() / (2 * rows * ROUNDS)
+            rule = np.sign(along_x @ training @ along_y)
+            held_out[i] += (rule * tried).sum() / (2 * rows * ROUNDS)
             own[i] = (np.sign(along_x @ (all_rows - unlinked) @ along_y) * (all_rows - unlinked)).sum() / 2
-    best = int(np.argmax(held))
-    return max(0.0, float(held[best])), float(own[best])
+    best = int(np.argmax(held_out))
+    return max(0.0, float(held_out[best])), float(own[best])
 
 
 def _different(place: np.ndarray) -> float:

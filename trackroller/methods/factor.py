@@ -55,7 +55,8 @@ UNBOUNDED = ("normal", "lognormal", "weibull")
 ROWS = "rows"
 LISTS = ("values", "linspace", "logspace", ROWS)
 KINDS = (*DISTRIBUTIONS, *LISTS, "expression")
-MOST_SPREAD, LEAST_SHAPE = 5.0, 0.2  # beyond, the values of one sample span 26 or 50 powers of ten
+MOST_SPREAD = 5.0  # beyond, the values of one sample span 26 powers of ten
+LEAST_SHAPE = 0.2  # below, they span 50
 TAIL = 0.01  # quantile at which an unbounded distribution is cut in designs that visit the ends of a range
 
 
@@ -177,7 +178,8 @@ class Factor:
             return np.asarray(triang.ppf(unit, (mode - low) / (high - low), low, high - low))
         if self.kind in UNBOUNDED:
             cut = max(tail, 1e-9)
-            unit, (first, second) = np.clip(unit, cut, 1 - cut), self.numbers
+            unit = np.clip(unit, cut, 1 - cut)
+            first, second = self.numbers
             if self.kind == "normal":
                 return np.asarray(norm.ppf(unit, first, second))
             if self.kind == "lognormal":

@@ -21,12 +21,16 @@ from trackroller.methods.replicates import wide
 
 MIN_ROWS = 30
 GROUPS = 20  # of the grouped jackknife
-HARMONICS, ROWS_PER_HARMONIC = 10, 16  # of RBD-FAST: SALib's number, fewer for small samples
+HARMONICS = 10  # of RBD-FAST: SALib's number
+ROWS_PER_HARMONIC = 16  # fewer harmonics for small samples
 ROWS_PER_LEVEL = 10  # of a column whose means are taken out before RBD-FAST: fewer would take much of the rest out
 DEPENDENT = 0.05  # share of the variance of a factor between the levels of a column, from which on the two depend
 ROUNDING = 1e-12  # share of variance
-FAST_RESAMPLES, FAST_ROWS, RARE_ROWS = 32, 4096, 40  # of the bootstrap; RARE_ROWS have a rare value
-ROWS_PER_COSINE, COSINES = 32, (4, 64)  # of a factor, for replicates: fewest and most cosines
+FAST_RESAMPLES = 32  # of the bootstrap
+FAST_ROWS = 4096
+RARE_ROWS = 40  # rows of the bootstrap with a rare value
+ROWS_PER_COSINE = 32  # of a factor, for replicates
+COSINES = (4, 64)  # fewest and most of them
 MEASURES = {
     "first": ("first", "first_low", "first_high"),
     "delta": ("delta", "delta_low", "delta_high", "delta_noise"),
@@ -114,21 +118,23 @@ def firsts(y: np.ndarray, unit: np.ndarray, ordered: np.ndarray, seed: int = 0) 
     for j, values, group in varied:
         x = unit[:, j]
         if ordered[j] and 2 * len(values) > len(x):
-            rest, share, error = _without(y, categories, x)
+            remainder, share, error = _without(y, categories, x)
             if share < ROUNDING:
                 out["first"][j] = out["first_low"][j] = out["first_high"][j] = 0.0
                 continue
             harmonics = max(2, min(HARMONICS, len(y) // ROWS_PER_HARMONIC))
-            plain = rbd_fast.compute_first_order(rbd_fast.permute_outputs(x, rest), harmonics)
+            plain = rbd_fast.compute_first_order(rbd_fast.permute_outputs(x, remainder), harmonics)
             value = share * float(rbd_fast.unskew_S1(plain, harmonics, len(y)))
             rng = np.random.default_rng(seed)
             with np.errstate(invalid="ignore"):  # a resample may miss a rare event altogether
-                spread = rbd_fast.bootstrap(x[some], rest[some], harmonics, FAST_RESAMPLES, 0.95, rng)
+                spread = rbd_fast.bootstrap(x[some], remainder[some], harmonics, FAST_RESAMPLES, 0.95, rng)
             half = np.hypot(share * float(spread) * (0.5 * len(some) / len(y)) ** 0.5, Z * error * value / share)
         else:
             value, error = first_order(y, group, seed)
             half = Z * error
-        out["first"][j], out["first_low"][j], out["first_high"][j] = value, value - half, value + half
+        out["first"][j] = value
+        out["first_low"][j] = value - half
+        out["first_high"][j] = value + half
     return out
 
 
@@ -137,16 +143,16 @@ def _without(y: np.ndarray, categories: list[np.ndarray], x: np.ndarray) -> tupl
 
     The means of a category that depends on the factor x stay: they hold influence of the factor.
     """
-    rest = y
+    remainder = y
     lost = 0
     error = 0.0
     for group in categories:
         count = np.bincount(group)
         if first_order(x, group)[0] < DEPENDENT:
-            rest = rest - (np.bincount(group, rest) / count)[group]
+            remainder = remainder - (np.bincount(group, remainder) / count)[group]
             lost = lost + len(count) - 1
             error = np.hypot(error, first_order(y, group)[1])
-    return rest, float(rest.var() / y.var() * len(y) / (len(y) - lost)), float(error)
+    return remainder, float(remainder.var() / y.var() * len(y) / (len(y) - lost)), float(error)
 
 
 def first_order(y: np.ndarray, group: np.ndarray, seed: int = 0) -> tuple[float, float]:
@@ -172,8 +178,8 @@ def first_order(y: np.ndarray, group: np.ndarray, seed: int = 0) -> tuple[float,
     total = sums.sum(axis=1)
     total_square = square.sum()
     value = _epsilon(total, np.asarray(total_square))
-    left = _epsilon(total[:, None, :] - sums, total_square - square)
-    error = np.sqrt((GROUPS - 1) / GROUPS * ((left - left.mean()) ** 2).sum())
+    without_one = _epsilon(total[:, None, :] - sums, total_square - square)
+    error = np.sqrt((GROUPS - 1) / GROUPS * ((without_one - without_one.mean()) ** 2).sum())
     return float(value), float(error)
 
 
@@ -340,8 +346,8 @@ def _deviation(kernel: np.ndarray) -> float:
     off = ~np.eye(count, dtype=bool)
     rows = np.where(off, kernel, 0.0).sum(axis=1) / (count - 1)
     effect = (count - 1) / (count - 2) * (rows - rows.mean())
-    rest = (kernel - rows.mean() - effect[:, None] - effect)[off]
-    remainder = (rest**2).sum() / (count * (count - 3))
+    residuals = (kernel - rows.mean() - effect[:, None] - effect)[off]
+    remainder = (residuals**2).sum() / (count * (count - 3))
     jackknifed = 4 * (count - 1) / (count * (count - 2) ** 2) * ((rows - rows.mean()) ** 2).sum()
     least = 2 * remainder / (count * (count - 1))
     return float(np.sqrt(max(jackknifed - 4 * remainder / (count * (count - 2)) + least, least)))

@@ -128,8 +128,8 @@ def variance_share(part: np.ndarray, axes: tuple[int, ...]) -> float:
 def closed_shares(table: np.ndarray, groups: Sequence[tuple[int, ...]]) -> tuple[np.ndarray, np.ndarray, int]:
     """Return first-order and total indices of groups of a grid's axes, and the number of cells behind them."""
     part = table[np.ix_(*complete_part(table))]
-    rest = [tuple(j for j in range(table.ndim) if j not in group) for group in groups]
-    first, others = (np.array([variance_share(part, axes) for axes in which]) for which in (groups, rest))
+    complements = [tuple(j for j in range(table.ndim) if j not in group) for group in groups]
+    first, others = (np.array([variance_share(part, axes) for axes in which]) for which in (groups, complements))
     return first, 1 - others, part.size
 
 

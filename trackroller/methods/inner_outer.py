@@ -46,12 +46,17 @@ class InnerOuter(Method):
             raise InputError("factors", list(free), allowed, remedy)
         if settings["replicates"] > 1 and not METHODS[settings["inner"]].grows:
             raise InputError("inner", settings["inner"], "a sample that grows, for independent replicates")
-        sample, more = METHODS[settings["inner"]].draw(inner, n, seed, settings)
+        sample, of_sample = METHODS[settings["inner"]].draw(inner, n, seed, settings)
         index, meta = Grid().draw(outer, 0, 0, {})
         sizes = list(settings["point_samples"]) or [n] * len(index)
         sides = np.repeat(index, sizes, axis=0), np.concatenate([sample[:size] for size in sizes])
         unit = in_order(np.concatenate(sides, axis=1), [*outer, *inner], free)
-        meta |= more | {"outer": list(outer), "inner": list(inner), "inner_samples": n, "design_points": len(index)}
+        meta |= of_sample | {
+            "outer": list(outer),
+            "inner": list(inner),
+            "inner_samples": n,
+            "design_points": len(index),
+        }
         if min(sizes) < n:
             meta |= {"point_samples": sizes}
         return unit, meta

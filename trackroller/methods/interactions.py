@@ -137,14 +137,17 @@ def _columns(
     """Return the columns of the largest polynomial; None if a factor has too many categories."""
     rows, count = unit.shape
     alone, joint = degrees[0]
-    found = [orthonormal(unit[:, j], bool(ordered[j]), alone, ranked) for j in range(count)]
-    bases = [base for base in found if base is not None]
+    polynomials = [orthonormal(unit[:, j], bool(ordered[j]), alone, ranked) for j in range(count)]
+    bases = [base for base in polynomials if base is not None]
     if len(bases) < count:
         return None
-    degree = [np.arange(base.shape[1]) + 1 if ordered[j] else np.ones(base.shape[1]) for j, base in enumerate(bases)]
+    degree: list[np.ndarray] = [np.ones(base.shape[1]) for base in bases]
+    for place in np.flatnonzero(ordered):
+        degree[place] = np.arange(bases[place].shape[1]) + 1
     parts = [(np.ones((rows, 1)), np.zeros(1)), *zip(bases, degree, strict=True)]
+    highest = [joint if rising else None for rising in ordered]  # a category has no degrees
     for i, j in combinations(range(count), 2):
-        one, other = (slice(joint if ordered[place] else None) for place in (i, j))
+        one, other = slice(highest[i]), slice(highest[j])
         product = (bases[i][:, one, None] * bases[j][:, None, other]).reshape(rows, -1)
         parts.append((product, np.maximum.outer(degree[i][one], degree[j][other]).ravel()))
     term = np.repeat(np.arange(len(parts)) - 1, [len(own) for _, own in parts])
@@ -216,19 +219,22 @@ def _jackknife(y: np.ndarray, table: np.ndarray, term: np.ndarray, seed: int) ->
     moment = np.zeros((GROUPS, table.shape[1]))
     for g in range(GROUPS):
         group = table[part == g]
-        gram[g], moment[g] = group.T @ group, group.T @ y[part == g]
+        gram[g] = group.T @ group
+        moment[g] = group.T @ y[part == g]
     square = np.bincount(part, y**2, GROUPS)
     rows = np.bincount(part, minlength=GROUPS)
     whole = gram.sum(axis=0), moment.sum(axis=0), square.sum(), rows.sum()
     share = _shares(*whole, term=term)
     sums = (gram, moment, square, rows)
-    left = np.array([_shares(*(a - b[g] for a, b in zip(whole, sums, strict=True)), term=term) for g in range(GROUPS)])
-    left = left[np.isfinite(left).all(axis=1)]
-    if len(left) > 1:
-        spread = ((left - left.mean(axis=0)) ** 2).sum(axis=0)
+    without_one = np.array(
+        [_shares(*(a - b[g] for a, b in zip(whole, sums, strict=True)), term=term) for g in range(GROUPS)]
+    )
+    without_one = without_one[np.isfinite(without_one).all(axis=1)]
+    if len(without_one) > 1:
+        spread = ((without_one - without_one.mean(axis=0)) ** 2).sum(axis=0)
     else:
         spread = np.full_like(share, np.nan)
-    return share, Z * np.sqrt((len(left) - 1) / max(1, len(left)) * spread)
+    return share, Z * np.sqrt((len(without_one) - 1) / max(1, len(without_one)) * spread)
 
 
 def _shares(gram: np.ndarray, moment: np.ndarray, square: float, rows: int, *, term: np.ndarray) -> np.ndarray:

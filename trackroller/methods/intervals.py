@@ -22,19 +22,19 @@ def constant(y: np.ndarray) -> bool:
     return y.size == 0 or float(np.ptp(y)) <= 1e-12 * float(np.max(np.abs(y), initial=0.0))
 
 
-def percentile_bounds(drawn: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def percentile_bounds(resamples: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return the 95 % bounds over resamples.
 
     Parameters
     ----------
-    drawn : estimates, shape (resamples, ...)
+    resamples : estimates, shape (resamples, ...)
 
     Returns
     -------
     Low and high, shape (...); NaN where fewer than half of the resamples have a value.
     """
-    good = np.isfinite(drawn)
+    good = np.isfinite(resamples)
     enough = good.mean(axis=0) > 0.5
-    drawn = np.where(good | ~enough, drawn, np.nan)
-    low, high = np.nanpercentile(np.where(enough, drawn, 0.0), [2.5, 97.5], axis=0)
+    resamples = np.where(good | ~enough, resamples, np.nan)
+    low, high = np.nanpercentile(np.where(enough, resamples, 0.0), [2.5, 97.5], axis=0)
     return np.where(enough, low, np.nan), np.where(enough, high, np.nan)

@@ -283,7 +283,11 @@ class Method:
     @property
     def defaults(self) -> dict[str, Any]:
         """Return the values of the settings that are not given."""
-        return {name: own.default if isinstance(own, Key) else own for name, own in self.takes.items()}
+        defaults = dict(self.takes)
+        for name, setting in self.takes.items():
+            if isinstance(setting, Key):
+                defaults[name] = setting.default
+        return defaults
 
     @property
     def follows(self) -> bool:

@@ -86,7 +86,8 @@ class Morris(Method):
     ) -> tuple[np.ndarray, np.ndarray]:
         """Return mu* of each factor."""
         if constant(y):
-            return (np.full(unit.shape[1], np.nan),) * 2
+            unknown = np.full(unit.shape[1], np.nan)
+            return unknown, unknown
         effect = np.abs(elementary_effects(y, unit, design.listed))
         filled = np.nan_to_num(effect)
         good = np.isfinite(effect).astype(float)
@@ -136,12 +137,12 @@ def morris(y: np.ndarray, unit: np.ndarray, listed: np.ndarray, seed: int = 0, r
     picks = np.random.default_rng(seed).integers(0, len(effect), (resamples, len(effect)))
     with np.errstate(invalid="ignore", divide="ignore"):
         filled = np.nan_to_num(np.abs(effect))
-        drawn = filled[picks].sum(axis=1) / good[picks].sum(axis=1)
+        resampled = filled[picks].sum(axis=1) / good[picks].sum(axis=1)
         out["mu"] = np.nan_to_num(effect).sum(axis=0) / used
         out["mu_star"] = filled.sum(axis=0) / used
         spread = np.where(good, (effect - out["mu"]) ** 2, 0.0).sum(axis=0) / (used - 1)
     out["sigma"] = np.sqrt(np.where(used > 1, spread, np.nan))
-    low, high = percentile_bounds(drawn)
+    low, high = percentile_bounds(resampled)
     # resamples of a dozen effects spread less than their mean does: as a normal quantile to that of Student's t;
     # of two or three effects t is so wide that nothing would follow for the samples that are needed
     least = np.maximum(used, 4)

@@ -27,7 +27,8 @@ from trackroller.errors import InputError
 from trackroller.methods.grid import Grid
 from trackroller.methods.method import METHODS, Drawn, Factors, Method, Settings, crossed, in_order
 
-CROSSOVER, MUTATION = 5.0, 10.0  # distribution indices: larger ones keep children nearer to their parents
+CROSSOVER = 5.0  # distribution indices: larger ones keep children nearer to their parents
+MUTATION = 10.0
 CROSSED = 0.9  # share of the children that mix two parents
 ROUNDS = 30  # attempts to find children that are new
 
@@ -242,9 +243,12 @@ def _mutated(children: np.ndarray, genes: Sequence[Gene], rng: np.random.Generat
 def _snapped(values: np.ndarray, genes: Sequence[Gene], whole: bool = True) -> np.ndarray:
     """Return genes inside their bounds; lists as whole numbers, rounded down (`whole`) or to the nearest one."""
     out = np.array(values, dtype=float)
+    shift = 0.5
+    if whole:
+        shift = 0.0
     for j, gene in enumerate(genes):
         if gene.levels:
-            out[:, j] = np.clip(np.floor(out[:, j] + (0.0 if whole else 0.5)), 0, gene.levels - 1)
+            out[:, j] = np.clip(np.floor(out[:, j] + shift), 0, gene.levels - 1)
         else:
             out[:, j] = np.clip(out[:, j], 0.0, 1.0)
     return out

@@ -113,7 +113,10 @@ class Saltelli(Method):
         def part(blocks: int) -> Estimates:
             return sobol(lean[:blocks].ravel(), count, False)
 
-        out |= convergence.course(part, at, part(blocks) if second else out, ("S1", "ST")) | given
+        whole = out
+        if second:
+            whole = part(blocks)
+        out |= convergence.course(part, at, whole, ("S1", "ST")) | given
         return Estimated(out, int(out.pop("blocks_used")), int(out.pop("blocks")), at)
 
     def from_replicates(
@@ -140,12 +143,14 @@ class Saltelli(Method):
         second = bool(design.meta["second_order"])
         exchanged = design.meta["groups"]
         columns = len(exchanged)
+        # a set of columns is a number with a bit for each of them
         sets = [1 << exchanged.index(name) for name in groups]
+        complements = [(1 << columns) - 1 - of_group for of_group in sets]
         block = by_block(y, design)
         block = block[np.isfinite(block).all(axis=1)]
-        whole = (1 << columns) - 1
-        drawn = closed_indices(block, columns, second, [*sets, *(whole ^ one for one in sets)])
-        return with_bounds("group_S1", drawn[:, : len(sets)]) | with_bounds("group_ST", 1 - drawn[:, len(sets) :])
+        closed = closed_indices(block, columns, second, [*sets, *complements])
+        first, of_complement = np.split(closed, 2, axis=1)
+        return with_bounds("group_S1", first) | with_bounds("group_ST", 1 - of_complement)
 
     def level_indices(self, y: np.ndarray, design: Design, place: int, inside: np.ndarray) -> Estimates:
         """Estimate from the blocks whose rows all lie at one level.
@@ -218,7 +223,10 @@ def draw(blocks: int, groups: Sequence[int], second_order: bool, seed: int) -> n
     exchanged = max(groups) + 1
     base = qmc.Sobol(d=2 * k, seed=seed).random(blocks)  # `seed`, as SALib has it: `rng` scrambles in another way
     a, b = base[:, :k], base[:, k:]
-    rows = np.repeat(a[:, None], (2 * exchanged if second_order else exchanged) + 2, axis=1)
+    size = exchanged + 2
+    if second_order:
+        size = 2 * exchanged + 2
+    rows = np.repeat(a[:, None], size, axis=1)
     rows[:, 1 + exchanged :] = b[:, None]  # the rows BA_j and B
     for column, group in enumerate(groups):
         rows[:, 1 + group, column] = b[:, column]
@@ -286,22 +294,25 @@ def sobol(y: np.ndarray, count: int, second_order: bool, seed: int = 0, resample
     mixtures belong together; the indices then describe the remaining rows (see `given_data`). The intervals treat
     the blocks as random. The blocks of a Sobol sequence have smaller errors, so the intervals are conservative.
     """
-    step = 2 * count + 2 if second_order else count + 2
+    # a set of factors is a number with a bit for each of them
+    single = [1 << j for j in range(count)]
+    complements = [(1 << count) - 1 - j for j in single]
+    pairs = []
+    step = count + 2
+    if second_order:
+        pairs = [one | other for one, other in combinations(single, 2)]
+        step = 2 * count + 2
     block = y[: y.size // step * step].reshape(-1, step)
     used = block[np.isfinite(block).all(axis=1)]
-    whole = (1 << count) - 1
-    single = [1 << j for j in range(count)]
-    double = []
-    if second_order:
-        double = [one | other for one, other in combinations(single, 2)]
-    drawn = closed_indices(used, count, second_order, [*single, *(whole ^ j for j in single), *double], seed, resamples)
-    first, rest, both = np.split(drawn, [count, 2 * count], axis=1)
+    sets = [*single, *complements, *pairs]
+    closed = closed_indices(used, count, second_order, sets, seed, resamples)
+    first, of_complement, of_pair = np.split(closed, [count, 2 * count], axis=1)
     out: Estimates = {"blocks": np.array(len(block)), "blocks_used": np.array(len(used))}
-    out |= with_bounds("S1", first) | with_bounds("ST", 1 - rest)
+    out |= with_bounds("S1", first) | with_bounds("ST", 1 - of_complement)
     if second_order:
         i, j = np.triu_indices(count, 1)
-        table = np.full((len(drawn), count, count), np.nan)
-        table[:, i, j] = both - first[:, i] - first[:, j]
+        table = np.full((len(closed), count, count), np.nan)
+        table[:, i, j] = of_pair - first[:, i] - first[:, j]
         out |= with_bounds("S2", table)
     return out
 
@@ -332,9 +343,13 @@ def closed_indices(
     Shape (1 + resamples, sets): the estimates, then the resamples. NaN if there are fewer than 8 clusters or the output
     is constant.
     """
-    clusters, cluster = np.unique(np.arange(len(block)) if cluster is None else cluster, return_inverse=True)
+    if cluster is None:
+        cluster = np.arange(len(block))
+    if weights is not None:
+        resamples = len(weights)
+    clusters, cluster = np.unique(cluster, return_inverse=True)
     if len(clusters) < MIN_BLOCKS or constant(block):
-        return np.full((1 + (resamples if weights is None else len(weights)), len(sets)), np.nan)
+        return np.full((1 + resamples, len(sets)), np.nan)
     pairs = pairs_sharing(count, second_order)
     terms = _pair_terms((block - block.mean()) / block.std(), [[(0, -1)], *(pairs[columns] for columns in sets)])
     beta = _control(*terms)

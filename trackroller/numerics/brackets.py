@@ -40,11 +40,8 @@ def narrowed(
         numbers = [number for number, values in enumerate(inner) for _ in values]
         answers = iter(holds(numbers, [value for values in inner for value in values]))
         for number, values in enumerate(inner):
-            held = [bool(next(answers)) for _ in values]
+            truths = [bool(next(answers)) for _ in values]
             line = [ends[number][0], *values, ends[number][1]]
-            if False in held:
-                last = held.index(False)
-            else:
-                last = len(held)
+            last = [*truths, False].index(False)  # the last value before the first one at which the condition fails
             ends[number] = line[last], line[last + 1]
     return ends

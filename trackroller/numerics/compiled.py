@@ -38,12 +38,12 @@ def forget_stale(package: Path) -> None:
     in other files would go on with the old one.
     """
     with contextlib.suppress(OSError):  # a folder that cannot be written, or another process that deletes the same
-        kept = {path: path.stat().st_mtime for path in package.glob("**/__pycache__/*.nb[ic]")}
-        oldest = min(kept.values(), default=float("inf"))
+        kernels = {path: path.stat().st_mtime for path in package.glob("**/__pycache__/*.nb[ic]")}
+        oldest = min(kernels.values(), default=float("inf"))
         changed = [path for path in package.glob("**/*.py") if path.stat().st_mtime > oldest]
         texts = {path: path.read_text(encoding="utf-8") for path in changed}
         newest = max((p.stat().st_mtime for p, text in texts.items() if COMPILES.search(text)), default=0)
-        for path, time in kept.items():
+        for path, time in kernels.items():
             if time < newest:
                 path.unlink(missing_ok=True)
 
@@ -64,9 +64,14 @@ def can_cache(package: Path) -> bool:
     bool
         False if the temporary folder cannot be written either.
     """
-    given, users = os.environ.get("NUMBA_CACHE_DIR"), AppDirs("numba", appauthor=False).user_cache_dir
-    beside = {file.parent / "__pycache__" for file in package.rglob("*.py")}
-    if is_writable(given) if given else all(map(is_writable, beside)) or is_writable(users):
+    given = os.environ.get("NUMBA_CACHE_DIR")
+    users = AppDirs("numba", appauthor=False).user_cache_dir
+    if given:
+        can_write = is_writable(given)
+    else:
+        beside = {file.parent / "__pycache__" for file in package.rglob("*.py")}
+        can_write = all(map(is_writable, beside)) or is_writable(users)
+    if can_write:
         return True
     place = temporary_cache("NUMBA_CACHE_DIR", "numba", given or users)
     if place is None:

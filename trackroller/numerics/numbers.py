@@ -86,9 +86,14 @@ def number_or_nan(value: Any, unit: str | None = None, field: str = "", differen
     InputError
         If the text has a unit that is unknown or measures something else.
     """
-    parts = None if unit is None else split_quantity(value)
+    parts = None
+    if unit is not None:
+        parts = split_quantity(value)
+    digits = value
+    if parts is not None:
+        digits = parts[0]
     try:
-        number = read_number(parts[0] if parts else value)
+        number = read_number(digits)
     except RangeError as exc:
         if not field:
             return math.nan
@@ -149,10 +154,10 @@ def number_in(
     """
     number = number_or_nan(value, unit, field)
     if not lower <= number <= upper:
-        plain = ""
-        if isinstance(value, str):
-            plain = plain_quantity(value)
-        raise InputError(field, value, allowed, f"Write {plain}." if plain else "")
+        remedy = ""
+        if isinstance(value, str) and plain_quantity(value):
+            remedy = f"Write {plain_quantity(value)}."
+        raise InputError(field, value, allowed, remedy)
     return number
 
 
@@ -232,7 +237,7 @@ def written(values: list[float]) -> list[float]:
         even = [(first + i * step) / below for i in range(n)]
         if all(abs(one - value) <= error for one, value in zip(even, values, strict=True)):
             return even
-    return [_written(value, 16 * math.ulp(value)) if math.isfinite(value) else value for value in values]
+    return [_written(value, 16 * math.ulp(value)) for value in values]
 
 
 def _written(value: float, error: float) -> float:

@@ -71,15 +71,25 @@ class Parameter:
 
     def allowed(self) -> str:
         """Return what is allowed, in words."""
-        unit = "" if self.unit == "-" else f" {self.unit}"
+        unit = f" {self.unit}"
+        above, below = ">=", "<="
+        last = "finite"
+        if self.unit == "-":
+            unit = ""
+        if self.open_lower:
+            above = ">"
+        if self.open_upper:
+            below = "<"
+        if self.allow_infinite:
+            last = "finite or inf"
         parts = []
         if math.isfinite(self.lower):
-            parts.append(f"{'>' if self.open_lower else '>='} {self.lower:g}{unit}")
+            parts.append(f"{above} {self.lower:g}{unit}")
         if math.isfinite(self.upper):
-            parts.append(f"{'<' if self.open_upper else '<='} {self.upper:g}{unit}")
+            parts.append(f"{below} {self.upper:g}{unit}")
         if self.nonzero:
             parts.append(f"not 0 (at least {SMALLEST:g}{unit} in size)")
-        parts.append("finite or inf" if self.allow_infinite else "finite")
+        parts.append(last)
         number = f"a number for the {self.long_name} [{self.unit}], " + ", ".join(parts)
         if self.words:
             return f"{number}; or {', '.join(self.words[:-1])} or {self.words[-1]}"

@@ -39,9 +39,9 @@ def distinct(objects: Iterable[Any]) -> tuple[list[Any], np.ndarray]:
     """
     column = list(objects)
     keys = list(map(id, column))
-    found = dict(zip(keys, column, strict=True))
-    places = {key: place for place, key in enumerate(found)}
-    return list(found.values()), np.fromiter(map(places.__getitem__, keys), int, len(keys))
+    by_id = dict(zip(keys, column, strict=True))
+    places = {key: place for place, key in enumerate(by_id)}
+    return list(by_id.values()), np.fromiter(map(places.__getitem__, keys), int, len(keys))
 
 
 def once_each(make: Callable[[Any], Any], values: Iterable[Any]) -> list[Any]:
@@ -49,6 +49,11 @@ def once_each(make: Callable[[Any], Any], values: Iterable[Any]) -> list[Any]:
     values = list(values)
     if len(set(map(id, values))) == 1:  # a column of millions of cases mostly holds one object
         return [make(values[0])] * len(values)
-    keys = [value if isinstance(value, str) else repr(value) for value in values]
-    made = {key: make(value) for key, value in dict(zip(keys, values, strict=True)).items()}
-    return [made[key] for key in keys]
+    keys = []
+    for value in values:
+        if isinstance(value, str):
+            keys.append(value)
+        else:
+            keys.append(repr(value))
+    results = {key: make(value) for key, value in dict(zip(keys, values, strict=True)).items()}
+    return [results[key] for key in keys]

@@ -301,13 +301,13 @@ def _tidy(cell: str) -> str:
 
 def _parts(text: str) -> _Parts | None:
     """Return the parts of a cell with a number; None for any other cell."""
-    found = _NUMBER.fullmatch(text)
-    if found is None:
+    parts = _NUMBER.fullmatch(text)
+    if parts is None:
         return None
-    sign = found[1]
-    mantissa = found[2].rstrip(" ")
-    rest = found[3]
-    blank = " " if len(found[2]) > len(mantissa) else ""
+    sign = parts[1]
+    mantissa = parts[2].rstrip(" ")
+    rest = parts[3]
+    blank = " " if len(parts[2]) > len(mantissa) else ""
     exponent = None if blank else _EXPONENT.match(rest)
     if not exponent and not blank and ("." in mantissa or "," in mantissa):  # Fortran's 1.5D3; 5d3 is no number
         exponent = re.match(r"[dD](\d+)()", rest, re.ASCII)

@@ -57,29 +57,29 @@ def without_units(text: str, unit_of: Callable[[str], str | None], field: str) -
     'max_pressure < 1500'
     """
 
-    def plain(found: re.Match[str]) -> str:
-        name, sign, number, unit = found.groups()
+    def plain(comparison: re.Match[str]) -> str:
+        name, sign, number, unit = comparison.groups()
         closes = unit.endswith(")") and "(" not in unit  # the bracket is one of the comparison, not of the unit
         end = ")" if closes else ""
         unit = unit.removesuffix(end)
-        wanted = unit_of(name)
-        if wanted is None:  # whoever reads the text refuses the name
+        target = unit_of(name)
+        if target is None:  # whoever reads the text refuses the name
             return f"{name}{sign}{number}{end}"
-        check_hours(f"{number} {unit}", unit, wanted, field)
-        return f"{name}{sign}{in_unit(float(number), unit, wanted, field):.15g}{end}"
+        check_hours(f"{number} {unit}", unit, target, field)
+        return f"{name}{sign}{in_unit(float(number), unit, target, field):.15g}{end}"
 
     if isinstance(text, str):
         return _COMPARED.sub(plain, text)
     return text
 
 
-def check_hours(given: Any, unit: str, wanted: str, field: str) -> None:
+def check_hours(given: Any, unit: str, target: str, field: str) -> None:
     """Refuse hours of travel that are given in another unit of time: a year of a duty has fewer of them than a year."""
-    if wanted == "h" and unit.strip() not in ("h", "hour", "hours", ""):
+    if target == "h" and unit.strip() not in ("h", "hour", "hours", ""):
         raise InputError(field, given, "hours of travel, h", "Multiply years by the hours of a year of the duty.")
 
 
-def in_unit(number: float, unit: str, wanted: str, field: str, difference: bool = False) -> float:
+def in_unit(number: float, unit: str, target: str, field: str, difference: bool = False) -> float:
     """Return a number in another unit.
 
     Parameters
@@ -103,10 +103,12 @@ def in_unit(number: float, unit: str, wanted: str, field: str, difference: bool 
     InputError
         If the unit is unknown or measures something else.
     """
-    if unit == wanted:
+    if unit == target:
         return number
-    factor, offset = _factor_and_offset(unit, wanted, field)
-    return float(f"{number * factor + (0.0 if difference else offset):.15g}")
+    factor, offset = _factor_and_offset(unit, target, field)
+    if difference:
+        offset = 0.0
+    return float(f"{number * factor + offset:.15g}")
 
 
 @functools.cache
@@ -122,32 +124,35 @@ def _registry() -> Any:
 
 
 @functools.lru_cache(maxsize=256)
-def _factor_and_offset(unit: str, wanted: str, field: str) -> tuple[float, float]:
-    own = "" if wanted in PLAIN else wanted
+def _factor_and_offset(unit: str, target: str, field: str) -> tuple[float, float]:
+    if target in PLAIN:
+        target = ""
     remedy = "Write a number without unit."
-    if own:
-        remedy = f"Write a number in {own}, or with a unit such as '5 {own}'."
+    if target:
+        remedy = f"Write a number in {target}, or with a unit such as '5 {target}'."
     try:
         if not re.fullmatch(_UNIT, unit.strip(), re.ASCII):
             raise ValueError(unit)
         spelt = _spelt(unit)
-        if spelt == "g" and _registry().Unit(_spelt(own)).dimensionality == _registry().Unit("m/s^2").dimensionality:
+        if spelt == "g" and _registry().Unit(_spelt(target)).dimensionality == _registry().Unit("m/s^2").dimensionality:
             spelt = "standard_gravity"  # of an acceleration; a mass keeps its gram
         zero, one = (_registry().Quantity(number, spelt) for number in (0.0, 1.0))
-        target = _registry().Unit(_spelt(own))  # a column of a user's own may have a unit that nobody knows
+        unit_of_target = _registry().Unit(_spelt(target))  # a column of a user's own may have a unit nobody knows
     except Exception:  # pint's parser raises a dozen kinds, also AssertionError
         raise InputError(field, unit, "a unit that is known", remedy) from None
     # radians are no dimension to pint, but an angle is no friction coefficient and 600 rpm are not 600/min
-    if one.to_base_units().units != _registry().Quantity(1.0, target).to_base_units().units:
+    if one.to_base_units().units != _registry().Quantity(1.0, unit_of_target).to_base_units().units:
         kind = "no unit, because the value is a plain number"
-        if own:
-            kind = f"a unit that can be converted to {own}"
+        if target:
+            kind = f"a unit that can be converted to {target}"
         raise InputError(field, unit, kind, remedy)
-    offset = zero.to(target).magnitude
-    return one.to(target).magnitude - offset, offset
+    offset = zero.to(unit_of_target).magnitude
+    return one.to(unit_of_target).magnitude - offset, offset
 
 
 def _spelt(unit: str) -> str:
     """Return a unit as pint reads it: 'N/mm2' as 'N/mm^2', 'Nmm' as 'N*mm'."""
-    unit = re.sub(r"(?<=[A-Za-z])(-?\d)", r"^\1", "" if unit in PLAIN else unit.replace("·", "*"))
+    if unit in PLAIN:
+        return ""
+    unit = re.sub(r"(?<=[A-Za-z])(-?\d)", r"^\1", unit.replace("·", "*"))
     return re.sub(r"\b([kM]?)N(mm|cm|m)\b", r"\1N*\2", unit)

@@ -117,25 +117,27 @@ class Tolerance:
         """
         peaks = bool(PEAK_OUTPUTS & set(outputs))
         if isinstance(value, Mapping):
-            asked = dict(value)
+            tolerances = dict(value)
+        elif peaks:
+            tolerances = {"forces": value, "peak": value}
         else:
-            asked = dict.fromkeys(("forces", *("peak",) * peaks), value)
-        for name, own in asked.items():
-            if own < SMALLEST[name]:
-                best = ", ".join(f"{key}: {max(SMALLEST[key], number):g}" for key, number in asked.items())
+            tolerances = {"forces": value}
+        for name, tolerance in tolerances.items():
+            if tolerance < SMALLEST[name]:
+                best = ", ".join(f"{key}: {max(SMALLEST[key], number):g}" for key, number in tolerances.items())
                 allowed = f"{SMALLEST[name]:g} or more for {name}, which the finest rung keeps in most cases"
                 raise InputError("accuracy", value, allowed, f"Write accuracy: {{{best}}}, or take 'reference'.")
-        extra = [name for name in ("peak", "life") if name in asked]
+        extra = [name for name in ("peak", "life") if name in tolerances]
         if extra and not peaks:
             remedy = f"Leave {extra[0]} out, or add peak_stress or life to outputs."
             raise InputError("accuracy", extra[0], "a tolerance of a quantity that is computed", remedy)
-        return cls(**asked)
+        return cls(**tolerances)
 
     @property
     def by_quantity(self) -> dict[str, float]:
         """Return the tolerances of forces and of peaks, as far as asked; a life takes a tenth, by a usual exponent."""
-        found = {"forces": self.forces, "peak": min(self.peak, self.life / USUAL_EXPONENT)}
-        return {name: own for name, own in found.items() if math.isfinite(own)}
+        tolerances = {"forces": self.forces, "peak": min(self.peak, self.life / USUAL_EXPONENT)}
+        return {name: tolerance for name, tolerance in tolerances.items() if math.isfinite(tolerance)}
 
 
 def tolerance_of(accuracy: Any, outputs: Iterable[str]) -> Tolerance | None:

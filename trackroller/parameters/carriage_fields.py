@@ -28,9 +28,9 @@ LABELS = {"mass": "mass of the carriage"} | {  # where the name says too little
 }
 
 
-def _field(name: str, unit: str, meaning: str, role: str = "choice", **more: object) -> Parameter:
+def _field(name: str, unit: str, meaning: str, role: str = "choice", **further: object) -> Parameter:
     label = LABELS.get(name, name.replace("_", " "))
-    return Parameter(PREFIX + name, "", unit, math.nan, meaning, label=label, role=role, **more)  # type: ignore[arg-type]
+    return Parameter(PREFIX + name, "", unit, math.nan, meaning, label=label, role=role, **further)  # type: ignore[arg-type]
 
 
 OF_LOAD_CASE = {  # fields of each load case
@@ -93,10 +93,10 @@ def split_field(name: str) -> tuple[str, str] | None:
 
 def field_of(name: str) -> Parameter | None:
     """Return the declaration of a field of a carriage, None for any other name."""
-    found = split_field(name)
-    if found is None:
+    parts = split_field(name)
+    if parts is None:
         return None
-    return (OF_WHOLE | OF_LOAD_CASE | OF_ROLLER)[found[0]]
+    return (OF_WHOLE | OF_LOAD_CASE | OF_ROLLER)[parts[0]]
 
 
 def parameter_of(name: str) -> Parameter | None:

@@ -40,14 +40,16 @@ def not_given(named: Iterable[str]) -> dict[str, Any]:
     """
     named = set(named)
     if "material_pair" in named:
-        both = set(_PAIR)
-    else:
-        both = set()
-    return {
-        name: str(value) if isinstance(value, str) else float(value)
-        for name, value in EXAMPLE.items()
-        if name not in named | both
-    }
+        named |= set(_PAIR)
+    values: dict[str, Any] = {}
+    for name, value in EXAMPLE.items():
+        if name in named:
+            continue
+        if isinstance(value, str):
+            values[name] = str(value)
+        else:
+            values[name] = float(value)
+    return values
 
 
 def used_of(values: Mapping[str, Any], names: Iterable[str]) -> dict[str, Any]:
@@ -65,11 +67,10 @@ def used_of(values: Mapping[str, Any], names: Iterable[str]) -> dict[str, Any]:
         levels = profile.get("values", [profile])
     else:
         levels = getattr(profile, "levels", [profile])
+    replaced = ""
     if all(levels):
-        drawn = {"roller_profile_radius"}
-    else:
-        drawn = set()
-    return {name: values[name] for name in names if name not in drawn}
+        replaced = "roller_profile_radius"
+    return {name: values[name] for name in names if name != replaced}
 
 
 def with_unit(name: str, value: Any) -> str:

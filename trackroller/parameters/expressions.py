@@ -208,8 +208,8 @@ def comparisons(text: str, field: str) -> tuple[Comparison, ...]:
         if not isinstance(part, ast.Compare) or len(part.ops) != 1 or type(part.ops[0]) not in _COMPARE:
             allowed = "comparisons (> >= < <= == !=) joined by 'or'"
             raise InputError(field, text, allowed, "For example: slip > 0.1 or max_pressure > 1500.")
-        left = ast.unparse(part.left)
-        compared.append(Comparison(left, _COMPARE[type(part.ops[0])][0], ast.unparse(part.comparators[0])))
+        value = ast.unparse(part.left)
+        compared.append(Comparison(value, _COMPARE[type(part.ops[0])][0], ast.unparse(part.comparators[0])))
     return tuple(compared)
 
 
@@ -239,6 +239,7 @@ def _tree(text: str, field: str) -> ast.expr:
 
 
 def _names(node: ast.AST) -> set[str]:
+    """Return the names below a node; those of functions and constants do not count."""
     if isinstance(node, ast.Name):
         return {node.id} - set(CONSTANTS)
     parts: Iterable[ast.AST] = ast.iter_child_nodes(node)
@@ -337,10 +338,10 @@ class _Evaluation:
                 if isinstance(op, ast.And):
                     join = np.logical_and
                 return self.joined(join, [self.truth(part) for part in parts])
-            case ast.Compare(left=left, ops=ops, comparators=rest) if all(type(op) in _COMPARE for op in ops):
-                sides = [self.value(part) for part in (left, *rest)]
-                held = [self.compared(*part, node) for part in zip(ops, sides, sides[1:], strict=False)]
-                return self.joined(np.logical_and, held)  # a part of constants has another shape
+            case ast.Compare(left=left, ops=ops, comparators=further) if all(type(op) in _COMPARE for op in ops):
+                sides = [self.value(part) for part in (left, *further)]
+                truths = [self.compared(*part, node) for part in zip(ops, sides, sides[1:], strict=False)]
+                return self.joined(np.logical_and, truths)  # a part of constants has another shape
             case ast.Call():
                 error = unknown_function(node, FUNCTIONS, self.field)
                 if error:
@@ -371,7 +372,8 @@ class _Evaluation:
     def chosen(self, parts: list[ast.expr], node: ast.AST) -> np.ndarray:
         """Return ``where(condition, one, other)``: numbers, NaN where the condition is undecided, or texts."""
         decider, *both = (self.value(part) for part in parts)
-        truth, (numbers, texts) = _truth(decider), _parted(both)
+        truth = _truth(decider)
+        numbers, texts = _parted(both)
         if truth is None:
             number = _number(decider)
             if number is None:
@@ -388,12 +390,17 @@ class _Evaluation:
         return chosen
 
     def compared(self, op: ast.cmpop, one: Any, other: Any, node: ast.AST) -> _Truth:
-        compare, (numbers, texts) = _COMPARE[type(op)][1], _parted([one, other])
+        compare = _COMPARE[type(op)][1]
+        numbers, texts = _parted([one, other])
         if texts and (numbers or not isinstance(op, (ast.Eq, ast.NotEq))):
             raise self.refused(node, "ordering a text, or comparing it with a number,")
-        sides = numbers or [np.asarray(text, dtype=object) for text in texts]
-        given = [~np.isnan(side) if numbers else np.asarray(side != np.array(None), dtype=bool) for side in sides]
-        return _Truth(np.asarray(compare(*sides), dtype=bool), np.asarray(given[0] & given[1]))
+        if numbers:
+            one, other = numbers
+            known = ~np.isnan(one) & ~np.isnan(other)
+        else:
+            one, other = (np.asarray(text, dtype=object) for text in texts)
+            known = np.asarray(one != np.array(None), dtype=bool) & np.asarray(other != np.array(None), dtype=bool)
+        return _Truth(np.asarray(compare(one, other), dtype=bool), np.asarray(known))
 
     def truth(self, node: ast.AST) -> _Truth:
         truth = _truth(self.value(node))
@@ -404,12 +411,14 @@ class _Evaluation:
     def with_text(self, node: ast.AST, value: Any) -> InputError:
         """Return the error for arithmetic with a text; it names the text."""
         word = next((one for one in np.asarray(value, dtype=object).flat if isinstance(one, str)), None)
-        told = "" if word is None else f" ('{word}')"
-        units = "Only parameters take units: write the numbers of a factor of your own without them."
-        return self.refused(node, f"arithmetic with a text{told}", units if split_quantity(word) else "")
+        if word is None:
+            return self.refused(node, "arithmetic with a text")
+        remedy = ""
+        if split_quantity(word):
+            remedy = "Only parameters take units: write the numbers of a factor of your own without them."
+        return self.refused(node, f"arithmetic with a text ('{word}')", remedy)
 
-    def refused(self, node: ast.AST, what: str, remedy: str = "") -> InputError:
+    def refused(self, node: ast.AST, element: str, remedy: str = "") -> InputError:
         at = getattr(node, "col_offset", 0) + 1
-        return InputError(
-            self.field, self.text, "", remedy or _REMEDY, f"holds {what} at character {at}, which is not allowed"
-        )
+        wrong = f"holds {element} at character {at}, which is not allowed"
+        return InputError(self.field, self.text, "", remedy or _REMEDY, wrong)

@@ -153,11 +153,15 @@ class Option:
 
     def _word(self, value: Any, where: str) -> str:
         if not isinstance(value, str) or value not in self.values:
-            remedy = hint(value) if self.name == "outputs" else ""
+            remedy = ""
+            if self.name == "outputs":
+                remedy = hint(value)
             if remedy:
                 raise InputError(where, value, self.allowed(), remedy)
-            number = ("a relative tolerance such as 0.01",) * (self.kind == "accuracy")
-            raise unknown_name(where, value, (*self.values, *number))
+            allowed = tuple(self.values)
+            if self.kind == "accuracy":
+                allowed = (*self.values, "a relative tolerance such as 0.01")
+            raise unknown_name(where, value, allowed)
         return value
 
     def attribute(self, value: Any, contact_model: str) -> Any:

@@ -52,8 +52,8 @@ def syntax_remedy(text: str) -> str:
     """Return what to write in a text that is no expression; '' if nothing is known."""
     if text.count("(") != text.count(")"):
         return "Close each bracket once."
-    found = (remedy for pattern, remedy in _SYNTAX.items() if re.search(pattern, text))
-    return next(found, "")
+    remedies = (remedy for pattern, remedy in _SYNTAX.items() if re.search(pattern, text))
+    return next(remedies, "")
 
 
 def not_allowed(node: ast.AST) -> tuple[str, str]:

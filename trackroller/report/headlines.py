@@ -622,6 +622,11 @@ def wear(answer: Answer) -> Headline:
     most = head["pressure_most"]
     if most > PEAK * max(head["pressure_first"], head["pressure_last"]):
         clauses[0] += f", {grouped(most, 3)} MPa at {grouped(head['travel_most'], 3)} km"
+    fatigue = head["fatigue"]
+    if fatigue:
+        clauses.insert(0, f"fatigue ends the {fatigue['body']} after {grouped(fatigue['travel'], 3)} km")
+    if head["state"]:
+        clauses.append(f"required {_amount(answer.required[0], answer.required[0].least)}: {head['state']}")
     return _joined(_noted(capital(lead), notes), [*clauses, f"the run ends there: {head['end']}"])
 
 
@@ -632,17 +637,7 @@ def carriage(answer: Answer) -> Headline:
     if answer.kind == "unsettled":
         return _joined(f"The forces in {listing(head['unsettled'])} are not known", ["more preload helps"])
     if answer.kind == "lasts":
-        life = carried_range(head["low"], head["high"])
-        years = years_of(head["low"], head["high"])
-        lead = (
-            f"Roller {head['roller']} ends first: {life} h{f' ({years})' if years else ''}, {grouped(head['km'], 3)} km"
-        )
-        clauses = [f"then {head['limit']} of the {head['body']}"] if head["limit"] else []
-        if _known(head, "part"):
-            clauses.append(f"{percent(head['part'])} of it by {head['case']}")
-        if head["unknown"]:
-            clauses.append(f"the life of {listing(head['unknown'])} is not known")
-        return _joined(lead, [*clauses, *margins])
+        return _carriage_lasts(answer, margins)
     if answer.kind == "unlimited":
         return _joined("No roller reaches a limit under these loads", margins)
     lead = "No roller carries a load"
@@ -650,6 +645,31 @@ def carriage(answer: Answer) -> Headline:
         lead = f"Roller {head['roller']} carries most, {grouped(head['force'], 3)} N in {head['case']}"
     clauses = ["the life of no roller is known"] if answer.kind == "no_life" else []
     return _joined(lead, [*clauses, *margins])
+
+
+def _carriage_lasts(answer: Answer, margins: Sequence[str]) -> Headline:
+    """Say which roller ends first; a limit that is exceeded comes before it."""
+    head = answer.headline
+    years = years_of(head["low"], head["high"])
+    life = _noted(f"{carried_range(head['low'], head['high'])} h", [years] if years else [])
+    unsure = f"if the model holds ({listing(head['not_judged'])}: not judged), " if head["not_judged"] else ""
+    lasts = f"{unsure}roller {head['roller']} ends first: {life}, {grouped(head['km'], 3)} km"
+    clauses = [f"then {head['limit']} of the {head['body']}"] if head["limit"] else []
+    if _known(head, "part"):
+        clauses.append(f"{percent(head['part'])} of it by {head['case']}")
+    if head["unknown"]:
+        clauses.append(f"the life of {listing(head['unknown'])} is not known")
+    if head["state"]:
+        of = f" of {listing(head['of'])}" if head["of"] else ""
+        clauses.append(f"required {_bound(answer.required[0], answer.output[0])}{of}: {head['state']}")
+        margins = ()  # its table has them
+    if not head["exceeded"]:
+        return _joined(capital(lasts), [*clauses, *margins])
+    worst = head["exceeded"][0]
+    amount = f"{grouped(worst['km'], 2)} km" if _known(worst, "km") else f"{grouped(worst['hours'], 2)} h"
+    after = f", after {amount} by its rule" if _known(worst, "km") or _known(worst, "hours") else ""
+    lead = f"{capital(_limit_of(worst))} {worst['roller']} exceeded ({percent(worst['use'])})"
+    return Headline(lead, f"{after}. {'; '.join([capital('otherwise ' + lasts), *clauses])}.")
 
 
 def end_of_carriage(answer: Answer) -> str:

@@ -4,11 +4,14 @@ Keys of `Answer.headline`: `roller` (the worst one, or the one with the largest 
 its damage, or has that force), `part` (of the damage by that case [1]), `low`, `high` [h], `km` [km], `body` (`roller`
 or `guide`) and `limit` (in words) that end it, `force` (largest radial force [N]), `unknown` (rollers whose life is not
 known), `unsettled` (load cases without forces), `margins` (list of {of, end, times, case, tipping}: the first end of
-the payload and of all loads), `catalogue` ({roller, factor, case, shortest, km} or None).
+the payload and of all loads), `exceeded` (list of {limit, body, roller, use [1], hours, km}, the worst one first),
+`not_judged` (reasons why the model does not judge the worst roller), `state` (of the required life: `met`, `open`,
+`missed`, or '' without one) and `of` (rollers that have this state, where others have another one).
 """
 
 from __future__ import annotations
 
+import json
 import math
 from collections.abc import Iterator, Sequence
 from typing import Any
@@ -17,21 +20,28 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from trackroller.damage import limit_word
-from trackroller.parameters import REGIME_LABELS, REGIMES
+from trackroller.damage import LIMITS, catalogue, judged, limit_word, wear
+from trackroller.damage.verdict import STATES
+from trackroller.parameters import BODIES, MATERIAL_FIELDS, REGIME_LABELS, REGIMES
+from trackroller.parameters.carriage_fields import long_name_of
 from trackroller.parameters.validity import VALIDITY
-from trackroller.results.answer import Answer, Caution, Column, Part
+from trackroller.results.answer import Answer, Caution, Column, Part, Required
+from trackroller.results.flags import OUTSIDE
 from trackroller.results.lives import FIRST_LIMIT
-from trackroller.results.roller_answer import CODES, facts_of_data
+from trackroller.results.placeholders import guess_cautions, placeholders_part
+from trackroller.results.roller_answer import CODES, checks_left_out, facts_of_data, rounded_text, state_of_life
+from trackroller.results.spectrum_answer import not_given_values
 from trackroller.roller.dataset import validity_bit
-from trackroller.roller.stored_inputs import doubts_of
+from trackroller.roller.stored_inputs import MATERIALS, doubts_of
 
 LOADS = {"payload": "payload", "loads": "all loads"}  # parts of the loads that a margin multiplies
 ENDS = {"one_contact": "one contact", "lift_off": "lift-off", "tipping": "tipping"}
 ROLLING = REGIMES.index("rolling")
 COLUMNS = (
     Column("roller", "Roller", "", "roller of the carriage", "text", role="name"),
+    Column("state", "Verdict", "", "whether the life reaches what the file of the roller requires", "state"),
     Column("low", "Life", "h", "hours of travel to the first limit of the roller or its rail", "life", "high", "bar"),
+    Column("required", "Required", "h", "life that the file of the roller requires", "life", role="file"),
     Column("hours", "Life at the values", "h", "the same at the values of the placeholders", "life", role="file"),
     Column("km", "Travel", "km", "the same life as travel of the carriage"),
     Column("years", "Years", "", "the same life in years of the duty, from one year on", "years"),
@@ -44,6 +54,7 @@ COLUMNS = (
     Column("one_contact", "Not on both contacts in", "", "load cases in which a contact carries no load", "text"),
     Column("factor", "Load factor", "1", "largest load factor of the maker's catalogue"),
     Column("catalogue_km", "By the catalogue", "km", "life by the maker's catalogue"),
+    Column("exceeded", "Exceeded", "", "limits that the roller or its rail exceeds, with the largest use", "text"),
 )
 OF_LOADS = (
     Column("case", "Load case", "", "", "text", role="name"),
@@ -94,16 +105,20 @@ def answer_of_carriage(ds: xr.Dataset) -> Answer:
         Result of `trackroller.carriage`.
     """
     table = _table(ds)
+    guesses = placeholders_part(ds)
     known = [one for one in COLUMNS if one.name == "roller" or not _is_empty(table[one.name])]
     return Answer(
         question="carriage",
         kind=_kind(ds),
-        headline=_headline(ds),
+        headline=_headline(ds, table),
         output=(FIRST_LIMIT[0], "life to the first limit", "h"),
         table=table,
         columns=tuple(known),
-        parts=tuple(_parts(ds)),
-        warnings=tuple(_warnings(ds)),
+        required=_required(table),
+        parts=(*_parts(ds), *([] if guesses.table.empty else [guesses])),
+        not_checked=_not_checked(ds),
+        not_given=not_given_values(ds),
+        warnings=(*_warnings(ds), *guess_cautions(guesses), *_not_given(ds)),
         facts=facts_of_data(
             ds,
             name=str(ds.attrs["title"]),
@@ -143,7 +158,7 @@ def _kind(ds: xr.Dataset) -> str:
     return "unlimited" if unloaded or not np.isnan(ds["life_km"].values).any() else "no_life"
 
 
-def _headline(ds: xr.Dataset) -> dict[str, Any]:
+def _headline(ds: xr.Dataset, table: pd.DataFrame) -> dict[str, Any]:
     """Return the numbers and names of the headline."""
     roller, case = worst_place(ds)
     forces = ds["radial_force"].values
@@ -162,8 +177,10 @@ def _headline(ds: xr.Dataset) -> dict[str, Any]:
         "without_file": [name for name in ds.attrs.get("without_case", "").split(", ") if name],
         "unsettled": ds["load_case"].values[~ds["converged"].values].tolist(),
         "margins": list(_first_margins(ds)),
-        "catalogue": _catalogue(ds),
+        "exceeded": sorted(_exceeded(ds), key=lambda one: -one["use"]),
+        "not_judged": [],
     }
+    head |= _judged(table)
     if not ds.attrs.get("worst_roller"):
         return head
     own = ds.sel(roller=roller)
@@ -172,6 +189,8 @@ def _headline(ds: xr.Dataset) -> dict[str, Any]:
     head["km"] = float(own["life_km"])
     head["body"] = str(own["first_body"].item())
     head["limit"] = limit_word(str(own["first_limit"].item()))
+    flags = int(np.bitwise_or.reduce(own["roller_validity"].values.astype(int)))
+    head["not_judged"] = [words for name, words in OUTSIDE.items() if flags & validity_bit(name)]
     return head | {"low": float(own["life_hours_low"]), "high": float(own["life_hours_high"])}
 
 
@@ -196,22 +215,79 @@ def _first_margins(ds: xr.Dataset) -> Iterator[dict[str, Any]]:
         }
 
 
-def _catalogue(ds: xr.Dataset) -> dict[str, Any] | None:
-    """Return the largest load factor of the maker's catalogue and the shortest life by it; None without them."""
-    if "load_factor" not in ds:
-        return None
-    factor, life = ds["load_factor"].values, ds["catalogue_life_km"].values
-    if np.isnan(factor).all() or np.isnan(life).all():
-        return None
-    i, j = np.unravel_index(int(np.nanargmax(factor)), factor.shape)
-    names, shortest = ds["roller"].values, int(np.nanargmin(life))
+def _required(table: pd.DataFrame) -> tuple[Required, ...]:
+    """Return the life that is required of the rollers with the worst verdict; () without a requirement."""
+    required = table["required"][table["state"] == _judged(table)["state"]]
+    return () if required.isna().all() else (Required(*FIRST_LIMIT, least=float(required.max())),)
+
+
+def _judged(table: pd.DataFrame) -> dict[str, Any]:
+    """Return the worst verdict of the rollers, and which rollers have it where others have another one."""
+    states = table["state"]
+    worst = next((state for state in ("missed", "open", "met") if (states == state).any()), "")
+    alike = (states == worst).all() or not worst
+    return {"state": worst, "of": [] if alike else table["roller"][states == worst].tolist()}
+
+
+def _exceeded(ds: xr.Dataset) -> Iterator[dict[str, Any]]:
+    """Yield each limit that a roller or its rail exceeds; the first limit of a roller that breaks is its end."""
+    for roller in map(str, ds["roller"].values):
+        own = ds.sel(roller=roller)
+        for name, body, used, hours in _limits_of(own, "exceeded"):
+            if name != wear.LIMIT.name and not (own["life_hours"] == 0 and own["first_limit"] == name):
+                yield _use(roller, name, body, used, hours, math.nan)
+        factor, km = _by_catalogue(own)
+        if factor > 1:
+            yield _use(roller, catalogue.LIMIT.name, "roller", factor, math.nan, km)
+
+
+def _use(roller: str, name: str, body: str, used: float, hours: float, km: float) -> dict[str, Any]:
+    return {"limit": limit_word(name), "body": body, "roller": roller, "use": used, "hours": hours, "km": km}
+
+
+def _limits_of(own: xr.Dataset, state: str = "") -> Iterator[tuple[str, str, float, float]]:
+    """Yield name, body, use and hours of the limits of a roller, or of those with a state alone."""
+    if "limit_state" not in own:
+        return
+    for limit in judged():
+        for body in limit.bodies:
+            at = own.sel(limit=limit.name, body=body)
+            if not state or int(at["limit_state"]) == STATES.index(state):
+                yield limit.name, body, float(at["utilisation"]), float(at["life_hours_by_limit"])
+
+
+def _by_catalogue(own: xr.Dataset) -> tuple[float, float]:
+    """Return the largest load factor of a roller by its maker's catalogue, and its life [km]; NaN without them."""
+    if "load_factor" not in own or own["load_factor"].isnull().all():
+        return math.nan, math.nan
+    return float(own["load_factor"].max()), float(own["catalogue_life_km"])
+
+
+def _not_checked(ds: xr.Dataset) -> dict[str, tuple[str, ...]]:
+    """Return the limits that were not checked by body; where only some of the loaded rollers lack one, with these."""
+    loaded = [str(one) for one in ds["roller"].values if (ds["radial_force"].sel(roller=one) < 0).any()]
+    if "limit_state" not in ds or not loaded:
+        return {}
+    lacking: dict[str, dict[str, list[str]]] = {body: {} for body in BODIES}
+    for roller in loaded:
+        own = ds.sel(roller=roller).rename(roller_regime="regime")
+        names = {field: {"name": str(own[field].item())} for field in MATERIAL_FIELDS}
+        known = () if math.isnan(_by_catalogue(own)[0]) else (catalogue.LIMIT.name,)  # by that of the carriage
+        for body, limits in checks_left_out(own.assign_attrs({MATERIALS: json.dumps(names)}), known).items():
+            for words in limits:
+                lacking[body].setdefault(words, []).append(roller)
     return {
-        "roller": str(names[j]),
-        "factor": float(factor[i, j]),
-        "case": str(ds["load_case"].values[i]),
-        "shortest": str(names[shortest]),
-        "km": float(life[shortest]),
+        body: tuple(words if rollers == loaded else f"{', '.join(rollers)}: {words}" for words, rollers in own.items())
+        for body, own in lacking.items()
     }
+
+
+def _not_given(ds: xr.Dataset) -> Iterator[Caution]:
+    """Yield the values of the rollers that nobody gave."""
+    words = not_given_values(ds)
+    if words:
+        told = ", ".join(f"{long_name_of(name)} {value}" for name, value in words.items())
+        yield Caution("not_given", 1, 1, told, "")
 
 
 def _table(ds: xr.Dataset) -> pd.DataFrame:
@@ -237,9 +313,13 @@ def _row(ds: xr.Dataset, roller: str) -> dict[str, Any]:
     numbers |= {"years": "life_years", "catalogue_km": "catalogue_life_km"}
     row |= {key: float(own[name]) if name in own else math.nan for key, name in numbers.items()}
     row["ends"] = _end_of(own)
-    row["factor"] = math.nan
-    if "load_factor" in own and own["load_factor"].notnull().any():
-        row["factor"] = float(own["load_factor"].max())
+    row["factor"] = _by_catalogue(own)[0]
+    row["required"] = float(own["required_hours"]) if "required_hours" in own else math.nan
+    row["state"] = "" if math.isnan(row["required"]) else state_of_life(row["low"], row["high"], row["required"])
+    over = [
+        f"{limit_word(name)} of the {body} ({100 * used:.3g} %)" for name, body, used, _ in _limits_of(own, "exceeded")
+    ]
+    row["exceeded"] = ", ".join(over)
     return row
 
 
@@ -254,9 +334,10 @@ def _worst_case(ds: xr.Dataset, roller: str) -> tuple[str, float]:
     """Return the load case with most of the damage of a roller, and this part; or that with its largest force."""
     own = ds.sel(roller=roller)
     if "damage_per_km" in own and float(np.nansum(own["damage_per_km"].values)) > 0:
-        damage = np.nan_to_num(own["damage_per_km"].values)
+        damage = np.nan_to_num(own["damage_per_km"].values, posinf=math.inf)
         place = int(np.argmax(damage))
-        return str(ds["load_case"].values[place]), float(damage[place] / damage.sum())
+        part = float(damage[place] / damage.sum()) if math.isfinite(damage[place]) else math.nan
+        return str(ds["load_case"].values[place]), part
     forces = np.nan_to_num(own["radial_force"].values)
     place = int(np.argmin(forces))
     return (str(ds["load_case"].values[place]) if forces[place] < 0 else ""), math.nan
@@ -350,6 +431,7 @@ def _warnings(ds: xr.Dataset) -> Iterator[Caution]:
     yield from _swinging(ds)
     yield from _unloaded(ds)
     yield from _one_contact(ds)
+    yield from _second_models(ds)
     yield from _flags(ds)
     for text in doubts_of(ds):
         yield Caution("doubtful", 1, 1, text, "")
@@ -411,6 +493,24 @@ def _one_contact(ds: xr.Dataset) -> Iterator[Caution]:
     for words, names in alike.items():
         text = f"not on both contacts: {', '.join(names)} in {words}; more preload helps"
         yield Caution("not_held", len(names), ds.sizes["roller"], text, "rollers")
+
+
+def _second_models(ds: xr.Dataset) -> Iterator[Caution]:
+    """Yield the second models that rollers exceed, or that end them before their first limit."""
+    told: dict[str, list[str]] = {}
+    for roller in map(str, ds["roller"].values):
+        own = ds.sel(roller=roller)
+        life = {name: float(own[name]) if name in own else math.nan for name in ("life_hours", "life_km")}
+        for name, body, used, hours in _limits_of(own):
+            if LIMITS[name].beside and (used > 1 or not hours >= life["life_hours"]) and not math.isnan(hours):
+                text = f"{roller} {100 * used:.3g} % used, {rounded_text(hours)} h"
+                told.setdefault(f"{limit_word(name)} of the {body}", []).append(text)
+        factor, km = _by_catalogue(own)
+        if factor > 1 or km < life["life_km"]:
+            text = f"{roller} {100 * factor:.3g} % used, {rounded_text(km)} km"
+            told.setdefault(f"{limit_word(catalogue.LIMIT.name)} of the roller", []).append(text)
+    for words, rollers in told.items():
+        yield Caution("second_model", len(rollers), ds.sizes["roller"], f"{words}: {'; '.join(rollers)}", "rollers")
 
 
 def _flags(ds: xr.Dataset) -> Iterator[Caution]:

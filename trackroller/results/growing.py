@@ -17,9 +17,9 @@ from trackroller.study.cost import duration
 from trackroller.study.design.growth import doubled
 from trackroller.study.file.study import Study
 from trackroller.study.run import Runner
+from trackroller.study.store.fingerprint import StudyCases
 from trackroller.study.store.folder import StudyFolder, Tell
 from trackroller.study.store.gather import gather
-from trackroller.study.store.identity import Cases
 from trackroller.study.store.ledger import Ledger, study_folder, working_ledger
 
 
@@ -45,8 +45,8 @@ class Growing:
     def advance(self) -> str:
         """Look at every solved step; return why the study stops, '' if its step has cases to solve."""
         while True:
-            ledger = Ledger(Cases(self.study), self.folder)
-            if (ledger.place < 0).any():
+            ledger = Ledger(StudyCases(self.study), self.folder)
+            if (ledger.state_number < 0).any():
                 return ""
             seen = look(solved_results(ledger))
             self.looks.append(seen)
@@ -77,7 +77,7 @@ class Growing:
             return f"the next step has {many} cases, and at_most is {until.at_most}"
         if until.hours is None:
             return ""
-        missing = int((ledger.find(Cases(larger).fingerprints) < 0).sum())
+        missing = int((ledger.find(StudyCases(larger).fingerprints) < 0).sum())
         needed = ledger.hours * missing / max(1, ledger.states.sizes["case"])
         if missing and ledger.hours + needed > until.hours:
             spent = duration(3600 * ledger.hours)

@@ -7,6 +7,7 @@ from numpy.typing import ArrayLike
 
 from trackroller.damage import LIMITS
 from trackroller.parameters import BODIES
+from trackroller.roller.requirement import LIVES_OF_PAIR
 
 # limits that stand beside the verdict: second models of an end that another limit has, and those without a verdict
 BESIDE = tuple(name for name, limit in LIMITS.items() if limit.beside or limit.verdict is None)
@@ -19,7 +20,7 @@ LIVES = (
     ("life_cycles_guide", "life of the guide", "overrollings"),
 )
 FIRST_LIMIT = ("pair_life_to_first_limit_hours", "life to the first limit", "h")
-OF_PAIR = (FIRST_LIMIT[0], "pair_life_hours", "roller_life_hours")  # lives that a target in hours may name
+OF_PAIR = LIVES_OF_PAIR
 DATA_END = 1e8  # overrollings; no S-N curve of the database was measured beyond
 
 

@@ -211,7 +211,7 @@ def _of_limits(ds: xr.Dataset, inputs: Mapping[str, Any], materials: Mapping[str
                     breaks=lifeless[body] == BROKEN and name == own,
                     timed=timed and not no_life,
                     lifeless=no_life,
-                    guessed=_is_guessed(ds, name, materials[body].name),
+                    guessed=is_guessed(ds, name, materials[body].name),
                 )
             )
     return out
@@ -305,7 +305,7 @@ def _by_tests(ds: xr.Dataset, margin: Margin, fit: StoredFit, rate: float) -> Ma
     return replace(margin, beyond=bool(fit.extrapolates(stress, median)), low=low, high=high)
 
 
-def _is_guessed(ds: xr.Dataset, limit: str, material: str) -> bool:
+def is_guessed(ds: xr.Dataset, limit: str, material: str) -> bool:
     """Return whether a limit of a body rests on placeholders; both bodies share the heat of a contact."""
     of = [one.material for one in placeholders_of(ds) if one.limit == limit]
     return bool(of) if limit == heat.LIMIT.name else material in of

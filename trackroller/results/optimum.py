@@ -30,9 +30,9 @@ from trackroller.results.stored_study import solved_results
 from trackroller.study.file.load import parse_study
 from trackroller.study.file.study import Study
 from trackroller.study.run import Runner
+from trackroller.study.store.fingerprint import StudyCases
 from trackroller.study.store.folder import StudyFolder, Tell, unheard
 from trackroller.study.store.gather import gather
-from trackroller.study.store.identity import Cases
 from trackroller.study.store.ledger import Ledger
 from trackroller.study.store.put import put_text
 
@@ -65,17 +65,17 @@ class _Search:
 
     def ledger(self, study: Study) -> Ledger:
         """Return the ledger of a study of designs."""
-        return Ledger(Cases(study), self.folder)
+        return Ledger(StudyCases(study), self.folder)
 
     def judged(self, study: Study, genes: np.ndarray) -> Judged:
         """Solve designs, as far as they are not solved yet, and judge them."""
         one = self.of(study, genes)
         ledger = self.ledger(one)
-        if (ledger.place < 0).any():
+        if (ledger.state_number < 0).any():
             with self.runner.solved(one) as ledger:
                 pass
         else:
-            self.runner.progress(len(ledger.place), 0)
+            self.runner.progress(len(ledger.state_number), 0)
         return judge(solved_results(ledger), genes)
 
 
@@ -141,7 +141,7 @@ def _evolve(search: _Search, study: Study, tell: Tell) -> tuple[Judged, dict[str
     while len(drawn):
         if known is not None and budget.hours is not None:
             ledger = search.ledger(search.of(study, drawn))
-            if ledger.hours >= budget.hours and (ledger.place < 0).any():
+            if ledger.hours >= budget.hours and (ledger.state_number < 0).any():
                 why = f"the {budget.hours:g} hours are spent"
                 break
         new = search.judged(study, drawn)

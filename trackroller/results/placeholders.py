@@ -93,7 +93,8 @@ def guess_cautions(part: Part, what: str = "") -> Iterator[Caution]:
             texts.append("1 value" if number == 1 else f"{number} values")
         limits = list(dict.fromkeys(limit for limit in guesses["limit"] if limit))
         if limits:
-            texts.append(f"{listing(limits)} {'rests' if len(limits) == 1 else 'rest'} on them")
+            verb = "rests" if len(limits) == 1 else "rest"
+            texts.append(f"{listing(limits)} {verb} on {'it' if number == 1 else 'them'}")
         if len(guesses) < len(rows):
             texts.append("see its notes")
         yield Caution("guessed", 1, 1, f"{material}: {'; '.join(texts)}", what)

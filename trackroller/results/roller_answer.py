@@ -11,7 +11,7 @@ requirement: `met`, `open` or `missed`), `state` (of all of them; '' without a r
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -242,14 +242,14 @@ def _state_of(ds: xr.Dataset, first: First | None, required: Required) -> str:
         return {"kept": "met", "exceeded": "missed"}.get(state, "open")
     if first is None:
         return "open"
-    state = _state(first.low, first.high, required.least)
+    state = state_of_life(first.low, first.high, required.least)
     if math.isfinite(required.most) and state != "missed":
-        shorter = _state(-first.high, -first.low, -required.most)
+        shorter = state_of_life(-first.high, -first.low, -required.most)
         state = shorter if state == "met" else {"missed": "missed"}.get(shorter, "open")
     return "open" if state == "met" and _unrated(ds) else state
 
 
-def _state(low: float, high: float, least: float) -> str:
+def state_of_life(low: float, high: float, least: float) -> str:
     """Return whether a life within a range reaches what is required."""
     if low >= least:
         return "met"
@@ -308,7 +308,7 @@ def _row(margin: Margin, least: float) -> dict[str, Any]:
     high = 0.0 if margin.breaks else margin.high
     state = margin.state
     if margin.ends and state != "exceeded" and math.isfinite(least):
-        state = {"met": state, "open": "open", "missed": "missed"}[_state(low, high, least)]
+        state = {"met": state, "open": "open", "missed": "missed"}[state_of_life(low, high, least)]
     if margin.lifeless:
         state = "none"
     elif state == "kept" and margin.used > 1.0:
@@ -430,12 +430,15 @@ def quantity_words(name: str) -> str:
     return f"{words} {symbol}" if symbol.replace("_", "").isalnum() else words
 
 
-def checks_left_out(ds: xr.Dataset) -> dict[str, tuple[str, ...]]:
-    """Return the limits that were not checked for each body, each with what it lacks in brackets."""
+def checks_left_out(ds: xr.Dataset, known: Collection[str] = ()) -> dict[str, tuple[str, ...]]:
+    """Return the limits that were not checked for each body, each with what it lacks in brackets.
+
+    Limits in `known` are checked by other values than those of the result.
+    """
     if ds["regime"].ndim == 0 and REGIMES[int(ds["regime"])] == "failed":
         return {}
     found: dict[str, list[str]] = {body: [] for body in BODIES}
-    for limit in judged():
+    for limit in (one for one in judged() if one.name not in known):
         for body in limit.bodies:
             why = ", ".join(_missing(ds, limit.name, body))
             if not _is_known(ds, limit.name, body):
@@ -551,8 +554,13 @@ def _hours_text(margin: Margin) -> str:
     """Return the hours to a limit with both ends of their range; an empty text where they are not known."""
     if math.isnan(margin.hours):
         return ""
-    ends = dict.fromkeys(f"{float(f'{hours:.3g}'):,g}" for hours in (margin.low, margin.high))
+    ends = dict.fromkeys((rounded_text(margin.low), rounded_text(margin.high)))
     return f", {' to '.join(ends)} h"
+
+
+def rounded_text(value: float) -> str:
+    """Return a number with three figures, as a warning states it."""
+    return f"{float(f'{value:.3g}'):,g}"
 
 
 def beyond_tests(ds: xr.Dataset) -> list[str]:

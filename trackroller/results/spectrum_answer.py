@@ -26,12 +26,12 @@ from trackroller.parameters.example import drive_question
 from trackroller.results.answer import Answer, Caution, Column, Part
 from trackroller.results.flags import flags_of, not_judged
 from trackroller.results.lives import FIRST_LIMIT, past_data
-from trackroller.results.margins import First, Margin
+from trackroller.results.margins import First, Margin, is_guessed
 from trackroller.results.placeholders import guess_cautions, placeholders_part
 from trackroller.results.places import level_text
-from trackroller.results.roller_answer import CODES, checks_left_out, facts_of_data
+from trackroller.results.roller_answer import CODES, checks_left_out, facts_of_data, material_name
 from trackroller.roller.dataset import validity_bit
-from trackroller.roller.limit_notes import notes_of, placeholders_of
+from trackroller.roller.limit_notes import notes_of
 from trackroller.roller.stored_inputs import NOT_GIVEN, doubts_of
 from trackroller.roller.temperature import HEAD as OF_TEMPERATURE
 from trackroller.study.spectrum.file import LOAD_FIELDS
@@ -40,7 +40,13 @@ HOUR = "hour"  # period of blocks by share of the time, which have no shifts
 COLUMNS = (
     Column("limit", "Limit", "", "limit of the roller or of the guide", "text", role="name"),
     Column("body", "Body", "", "body that the limit concerns", "text", role="name"),
-    Column("state", "Verdict", "", "kept: below 100 % in every block; exceeded: above it in a block", "state"),
+    Column(
+        "state",
+        "Verdict",
+        "",
+        "kept: below 100 % in every block; exceeded: above it in a block; not known: a block has no result",
+        "state",
+    ),
     Column("used_low", "Used", "1", "use of the worst block", "share", "used_high", "use"),
     Column("low", "Life", "h", "hours of travel to the limit, at both ends of the placeholders", "life", "high", "bar"),
     Column("km_low", "Travel", "km", "the same life as travel", until="km_high"),
@@ -87,7 +93,7 @@ def answer_of_spectrum(ds: xr.Dataset) -> Answer:
         columns=columns,
         parts=tuple(_parts(ds, lives)),
         not_checked=_not_checked(ds),
-        not_given=_not_given(ds),
+        not_given=not_given_values(ds),
         warnings=tuple(_warnings(ds)),
         facts=facts_of_data(
             ds,
@@ -126,7 +132,6 @@ def _of_limits(ds: xr.Dataset) -> Iterator[Margin]:
     if "life_shifts_by_limit" not in ds:
         yield from (_by_fatigue_alone(ds, body) for body in BODIES)
         return
-    guesses = {one.limit for one in placeholders_of(ds)}
     for name in ds["limit"].values.tolist():
         limit = LIMITS[name]
         timed = bool(ds["life_shifts_by_limit"].sel(limit=name).notnull().any())
@@ -135,6 +140,9 @@ def _of_limits(ds: xr.Dataset) -> Iterator[Margin]:
             state = STATES[int(own["limit_state"])]
             if state == "unknown":
                 continue
+            unsolved = (own["limit_state_of_block"].values == STATES.index("unknown")) & (ds["distance"].values > 0)
+            if state == "kept" and unsolved.any():
+                state = "unknown"
             used = float(own["utilisation"])
             low, high = (float(own[f"life_hours_by_limit{end}"]) for end in ("_low", "_high"))
             shifts = float(own["life_shifts_by_limit"])
@@ -155,7 +163,7 @@ def _of_limits(ds: xr.Dataset) -> Iterator[Margin]:
                 timed=timed,
                 beside=limit.beside,
                 beyond=name == "fatigue" and _beyond(ds, body, shifts),
-                guessed=name in guesses,
+                guessed=is_guessed(ds, name, material_name(ds, body)),
             )
 
 
@@ -400,8 +408,8 @@ def _not_checked(ds: xr.Dataset) -> Mapping[str, tuple[str, ...]]:
     return checks_left_out(ds)
 
 
-def _not_given(ds: xr.Dataset) -> dict[str, str]:
-    """Return the values that nobody gave, with their units."""
+def not_given_values(ds: xr.Dataset) -> dict[str, str]:
+    """Return the values that nobody gave, with their units, of a spectrum or a carriage."""
     given = json.loads(ds.attrs.get(NOT_GIVEN, "{}"))
     return {name: level_text(name, value) for name, value in given.items() if value is not None and value == value}
 
@@ -438,7 +446,7 @@ def _warnings(ds: xr.Dataset) -> Iterator[Caution]:
     question = drive_question(given, set(PARAMETERS) - set(given))
     if question:
         yield Caution("not_given", 1, 1, question, "")
-    words = _not_given(ds)
+    words = not_given_values(ds)
     if words:
         told = ", ".join(f"{long_name_of(name)} {value}" for name, value in words.items())
         yield Caution("not_given", 1, 1, told, "")

@@ -26,17 +26,17 @@ from trackroller.study.file.load import checked_keys, with_present_keys
 from trackroller.study.file.study import Study
 from trackroller.study.outputs import case_dims
 from trackroller.study.store import chunks
+from trackroller.study.store.fingerprint import StudyCases
 from trackroller.study.store.folder import StudyFolder, check_readable
 from trackroller.study.store.gather import collect
-from trackroller.study.store.identity import Cases
-from trackroller.study.store.inputs import MATERIALS, study_of_folder
-from trackroller.study.store.labels import labelled
+from trackroller.study.store.input_files import MATERIALS, study_of_folder
 from trackroller.study.store.ledger import Ledger
 from trackroller.study.store.manifest import digests_of
 from trackroller.study.store.mark import STORE_FORMAT
 from trackroller.study.store.netcdf import read_result
+from trackroller.study.store.program_digest import solver_digest
 from trackroller.study.store.provenance import DATE
-from trackroller.study.store.sources import solver_digest
+from trackroller.study.store.solved_dataset import labelled
 from trackroller.yaml_file import parse_mapping
 
 _REMEDY = "Run the study again."
@@ -143,8 +143,8 @@ def _gathered(path: Path) -> xr.Dataset | None:
 def _read_unfinished(folder: StudyFolder, indices: xr.Dataset | None) -> Results:
     """Return the solved cases of a study that is not gathered yet."""
     study = study_of_folder(folder)
-    ledger = Ledger(Cases(study), folder)
-    place = ledger.place
+    ledger = Ledger(StudyCases(study), folder)
+    place = ledger.state_number
     of_row = ledger.cases.rows
     rows = np.setdiff1d(of_row, of_row[place < 0])  # whole rows of the design: a carriage has several cases
     solved = np.flatnonzero(np.isin(of_row, rows))

@@ -3,12 +3,13 @@
 Keys of `Answer.headline`: `travel` [km], `hours` [h], `depths` (µm by body that wears), `end` (why the travel ends),
 `contact` (that wears more), `pressure_first`, `pressure_last`, `pressure_most` [MPa], `travel_most` [km], `wider`
 (width of the patch at the end over that at first [1]), `pressure_error` [1], `guessed` (whether the wear coefficient
-is a placeholder).
+is a placeholder), `fatigue` ({body, travel [km]} of the body whose damage sum by fatigue reaches 1 first within the
+run, or None), `state` (of the required travel: `met`, `open`, `missed`, or '' without one).
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -18,20 +19,29 @@ import xarray as xr
 from trackroller.damage.wear import KM_PER_HOUR
 from trackroller.parameters import BODIES
 from trackroller.parameters.carriage_fields import long_name_of
-from trackroller.results.answer import Answer, Caution, Column, Part
+from trackroller.results.answer import Answer, Caution, Column, Part, Required
 from trackroller.results.flags import flags_of
+from trackroller.results.lives import OF_PAIR
 from trackroller.results.placeholders import guess_cautions, placeholders_part
 from trackroller.results.roller_answer import CODES, facts_of_data, not_given_words
 from trackroller.roller.limit_notes import placeholders_of
+from trackroller.roller.requirement import requirement_of
 from trackroller.roller.stored_inputs import NOT_GIVEN, inputs_of
 from trackroller.roller.wearing import ENDS
 
+BEFORE = ("permissible", "lift_off", "full_slip")  # ends of a run that end the roller as well
 SOLVED = 1e-6  # residual of a solved balance, over the normal force times the distance of the axes
 MICROMETRES = 1e3  # in a mm
 COLUMNS = (
     Column("body", "Body", "", "body that wears", "text", role="name"),
     Column("depth", "Worn depth", "µm", "largest depth at the end of the travel", "whole"),
-    Column("life_travel", "Life with wear", "km", "travel until the damage sum by fatigue is 1; ∞ beyond the run"),
+    Column(
+        "life_travel",
+        "Life with wear",
+        "km",
+        "travel until the damage sum by fatigue is 1; from the end of the run to ∞ where the run ends before",
+        until="life_travel_high",
+    ),
     Column("life_new", "Life of the new groove", "km", "the same under the stress of the new groove"),
     Column("damage", "Damage sum", "1", "largest damage sum by fatigue at the end of the travel"),
     Column("damage_error", "Error", "1", "estimated error of the damage sum", "error"),
@@ -61,15 +71,19 @@ def answer_of_wear(ds: xr.Dataset) -> Answer:
         Result of `trackroller.wear`.
     """
     guesses = placeholders_part(ds)
+    table = _table(ds)
+    required = _required(ds)
+    head = _headline(ds) | {"fatigue": _first_by_fatigue(table, float(ds["travel"][-1]))}
     return Answer(
         question="wear",
         kind="worn",
-        headline=_headline(ds),
+        headline=head | {"state": _state(ds, table, head, required)},
         output=("groove_depth", "worn depth", "mm"),
-        table=_table(ds),
+        table=table,
         columns=COLUMNS,
+        required=required,
         parts=(states_part(ds), *([guesses] if not guesses.table.empty else [])),
-        not_given=not_given_words(ds) if NOT_GIVEN in ds.attrs else {},
+        not_given=_not_given(ds),
         warnings=tuple(_warnings(ds, guesses)),
         facts=facts_of_data(ds, name="A track roller while it wears"),
     )
@@ -112,24 +126,69 @@ def _table(ds: xr.Dataset) -> pd.DataFrame:
         own = ds.sel(body=body)
         row = {"body": body, "depth": MICROMETRES * float(own["groove_depth"].isel(travel=-1).max())}
         rows.append(row | _fatigue(own))
-    return pd.DataFrame(rows, columns=[column.name for column in COLUMNS])
+    return pd.DataFrame(rows, columns=[name for one in COLUMNS for name in (one.name, one.until) if name])
 
 
 def _fatigue(own: xr.Dataset) -> dict[str, float]:
-    """Return the life of a body by fatigue that counts wear; it is infinite if the run ends before."""
-    unknown = dict.fromkeys(("life_travel", "life_new", "damage", "damage_error"), np.nan)
+    """Return the life of a body by fatigue that counts wear; it is longer than the run if the run ends before."""
+    unknown = dict.fromkeys(("life_travel", "life_travel_high", "life_new", "damage", "damage_error"), np.nan)
     if "fatigue_damage" not in own:
         return unknown
     damage, new = own["fatigue_damage"].isel(travel=-1).values, float(own["life_travel_new"].min())
     if np.isnan(damage).any() or np.isnan(new):
         return unknown
-    reached = own["life_travel"].notnull().any()
+    reached = bool(own["life_travel"].notnull().any())
+    life = float(own["life_travel"].min()) if reached else float(own["travel"][-1])
     return {
-        "life_travel": float(own["life_travel"].min()) if reached else np.inf,
+        "life_travel": life,
+        "life_travel_high": life if reached else np.inf,
         "life_new": new,
         "damage": float(damage.max()),
         "damage_error": float(own["fatigue_damage_error"].isel(travel=-1).max()),
     }
+
+
+def _first_by_fatigue(table: pd.DataFrame, travel: float) -> dict[str, Any] | None:
+    """Return the body whose damage sum reaches 1 first within the run, and its travel [km]; None without one."""
+    reached = table[table["life_travel_high"] <= travel]
+    if reached.empty:
+        return None
+    first = min(reached.to_dict("records"), key=lambda row: float(row["life_travel"]))
+    return {"body": str(first["body"]), "travel": float(first["life_travel"])}
+
+
+def _required(ds: xr.Dataset) -> tuple[Required, ...]:
+    """Return the travel that the case requires: its own, or that of a required life."""
+    inputs = inputs_of(ds)
+    least = [own.least for name, own in requirement_of(ds).items() if name in OF_PAIR]
+    travels = [hours * KM_PER_HOUR * float(inputs["velocity"]) for hours in least if np.isfinite(hours)]
+    if inputs.get("required_travel") is not None:
+        travels.append(float(inputs["required_travel"]))
+    travels = [travel for travel in travels if np.isfinite(travel)]
+    return (Required("travel", "travel", "km", least=max(travels)),) if travels else ()
+
+
+def _state(ds: xr.Dataset, table: pd.DataFrame, head: Mapping[str, Any], required: Sequence[Required]) -> str:
+    """Return whether the required travel is reached before wear, fatigue or a contact ends the roller.
+
+    Where the wear coefficient is a placeholder, only fatigue that ends the new groove before is surely too early.
+    """
+    if not required:
+        return ""
+    least, last = required[0].least, float(head["travel"])
+    fatigue = head["fatigue"]["travel"] if head["fatigue"] else np.inf
+    if head["guessed"]:
+        return "missed" if max(fatigue, float(table["life_new"].min())) < least else "open"
+    end = last if str(ds.attrs["end"]) in BEFORE else np.inf
+    if min(fatigue, end) < least:
+        return "missed"
+    return "met" if last >= least else "open"
+
+
+def _not_given(ds: xr.Dataset) -> dict[str, str]:
+    """Return the values that nobody gave; the travel is that of the run."""
+    words = not_given_words(ds) if NOT_GIVEN in ds.attrs else {}
+    return {name: value for name, value in words.items() if name != "travel"}
 
 
 def states_part(ds: xr.Dataset) -> Part:
@@ -160,7 +219,7 @@ def _warnings(ds: xr.Dataset, guesses: Part) -> Iterator[Caution]:
     for flag in flags.values():
         yield Caution(CODES.get(flag.name, "flagged"), 1, 1, f"{flag.sentence} {flag.remedy}", "")
     yield from guess_cautions(guesses)
-    words = not_given_words(ds) if NOT_GIVEN in ds.attrs else {}
+    words = _not_given(ds)
     if words:
         told = ", ".join(f"{long_name_of(name)} {value}" for name, value in words.items())
         yield Caution("not_given", 1, 1, told, "")

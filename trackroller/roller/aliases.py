@@ -84,7 +84,8 @@ def overridden(values: Mapping[str, Any], given: Mapping[str, Any]) -> dict[str,
 
 def radius(name: str, value: Any, where: str = "") -> float:
     """Return an outer radius or the depth of a groove [mm]."""
-    field, allowed = f"{where}{name}", f"a length > 0 in mm, the {name.replace('_', ' ')} of the roller"
+    field = f"{where}{name}"
+    allowed = f"a length > 0 in mm, the {name.replace('_', ' ')} of the roller"
     return number_in(value, field, allowed, math.nextafter(0.0, 1.0), PARAMETERS["axis_distance"].upper, "mm")
 
 
@@ -120,7 +121,8 @@ def with_axis_distance(values: Mapping[str, Any], number: Any) -> dict[str, Any]
     """
     if not check_radii(values):
         return dict(values)
-    known, wrong = {}, Collector()
+    known = {}
+    wrong = Collector()
     for name in (*RADII, "guide_profile_radius", "roller_profile_radius", "contact_angle"):
         with wrong.part():
             if name in RADII:
@@ -139,34 +141,44 @@ def with_axis_distance(values: Mapping[str, Any], number: Any) -> dict[str, Any]
     return {name: value for name, value in values.items() if name not in RADII} | {"axis_distance": axis}
 
 
+def _columns_of_rows(factors: Mapping[str, Any]) -> dict[str, Any]:
+    """Return a value of each column of the factors that are rows of a table."""
+    columns: dict[str, Any] = {}
+    for factor in factors.values():
+        if isinstance(factor, Mapping):
+            rows = factor.get("rows") or ()
+            columns |= {name: value for row in rows if isinstance(row, Mapping) for name, value in row.items()}
+    return columns
+
+
 def study_with_radii(data: Mapping[str, Any], wrong: Collector) -> dict[str, Any]:
     """Return the keys of a study file with the axis distance as a factor that follows from outer radius and depth.
 
     The two become factors of the study, also if they stand in `base`, and the expression `AXIS_DISTANCE` uses them.
     `wrong` collects the errors; aliases and radii that are wrong are left out.
     """
-    parts: list[Any] = [{} if data.get(key) is None else data[key] for key in ("base", "factors")]
-    base, factors = (dict(part) if isinstance(part, Mapping) else part for part in parts)
-    if not isinstance(base, dict) or not isinstance(factors, dict):
+    sections: dict[str, Any] = {"base": {}, "factors": {}}
+    sections |= {key: data[key] for key in sections if data.get(key) is not None}
+    if not all(isinstance(part, Mapping) for part in sections.values()):
         return dict(data)
-    sections = {"base": base, "factors": factors}
     for section, part in sections.items():
         sections[section] = {name: value for name, value in part.items() if name not in ALIASES}
         with wrong.part(section):
             sections[section] = renamed(part)
     base, factors = sections.values()
     derived = {"expression": AXIS_DISTANCE}
-    own = {name: value for name, value in factors.items() if name != "axis_distance" or value != derived}
-    rows = [
-        row for own_factor in own.values() if isinstance(own_factor, Mapping) for row in own_factor.get("rows") or ()
-    ]
-    in_shelves = {name: value for row in rows if isinstance(row, Mapping) for name, value in row.items()}
+    of_user = {name: value for name, value in factors.items() if name != "axis_distance" or value != derived}
     before = len(wrong.errors)
     with wrong.part():
-        if check_radii({**in_shelves, **base, **own}):
+        if check_radii({**_columns_of_rows(of_user), **base, **of_user}):
             given = {name: {"values": [radius(name, base[name], "base.")]} for name in RADII if name in base}
             factors = given | factors | {"axis_distance": derived}
             base = {name: value for name, value in base.items() if name not in RADII}
     if len(wrong.errors) > before:
         base, factors = ({name: part[name] for name in part if name not in RADII} for part in (base, factors))
-    return {**data, **({"base": base} if base else {}), **({"factors": factors} if factors else {})}
+    out = dict(data)
+    if base:
+        out["base"] = base
+    if factors:
+        out["factors"] = factors
+    return out

@@ -46,13 +46,17 @@ class Block:
         """Return the cases `rows`; a row may occur more than once."""
         values = {name: array[rows] for name, array in self.values.items()}
         plain = {name: getattr(self, name)[rows] for name in _PLAIN}
-        return Block(values, **plain, bodies=None if self.bodies is None else self.bodies[rows])
+        bodies = None
+        if self.bodies is not None:
+            bodies = self.bodies[rows]
+        return Block(values, **plain, bodies=bodies)
 
     def fail(self, rows: list[int]) -> None:
         """Mark the cases `rows` as failed, without results."""
         if not rows:
             return
-        self.regime[rows], self.converged[rows] = REGIMES.index("failed"), False
+        self.regime[rows] = REGIMES.index("failed")
+        self.converged[rows] = False
         for array in self.values.values():
             if array.dtype.kind == "f":
                 array[rows] = np.nan
@@ -69,7 +73,10 @@ def join(parts: Sequence[Block]) -> Block:
     }
     plain = {name: np.concatenate([getattr(part, name) for part in parts]) for name in _PLAIN}
     flags = [part.bodies for part in parts if part.bodies is not None]
-    return Block(values, **plain, bodies=np.concatenate(flags) if len(flags) == len(parts) else None)
+    bodies = None
+    if len(flags) == len(parts):
+        bodies = np.concatenate(flags)
+    return Block(values, **plain, bodies=bodies)
 
 
 def _joined(arrays: list[np.ndarray], lengths: list[int]) -> np.ndarray:

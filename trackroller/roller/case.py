@@ -6,7 +6,7 @@ import functools
 import inspect
 import json
 import math
-from collections.abc import Iterable, Mapping, Set
+from collections.abc import Container, Hashable, Iterable, Mapping, Set
 from contextlib import suppress
 from dataclasses import dataclass, field, fields, make_dataclass
 from typing import Any, ClassVar
@@ -172,7 +172,8 @@ Write a number that is allowed, such as 30.
 
     def _checked_number(self, name: str) -> float:
         """Return a number of this case, which then stands as a float or None in its field; NaN if it is not given."""
-        value, parameter = getattr(self, name), PARAMETERS[name]
+        value = getattr(self, name)
+        parameter = PARAMETERS[name]
         if isinstance(value, list):
             remedy = f"Solve a list of cases: [tr.Case({name}=value) for value in values]."
             raise InputError(name, value, f"one number; {parameter.allowed()}", remedy)
@@ -183,7 +184,10 @@ Write a number that is allowed, such as 30.
         given = number(name, value)
         if not parameter.accepts(given):
             raise InputError(name, value, parameter.allowed(), parameter.remedy(given, value))
-        object.__setattr__(self, name, None if math.isnan(given) else given)
+        if math.isnan(given):
+            object.__setattr__(self, name, None)
+        else:
+            object.__setattr__(self, name, given)
         return given
 
     @classmethod
@@ -214,7 +218,8 @@ Case.__signature__ = inspect.signature(_Numbers)  # type: ignore[attr-defined]
 
 def _by_field(values: Mapping[str, Any]) -> dict[str, Any]:
     """Return the values of one case by the names of its fields; `InputError` names every other name."""
-    wrong, known = Collector(), {name: value for name, value in values.items() if name not in ALIASES}
+    wrong = Collector()
+    known = {name: value for name, value in values.items() if name not in ALIASES}
     with wrong.part():
         known = renamed(values)
         known = with_axis_distance(known, number)
@@ -249,7 +254,7 @@ def _listed(cases: Any) -> list[Case]:
     """Return cases of any form but a data set as a list; the first wrong case is refused with its number."""
     allowed = "a Case, a mapping, a list or data frame of cases, or an xarray.Dataset"
     if is_single(cases):
-        return [cases if isinstance(cases, Case) else Case.from_dict(cases)]
+        return [_case(cases)]
     if hasattr(cases, "columns"):
         cases = rows_of(cases, "cases")
     elif hasattr(cases, "dims"):
@@ -258,28 +263,38 @@ def _listed(cases: Any) -> list[Case]:
         raise InputError("cases", type(cases).__name__, allowed, how_to_write(cases))
     elif not isinstance(cases, Iterable) or isinstance(cases, (str, bytes)) or getattr(cases, "ndim", 1) != 1:
         remedy = "Write a list of mappings, such as [{'axial_force': 30}, {'axial_force': 60}]."
-        raise InputError("cases", cases if np.isscalar(cases) else type(cases).__name__, allowed, remedy)
+        shown: object = type(cases).__name__
+        if np.isscalar(cases):
+            shown = cases
+        raise InputError("cases", shown, allowed, remedy)
     rows: list[Case] = []
     for case in cases:
         try:
-            rows.append(case if isinstance(case, Case) else Case.from_dict(case))
+            rows.append(_case(case))
         except InputError as error:
-            own = (
-                InputError(f"{one.field} (case {len(rows)})", one.value, one.allowed, one.remedy)
-                for one in error.errors
-            )
-            raise_all(own)
+            place = f"(case {len(rows)})"
+            raise_all(InputError(f"{one.field} {place}", one.value, one.allowed, one.remedy) for one in error.errors)
     return rows
+
+
+def _case(values: Case | Mapping[str, Any]) -> Case:
+    """Return a case, or that of a mapping."""
+    if isinstance(values, Case):
+        return values
+    return Case.from_dict(values)
 
 
 def _of_cases(cases: Any) -> tuple[dict[str, np.ndarray], dict[str, np.ndarray]]:
     """Return the raw values of cases, object arrays (n,), and their numbers, (n,), which each `Case` has checked."""
-    columns, numbers = {}, {}
+    columns = {}
+    numbers = {}
     rows = _listed(cases)
     for name in FIELDS:
         values = [getattr(row, name) for row in rows]
         if name in PARAMETERS:
-            numbers[name] = np.array([math.nan if isinstance(v, str) else v for v in values], dtype=float)  # or None
+            column = np.array(values, dtype=object)
+            column[[isinstance(value, str) for value in values]] = math.nan  # a word is a friction of the database
+            numbers[name] = column.astype(float)  # None becomes NaN
         if name not in numbers or name == "friction_coefficient":
             columns[name] = np.empty(len(rows), dtype=object)
             columns[name][:] = values
@@ -299,9 +314,13 @@ def _of_dataset(design: Any) -> tuple[dict[str, np.ndarray], dict[str, np.ndarra
             values = np.array(default[name], dtype=object)
             if name == "friction_coefficient" and "friction_law" in design.variables:
                 values = own_frictions(design["friction_law"].values)
-        columns[name] = np.broadcast_to(values if values.dtype == float else values.astype(object), (n,))
+        if values.dtype != float:
+            values = values.astype(object)
+        columns[name] = np.broadcast_to(values, (n,))
     numbers = _checked_numbers(columns, n)
-    problem = geometry_problem(numbers) if n else None
+    problem = None
+    if n:
+        problem = geometry_problem(numbers)
     if problem is not None:
         raise problem
     return columns, numbers
@@ -313,13 +332,18 @@ def _named(design: Any) -> Any:
     Every variable, coordinate and attribute that says something about the cases is a parameter along `case`, or an
     option as a coordinate, or it is refused by name. A study's design has further coordinates of its own.
     """
-    wrong, of_study = Collector(), STUDY in design.attrs
+    wrong = Collector()
+    of_study = STUDY in design.attrs
     short = [name for name in ALIASES if name in design.variables]
     with wrong.part():
         renamed(dict.fromkeys(design.variables, "a variable"))
         design = design.rename({name: ALIASES[name] for name in short})
     design = design.drop_vars([name for name in short if name in design.variables])  # it is refused above
-    known = {*FIELDS, *(() if not of_study else design.coords)}
+    known = {*FIELDS}
+    attributes = design.attrs
+    if of_study:
+        known |= {*design.coords}
+        attributes = {}
     along = {"case", *(dim for name in FIELDS if name in design.variables for dim in design[name].dims)}
     for name in map(str, design.variables):
         with wrong.part():
@@ -327,10 +351,10 @@ def _named(design: Any) -> Any:
                 remedy = f"Write ds.set_coords('{name}'), or give {name} to tr.solve."
                 raise InputError(name, "a variable", "an option of each case is a coordinate along 'case'", remedy)
             if name not in known and name not in OPTIONS and name not in along:
-                raise _unknown(name, "coordinate" if name in design.coords else "variable")
+                raise _unknown(name, design.coords)
             if name in FIELDS and set(design[name].dims) - {"case"}:
                 raise InputError(name, tuple(design[name].dims), *_along_case(design[name].dims))
-    for name in map(str, () if of_study else design.attrs):
+    for name in map(str, attributes):
         with wrong.part():
             if name in (*FIELDS, *ALIASES, *RADII, "material_pair"):
                 remedy = f"Write ds.assign({name}={design.attrs[name]!r})."
@@ -342,8 +366,11 @@ def _named(design: Any) -> Any:
     return design
 
 
-def _unknown(name: str, kind: str) -> InputError:
+def _unknown(name: str, coordinates: Container[Hashable]) -> InputError:
     """Return the error for a variable or coordinate of a data set of cases that is no parameter."""
+    kind = "variable"
+    if name in coordinates:
+        kind = "coordinate"
     if name in RADII:
         remedy = "Give axis_distance, or solve ds.to_dataframe(), whose rows may have both radii."
         return InputError(name, f"a {kind}", "the axis distance in a data set", remedy)
@@ -368,11 +395,19 @@ def _along_case(dims: tuple[Any, ...]) -> tuple[str, str]:
 
 def _in_own_unit(name: str, variable: Any) -> np.ndarray:
     """Return the values of a parameter in its unit; the attribute `units` or `unit` may name another one."""
-    values, unit, own = np.asarray(variable.values), stated_unit(variable.attrs), PARAMETERS.get(name)
+    values = np.asarray(variable.values)
+    unit = stated_unit(variable.attrs)
+    own = PARAMETERS.get(name)
     if own is None or unit in ("", own.unit, own.units) or values.dtype.kind not in "fiuO":
         return values
-    found = [in_unit(float(one), unit, own.unit, name) if _is_number(one) else one for one in np.ravel(values)]
-    return np.array(found, dtype=values.dtype if values.dtype.kind == "O" else float).reshape(values.shape)
+    kind: Any = float
+    if values.dtype.kind == "O":
+        kind = values.dtype
+    converted = np.array(values, dtype=kind)
+    for place, value in np.ndenumerate(values):
+        if _is_number(value):
+            converted[place] = in_unit(float(value), unit, own.unit, name)
+    return converted
 
 
 def _is_number(value: Any) -> bool:
@@ -392,9 +427,10 @@ def _checked_numbers(columns: Mapping[str, np.ndarray], n: int) -> dict[str, np.
             words: tuple[str, ...] = ()
             if name == "friction_coefficient":
                 words = FRICTION_LEVELS
-            numbers[name] = np.array(
-                [math.nan if isinstance(v, str) and v in words else number(name, v) for v in raw], dtype=float
-            ).reshape(n)
+            numbers[name] = np.full(n, math.nan)
+            for i, value in enumerate(raw):
+                if not isinstance(value, str) or value not in words:
+                    numbers[name][i] = number(name, value)
         good = parameter.accepts(numbers[name])
         if not good.all():
             bad = int(np.argmin(good))
@@ -429,12 +465,16 @@ def to_table(cases: Any, database: MaterialDatabase | None = None) -> CaseTable:
         database = load_database()
     if not isinstance(database, MaterialDatabase):
         raise InputError("database", database, "a MaterialDatabase", "`tr.load_database(path)` reads one.")
-    columns, numbers = (_of_dataset if hasattr(cases, "data_vars") else _of_cases)(cases)
+    if hasattr(cases, "data_vars"):
+        columns, numbers = _of_dataset(cases)
+    else:
+        columns, numbers = _of_cases(cases)
     roller, guide = (once_each(database.material, columns[name]) for name in MATERIAL_FIELDS)
     friction = numbers["friction_coefficient"].copy()
     for i in np.flatnonzero(np.isnan(friction)):
         level = columns["friction_coefficient"][i]
-        level = level if isinstance(level, str) else "typical"
+        if not isinstance(level, str):
+            level = "typical"
         friction[i] = database.friction(roller[i], guide[i], level=level).value
     numbers["friction_coefficient"] = friction
     positions = numbers["placeholder_position"].tolist()

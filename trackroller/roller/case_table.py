@@ -56,15 +56,19 @@ class MaterialArrays(_OptionalValues):  # type: ignore[misc, valid-type]
         def values(attribute: str) -> np.ndarray:
             return np.array([getattr(m, attribute) for m in different], dtype=float)[index]
 
-        lines = [json.dumps(m.sn_points) if m.sn_points else "" for m in different]
-        tables = [m.temperature_dependence for m in different]
-        warm = ["" if table is None else table.text for table in tables]
+        lines = [""] * len(different)
+        tables = [""] * len(different)
+        for i, material in enumerate(different):
+            if material.sn_points:
+                lines[i] = json.dumps(material.sn_points)
+            if material.temperature_dependence is not None:
+                tables[i] = material.temperature_dependence.text
 
         return cls(
             name=np.array([m.name for m in different], dtype=object)[index],
             guesses=np.array([m.guesses_of_limits for m in different], dtype=object)[index],
             ends=np.array([m.ends_of_limits for m in different], dtype=object)[index],
-            temperature_dependence=np.array(warm, dtype=object)[index],
+            temperature_dependence=np.array(tables, dtype=object)[index],
             sn_points=np.array(lines, dtype=object)[index],
             **{f.name: values(f.name) for f in fields(cls) if f.name not in TEXTS},
         )

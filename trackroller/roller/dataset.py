@@ -36,9 +36,11 @@ def file_attributes(title: str, action: str) -> dict[str, str]:
 NOTES = "limits_notes"  # attribute: what limits lack, and the placeholders that they rest on, a sentence a line
 _ODD = {"odd": True}  # the value changes its sign in the mirror image of a roller
 _SHOWN = {"shown": True}  # the value stands on the sheet, in the table of cases and in the explorer
-_C, _CB = ("contact",), ("contact", "body")
+_C = ("contact",)
+_CB = ("contact", "body")
 _PATCH = ("contact", "y", "x")
-_XZ, _YZ = ("contact", "body", "section_z", "section_x"), ("contact", "body", "section_z", "section_y")
+_XZ = ("contact", "body", "section_z", "section_x")
+_YZ = ("contact", "body", "section_z", "section_y")
 
 _GROUPS = {
     "forces": (
@@ -264,7 +266,12 @@ def build(
     xarray.Dataset
         With the coordinates `contact` and `body`.
     """
-    data = dict(values) | {name: array.astype(np.int8 if name in FLAGS else np.int32) for name, array in flags.items()}
+    data = dict(values)
+    for name, array in flags.items():
+        if name in FLAGS:
+            data[name] = array.astype(np.int8)
+        else:
+            data[name] = array.astype(np.int32)
     if not single:
         return _labelled(data, attrs)
     # xarray aligns and merges all variables anew for each data set, which takes longer than a simple solution. A result
@@ -288,21 +295,23 @@ def _labelled(data: Mapping[str, np.ndarray], attrs: Mapping[str, Any]) -> xr.Da
     """Return the data set of several cases, see `build`."""
     import xarray as xr  # heavy, and modules that only read `VARIABLES` do not need it
 
-    made = {}
+    variables = {}
     for name, array in data.items():
         if name in VARIABLES:
             dims = VARIABLES[name].dims
         else:
             dims = ("limit", "body")[3 - array.ndim :]
-        made[name] = xr.Variable(("case", *dims), array, _attributes(name))
-    ds = xr.Dataset(made, coords=_sides().copy(), attrs=dict(attrs))
+        variables[name] = xr.Variable(("case", *dims), array, _attributes(name))
+    ds = xr.Dataset(variables, coords=_sides().copy(), attrs=dict(attrs))
     further: dict[str, Any] = {}
     if "utilisation" in data:
         further["limit"] = ("limit", np.array(str(attrs["limits"]).split()), {"long_name": "limit"})
-    if any("component" in variable.dims for variable in made.values()):
+    if any("component" in variable.dims for variable in variables.values()):
         components = np.array(["xx", "yy", "zz", "xy", "yz", "zx"])
         further["component"] = ("component", components, {"long_name": "stress component"})
-    return ds.assign_coords(further) if further else ds
+    if not further:
+        return ds
+    return ds.assign_coords(further)
 
 
 def united(parts: Sequence[Mapping[str, Any]], context: Any = None) -> dict[str, Any]:

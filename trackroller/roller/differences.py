@@ -32,7 +32,8 @@ LIFE = 3e-3
 # Around its maximum a stress is flat: a stress that is right to SEARCH has its place to about the square root of
 # SEARCH, and 6e-3 of a semi-axis was measured between processors. The stress sections pass through this place, and
 # stress components change by half the pressure over a semi-axis.
-PLACE, SECTION = 1e-2, 3e-3
+PLACE = 1e-2
+SECTION = 3e-3
 # An estimated error is the difference of nearly equal numbers plus the gain of the last step of a search.
 ESTIMATE = 1e-3
 
@@ -82,9 +83,12 @@ def _difference(one: xr.Dataset, two: xr.Dataset, name: str) -> Difference:
         return Difference(np.nan, 0.0, "")
     if name not in two.variables or one[name].shape != two[name].shape:
         return Difference(np.inf, 0.0, "")
-    old, new = one[name].values, two[name].values
+    old = one[name].values
+    new = two[name].values
     if old.dtype.kind not in "fc":
-        return Difference(0.0 if np.array_equal(_words(old), _words(new)) else np.inf, 0.0, "")
+        if np.array_equal(_words(old), _words(new)):
+            return Difference(0.0, 0.0, "")
+        return Difference(np.inf, 0.0, "")
     return Difference(apart(old, new, scale(one, name)), allowed(name), _kind(name)[1])
 
 
@@ -117,13 +121,14 @@ def scale(ds: xr.Dataset, name: str) -> np.ndarray:
 def _larger(one: xr.DataArray, two: xr.DataArray) -> xr.DataArray:
     """Return the larger value of two arrays; a NaN counts as no value."""
     larger: Any = np.fmax  # its stubs do not know labelled arrays
-    found: xr.DataArray = larger(one, two)
-    return found
+    values: xr.DataArray = larger(one, two)
+    return values
 
 
 def _inside(ds: xr.Dataset, name: str, dims: tuple[str, ...]) -> xr.DataArray:
     """Return the largest magnitude of a variable in each case, and in each contact if this is one of `dims`."""
-    values, keep = abs(ds[name]), {"contact"} & {*dims}
+    values = abs(ds[name])
+    keep = {"contact"} & {*dims}
     return values.max([dim for dim in values.dims if dim in VARIABLES[name].dims and dim not in keep])
 
 
@@ -168,8 +173,10 @@ def _patch(ds: xr.Dataset, name: str, *along: str) -> xr.DataArray:
     sides = [f"semi_axis_{axis}" for axis in along or ("lateral", "rolling")]
     if not all(side in ds.variables for side in sides):
         return 0.01 * _axis(ds) + 0.0 * abs(ds[name]).fillna(0.0)
-    first, *more = (_inside(ds, side, _dims(name)) for side in sides)
-    return _larger(first, more[0]) if more else first
+    lengths = [_inside(ds, side, _dims(name)) for side in sides]
+    if len(lengths) == 1:
+        return lengths[0]
+    return _larger(*lengths)
 
 
 def _lateral(ds: xr.Dataset, name: str) -> xr.DataArray:

@@ -100,7 +100,10 @@ def normalised_patches(patches: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     length = np.where(plain, patches["a"], 1.0)
     out = patches.copy()
     unit = np.zeros(1, patches.dtype)  # the slip, on which the stresses do not depend
-    unit["a"], unit["sine"], unit["cosine"], unit["radius"] = 1.0, 0.5, np.sqrt(0.75), 1e3
+    unit["a"] = 1.0
+    unit["sine"] = 0.5
+    unit["cosine"] = np.sqrt(0.75)
+    unit["radius"] = 1e3
     out[plain] = unit
     out["b"][plain] = rounded(patches["b"] / patches["a"])[plain]
     for name in ("friction", "fixed"):
@@ -130,16 +133,16 @@ class Mirror:
         def one_sided(ellipse, slip, friction, rows, fine):
             half = len(rows) // 2
             twin = self.symmetric[rows[half:]]
-            asked = np.concatenate([np.ones(half, bool), ~twin])
-            resultants = law(ellipse.take(asked), slip.take(asked), friction[asked], rows[asked], fine)
+            solved = np.concatenate([np.ones(half, bool), ~twin])
+            resultants = law(ellipse.take(solved), slip.take(solved), friction[solved], rows[solved], fine)
             full = np.empty((len(rows), 3))
-            full[asked] = resultants.columns
+            full[solved] = resultants.columns
             full[half:][twin] = full[:half][twin] * (-1.0, 1.0, -1.0)
             return Resultants(*full.T)
 
         return one_sided
 
-    def asked(self, good: np.ndarray) -> np.ndarray:
+    def to_solve(self, good: np.ndarray) -> np.ndarray:
         """Return True for the patches among `good` (2 n,) that have to be solved, (2 n,)."""
         return good & ~np.concatenate([np.zeros_like(self.symmetric), self.symmetric])
 
@@ -150,7 +153,10 @@ class Mirror:
 
     def _copies(self, good: np.ndarray, values: np.ndarray, patches: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return the values (2 n, ...) with contact 1 copied to contact 2 of symmetric rollers, and mark the copies."""
-        full = np.full((good.size, *values.shape[1:]), np.nan, dtype=values.dtype if values.dtype != bool else float)
+        kind = values.dtype
+        if values.dtype.kind == "b":
+            kind = np.dtype(float)
+        full = np.full((good.size, *values.shape[1:]), np.nan, dtype=kind)
         full[patches] = values
         half = good.size // 2
         twin = np.concatenate([np.zeros(half, bool), self.symmetric & good[half:]])
@@ -158,22 +164,22 @@ class Mirror:
         return full, twin
 
     def spread(self, good: np.ndarray, values: np.ndarray, sign: float = 1.0) -> np.ndarray:
-        """Copy the values of the solved patches `asked(good)` to all patches `good`.
+        """Copy the values of the solved patches `to_solve(good)` to all patches `good`.
 
         With `sign` = -1 mirror images get the negative value.
         """
-        full, twin = self._copies(good, values, self.asked(good))
+        full, twin = self._copies(good, values, self.to_solve(good))
         if sign < 0:
             full[twin] = -full[twin] + 0.0
         return full[good]
 
     def spread_surface(self, good: np.ndarray, tractions: SurfaceTractions) -> SurfaceTractions:
-        """Copy the tractions of the solved patches `asked(good)` to all patches `good`; x rises in each patch."""
+        """Copy the tractions of the solved patches `to_solve(good)` to all patches `good`; x rises in each patch."""
         if not self.symmetric.any():
             return tractions
         out = {}
         for field in fields(SurfaceTractions):
-            full, twin = self._copies(good, getattr(tractions, field.name), self.asked(good))
+            full, twin = self._copies(good, getattr(tractions, field.name), self.to_solve(good))
             if field.name != "y":
                 full[twin] = full[twin][..., ::-1]
             if field.name in ("x", "shear_lateral", "slip_lateral"):

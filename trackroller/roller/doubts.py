@@ -119,7 +119,8 @@ def doubts_of_case(case: Case, database: MaterialDatabase) -> list[str]:
 def _unusual(name: str, number: float, unit: str, usual: tuple[float, float], kind: str) -> str:
     """Return the sentence about an unusual number, '' for a usual one."""
     low, high = usual
-    size, shown = abs(number), "" if unit == "-" else f" {unit}"
+    size = abs(number)
+    shown = "" if unit == "-" else f" {unit}"
     if low <= size <= high:
         return ""
     if size < low:
@@ -181,8 +182,10 @@ def _of_points(name: str, profile: Mapping[str, Any], guide_radius: float) -> li
         return []
     points = np.asarray(profile["points"], dtype=float)
     order = in_order(points)
-    found, steps = examined(*points[order].T), np.sign(np.diff(points[:, 0]))
-    sentences, width = [], float(np.ptp(points[:, 0]))
+    findings = examined(*points[order].T)
+    steps = np.sign(np.diff(points[:, 0]))
+    sentences = []
+    width = float(np.ptp(points[:, 0]))
     low, high = (size * guide_radius for size in MEASURED_WIDTH)
     if width < low or width > high:
         sentences.append(
@@ -197,59 +200,60 @@ def _of_points(name: str, profile: Mapping[str, Any], guide_radius: float) -> li
         sentences.append(f"{name}: its points run from large to small x; they were sorted by x.")
     elif np.any(steps < 0):
         sentences.append(f"{name}: its points do not run in one direction; they were sorted by x.")
-    sentences += [f"{name}: {text}" for text in _gaps_and_waves(points[order], found)]
-    for run in found.at_ends:
+    sentences += [f"{name}: {text}" for text in _gaps_and_waves(points[order], findings)]
+    for run in findings.at_ends:
         ends = " to ".join(f"({px:.4g}, {pz:.4g})" for px, pz in points[order][[run.first, run.last]])
         sentences.append(
             f"{name}: its outermost points {ends} lie {1e3 * run.off:.2g} µm off the curve of the points beside them; "
             "if they are a speck, leave them out."
         )
     if profile.get("smooth"):
-        return sentences + _error_of_smoothing(name, found)
-    return sentences + _scatter_as_shape(name, found, "smooth" in profile)
+        return sentences + _error_of_smoothing(name, findings)
+    return sentences + _scatter_as_shape(name, findings, "smooth" in profile)
 
 
-def _error_of_smoothing(name: str, found: Findings) -> list[str]:
+def _error_of_smoothing(name: str, findings: Findings) -> list[str]:
     """Return a sentence about points that scatter too much to be smoothed."""
-    if found.error_if_smoothed < UNSURE:
+    if findings.error_if_smoothed < UNSURE:
         return []
     return [
-        f"{name}: its points scatter by {1e3 * found.scatter:.2g} µm at distances of {found.spacing:.2g} mm; "
-        f"after smoothing, the pressure is wrong by about {100 * found.error_if_smoothed:.0f} %. Measure with "
+        f"{name}: its points scatter by {1e3 * findings.scatter:.2g} µm at distances of {findings.spacing:.2g} mm; "
+        f"after smoothing, the pressure is wrong by about {100 * findings.error_if_smoothed:.0f} %. Measure with "
         "less noise, or describe the shape by its radii (arc, arcs)."
     ]
 
 
-def _scatter_as_shape(name: str, found: Findings, meant: bool) -> list[str]:
+def _scatter_as_shape(name: str, findings: Findings, meant: bool) -> list[str]:
     """Return sentences about scatter that counts as shape; `meant` says that the profile has `smooth: 0`."""
     sentences = []
-    if found.runs or found.jumps:
+    if findings.runs or findings.jumps:
         sentences.append(f"{name}: points lie off their neighbours, and smooth: 0 takes them as shape.")
     least = TOLD
     remedy = "add smooth: auto, or smooth: 0 if it is meant"
     if meant:
         least = MISLEADING
         remedy = "add smooth: auto"
-    if found.roughness >= least:
-        noise = f"{1e3 * found.scatter:.2g}"
+    if findings.roughness >= least:
+        noise = f"{1e3 * findings.scatter:.2g}"
         sentences.append(
             f"{name}: its points scatter by {noise} µm (noise or rounding) and are not smoothed, so that the scatter "
-            f"counts as shape and can raise the pressure by {found.pressure_rise}; {remedy}."
+            f"counts as shape and can raise the pressure by {findings.pressure_rise}; {remedy}."
         )
     return sentences
 
 
-def _gaps_and_waves(points: np.ndarray, found: Findings) -> list[str]:
+def _gaps_and_waves(points: np.ndarray, findings: Findings) -> list[str]:
     """Return sentences about a length without points, and about waves that count as shape."""
-    sentences, (x, z) = [], points.T
+    sentences = []
+    x, z = points.T
     place = gap(x)
     if place is not None:
         sentences.append(
             f"no points lie between x = {x[place]:.4g} and {x[place + 1]:.4g} mm, and their usual distance is "
-            f"{found.spacing:.2g} mm; the curve there is only guessed. Measure this part if the bodies touch there."
+            f"{findings.spacing:.2g} mm; the curve there is only guessed. Measure this part if the bodies touch there."
         )
-    wave = waves(x, z, found.scatter)
-    if wave is not None and not found.runs:
+    wave = waves(x, z, findings.scatter)
+    if wave is not None and not findings.runs:
         height = f"{1e3 * wave.height:.2g}"
         sentences.append(
             f"its curvature goes to and fro {wave.turns} times, as waves of ± {height} µm and {wave.length:.2g} mm "
@@ -286,11 +290,13 @@ def _touching_elsewhere(values: Mapping[str, Any]) -> list[str]:
     for profile in _mappings(values.get("roller_profile")):
         if "points" not in profile:
             continue
-        texts = [json.dumps(one) if one else "" for one in (guides[0], {"frame": "section", **profile})]
-        found = touching_place(texts[0], texts[1], radii[0])
-        if found is None or abs(found[1] - angles[0]) <= TURNED:
+        guide = ""
+        if guides[0]:
+            guide = json.dumps(guides[0])
+        touching = touching_place(guide, json.dumps({"frame": "section", **profile}), radii[0])
+        if touching is None or abs(touching[1] - angles[0]) <= TURNED:
             continue
-        place, angle = found
+        place, angle = touching
         if place == 0.0:
             where = "in the middle"
         else:
@@ -314,21 +320,27 @@ def _convex_rollers(values: Mapping[str, Any]) -> list[str]:
     if same:
         pairs = list(zip(guides, rollers, strict=True))
     like = {other: other / one for one, other in pairs if one < other <= LIKE_A_GROOVE * one}
-    found = [("roller_profile_radius", radius, ratio, f"write -{radius:g}") for radius, ratio in like.items()]
+    radii = [("roller_profile_radius", radius, ratio, f"write -{radius:g}") for radius, ratio in like.items()]
     for profile in _mappings(values.get("roller_profile")):
         radius, remedy = _convex_radius(profile)
         if guides[0] < radius <= LIKE_A_GROOVE * guides[0]:
-            found.append(("roller_profile", radius, radius / guides[0], remedy))
+            radii.append(("roller_profile", radius, radius / guides[0], remedy))
     return [
         f"{name}: a radius of {radius:.4g} mm is that of a convex roller, and {ratio:.3g} times that of the guide, as "
         f"grooves have; if a groove is meant, {remedy}."
-        for name, radius, ratio, remedy in found[:1]
+        for name, radius, ratio, remedy in radii[:1]
     ]
 
 
 def _numbers(given: Any) -> list[float]:
     """Return the finite numbers of a value of `doubts`; other values become NaN."""
-    return [float(v) if isinstance(v, (int, float)) else math.nan for v in np.ravel(given).tolist()]
+    numbers = []
+    for value in np.ravel(given).tolist():
+        if isinstance(value, (int, float)):
+            numbers.append(float(value))
+        else:
+            numbers.append(math.nan)
+    return numbers
 
 
 def _convex_radius(profile: Mapping[str, Any]) -> tuple[float, str]:

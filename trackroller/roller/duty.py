@@ -58,7 +58,8 @@ def checked_duty(value: Any) -> dict[str, float]:
     if not any(key in value for key in STROKES):
         return FIELD.canonical(every_day)
     if "hours_per_day" in value:
-        allowed, wrong = "either hours_per_day, or strokes_per_day and stroke", "stands beside strokes, which give it"
+        allowed = "either hours_per_day, or strokes_per_day and stroke"
+        wrong = "stands beside strokes, which give it"
         remedy = "Remove hours_per_day, or the strokes."
         raise InputError("duty.hours_per_day", value["hours_per_day"], allowed, remedy, wrong)
     duty = OF_STROKES.canonical(every_day)

@@ -83,9 +83,14 @@ def least_errors(table: CaseTable, options: Options) -> tuple[np.ndarray, np.nda
     They are the constant parts of the estimated errors, which contact models from a table have.
     """
     models = [CLASSES[model_in_use(options, text)] for text in table.friction_law.tolist()]
-    forces = [model.errors()["friction_force"][2] if model.errors() else 0.0 for model in models]
-    peaks = np.array([model.peak_error for model in models], float) * table.friction_coefficient
-    return np.array(forces, float), peaks * bool(PEAK_OUTPUTS & set(options.outputs))
+    forces = np.zeros(len(models))
+    peaks = np.zeros(len(models))
+    for i, model in enumerate(models):
+        if model.errors():
+            forces[i] = model.errors()["friction_force"][2]
+        if PEAK_OUTPUTS & set(options.outputs):
+            peaks[i] = model.peak_error * table.friction_coefficient[i]
+    return forces, peaks
 
 
 def error_attributes(levels: Mapping[str, Levels]) -> dict[str, dict[str, Any]]:
@@ -105,7 +110,8 @@ def tell_errors(ds: xr.Dataset, table: CaseTable, options: Options) -> None:
     """Add as attributes the limit of the residual, and the errors of discretisation if they were measured."""
     ds.variables["residual"].attrs["converged_up_to"] = converged_up_to(options.contact_model, options.normal)
     constant = all(law_of(text).is_constant for text in set(table.friction_law.tolist()))
-    cheaper, model = DECLARED[options.contact_model].cheaper, options.contact_model
+    cheaper = DECLARED[options.contact_model].cheaper
+    model = options.contact_model
     if cheaper and np.any(solved_by(ds) == cheaper):
         model = cheaper
     for name, errors in error_attributes(expected_errors(options, model, constant)).items():

@@ -33,8 +33,8 @@ def _model(options: Options) -> str:
     words = f"contact model {options.contact_model}"
     if options.tolerance is not None:
         shares = DECLARED[options.contact_model].cost.shares_of(options.tolerance.by_quantity)
-        told = ", ".join(f"{name} {100 * share:.0f} %" for name, share in zip(RUNGS, shares, strict=True))
-        words += f" on the rungs that each case needs, expected: {told} of the cases"
+        expected = ", ".join(f"{name} {100 * share:.0f} %" for name, share in zip(RUNGS, shares, strict=True))
+        words += f" on the rungs that each case needs, expected: {expected} of the cases"
     if not options.slip_terms:
         return words
     if options.contact_model == "sliding":
@@ -61,14 +61,19 @@ def explain(table: CaseTable, options: Options) -> list[Stage]:
     -----
     The counts are those known before anything is solved. Cases that lift off or slip fully leave later stages.
     """
-    n, shortcuts, wanted = len(table), options.shortcuts, set(options.outputs)
+    n = len(table)
+    shortcuts = options.shortcuts
+    outputs = set(options.outputs)
     part = table
     if shortcuts and n > 1:
         part = table.take(distinct_contacts.distinct_mechanics(table)[0])
-    mirrored, free = distinct_contacts.is_mirror_symmetric(part), distinct_contacts.is_frictionless(part)
+    mirrored = distinct_contacts.is_mirror_symmetric(part)
+    free = distinct_contacts.is_frictionless(part)
     if not shortcuts:
         mirrored = free = np.zeros(len(part), dtype=bool)
-    m, twins, frictionless = len(part), int(mirrored.sum()), int(free.sum())
+    m = len(part)
+    twins = int(mirrored.sum())
+    frictionless = int(free.sum())
     solved = (2 * m - twins, 2 * n, "patches")  # a mirror-symmetric case has one patch to solve
     bare = 2 * frictionless - int((mirrored & free).sum())  # patches without friction
     sides = ""
@@ -77,40 +82,42 @@ def explain(table: CaseTable, options: Options) -> list[Stage]:
     repeated = "every case has mechanics of its own"
     if m < n:
         repeated = f"{n - m} cases repeat the mechanics of others"
-    every, cases, asked = (2 * n, 2 * n, "patches"), (n, n, "cases"), wanted & PEAK_OUTPUTS
+    every = (2 * n, 2 * n, "patches")
+    cases = (n, n, "cases")
+    peaks = outputs & PEAK_OUTPUTS
     stages = [
         Stage("geometry, Hertz or half-space pressure", True, m, n, "cases", repeated),
         Stage("equilibrium", True, *solved, _model(options) + sides),
-        _stage("friction work", {"friction_work"}, wanted, solved, "asked for" + sides),
+        _stage("friction work", {"friction_work"}, outputs, solved, "asked for" + sides),
     ]
-    if options.stop_if is not None and asked:
+    if options.stop_if is not None and peaks:
         why = f"{options.stop_if}: where it holds no peak is searched for"
         stages.append(Stage("stop condition", True, m, n, "cases", why))
     elif options.stop_if is not None:
         stages.append(Stage("stop condition", False, 0, n, "cases", "no stress is asked for: nothing to stop"))
-    if (asked and options.contact_model != "sliding") or "tractions" not in wanted:
-        stages.append(_tractions(options, bool(asked), solved[0] - bare, 2 * n, frictionless))
-    peak = "serves " + " and ".join(sorted(asked)) + sides
+    if (peaks and options.contact_model != "sliding") or "tractions" not in outputs:
+        stages.append(_tractions(options, bool(peaks), solved[0] - bare, 2 * n, frictionless))
+    peak = "serves " + " and ".join(sorted(peaks)) + sides
     if bare > 1:
         peak += f"; {bare} patches without friction: one search for each ellipticity and material"
     if options.stress_bodies == "published":
         peak += "; one body with the mean Poisson's ratio"
     return [
         *stages,
-        _stage("peak stress", PEAK_OUTPUTS, wanted, solved, peak),
-        _stage("life", {"life"}, wanted, cases, "from peak stress, strength and speed of each case"),
-        _stage("tractions output", {"tractions"}, wanted, every, "asked for"),
-        _stage("subsurface sections", {"subsurface"}, wanted, every, "asked for"),
+        _stage("peak stress", PEAK_OUTPUTS, outputs, solved, peak),
+        _stage("life", {"life"}, outputs, cases, "from peak stress, strength and speed of each case"),
+        _stage("tractions output", {"tractions"}, outputs, every, "asked for"),
+        _stage("subsurface sections", {"subsurface"}, outputs, every, "asked for"),
     ]
 
 
-def _tractions(options: Options, asked: bool, patches: int, total: int, frictionless: int) -> Stage:
+def _tractions(options: Options, has_peaks: bool, patches: int, total: int, frictionless: int) -> Stage:
     """Return the stage of the tractions of `patches` with friction, from which stresses are computed."""
     name = "tractions on a grid"
     if options.contact_model == "sliding":
         why = "not asked for: full sliding tractions are known in closed form"
         return Stage(name, False, 0, total, "patches", why)
-    if not asked:
+    if not has_peaks:
         return Stage(name, False, 0, total, "patches", "no output needs them")
     why = "the stress of stick and slip needs them"
     if frictionless:
@@ -118,8 +125,8 @@ def _tractions(options: Options, asked: bool, patches: int, total: int, friction
     return Stage(name, patches > 0, patches, total, "patches", why)
 
 
-def _stage(name: str, need: Set[str], wanted: set[str], size: tuple[int, int, str], why: str) -> Stage:
+def _stage(name: str, need: Set[str], outputs: set[str], size: tuple[int, int, str], why: str) -> Stage:
     """Return a stage that runs if one of the outputs `need` is wanted; `size` has count, total and unit."""
-    if need & wanted:
+    if need & outputs:
         return Stage(name, True, *size, why)
     return Stage(name, False, 0, *size[1:], f"no output needs it (it serves {' or '.join(sorted(need))})")

@@ -45,7 +45,8 @@ def with_reasons(
         The same results; `reason` is "" for solved cases, and missing if all cases are solved.
     """
     regime, converged = (np.atleast_1d(ds.variables[name].values) for name in ("regime", "converged"))
-    failed, loose = regime == FAILED, (regime == ROLLING) & (converged == 0)
+    failed = regime == FAILED
+    loose = (regime == ROLLING) & (converged == 0)
     if not (failed | loose).any():
         return ds
     residual, bits = (np.atleast_1d(ds[name].values) for name in ("residual", "validity"))
@@ -62,7 +63,9 @@ def with_reasons(
         case = table.take(np.array([i]))
         reasons[i] = ". ".join([words, *_hints(case, options, bool(bits[i] & STEEP))])
     attrs = {"long_name": "why a case failed or misses its tolerance"}
-    return ds.assign(reason=(ds["regime"].dims, reasons if ds["regime"].dims else reasons[0], attrs))
+    if not ds["regime"].dims:
+        return ds.assign(reason=((), reasons[0], attrs))
+    return ds.assign(reason=(ds["regime"].dims, reasons, attrs))
 
 
 def _hints(case: CaseTable, options: Options, steep: bool) -> list[str]:

@@ -84,27 +84,33 @@ class Found:
     def as_dict(self) -> dict[str, Any]:
         """Return the attributes and the answer in words, as values of JSON; a number that is not known is None."""
         numbers = {key: getattr(self, key) for key in ("start", "low", "high", "value")}
-        known = {key: number if math.isfinite(number) else None for key, number in numbers.items()}
+        known = dict.fromkeys(numbers) | {key: number for key, number in numbers.items() if math.isfinite(number)}
         texts = {key: getattr(self, key) for key in ("name", "unit", "condition", "below", "above", "text")}
         return {**known, **texts, "tried": list(self.tried)}
 
     @property
     def text(self) -> str:
         """Return the answer in words."""
-        unit = "" if self.unit == "-" else f" {self.unit}"
-        words, tried = PARAMETERS[self.name].long_name, f"{self.tried[0]:.4g} and {self.tried[1]:.4g}{unit}"
+        unit = f" {self.unit}"
+        if self.unit == "-":
+            unit = ""
+        words = PARAMETERS[self.name].long_name
+        tried = f"{self.tried[0]:.4g} and {self.tried[1]:.4g}{unit}"
         if not self.met:
             return " ".join([f"No {words} between {tried} meets '{self.condition}': {self.below}", *self.notes])
-        inside = self.low <= self.start <= self.high
-        said = f"'{self.condition}' is met from {self.low:.6g} to {self.high:.6g}{unit} of {words}"
-        outside = "" if inside else ", where it is not met"
-        said += f" (now {self.start:g}{unit}{outside})."
-        for end, why in ((f"Below {self.low:.6g}", self.below), (f"Above {self.high:.6g}", self.above)):
-            said += f" {end}{unit}: {why}" if why else ""
-        if not (self.below and self.above):
-            open_ = [f"{end:.4g}{unit}" for end, why in ((self.low, self.below), (self.high, self.above)) if not why]
-            said += f" The search ended at {' and '.join(open_)}."
-        return " ".join([said, *self.notes])
+        now = f"now {self.start:g}{unit}"
+        if not self.low <= self.start <= self.high:
+            now += ", where it is not met"
+        sentences = [f"'{self.condition}' is met from {self.low:.6g} to {self.high:.6g}{unit} of {words} ({now})."]
+        open_ends = []
+        for side, end, results in (("Below", self.low, self.below), ("Above", self.high, self.above)):
+            if results:
+                sentences.append(f"{side} {end:.6g}{unit}: {results}")
+            else:
+                open_ends.append(f"{end:.4g}{unit}")
+        if open_ends:
+            sentences.append(f"The search ended at {' and '.join(open_ends)}.")
+        return " ".join([*sentences, *self.notes])
 
 
 def find(
@@ -177,7 +183,7 @@ def find(
     notes: list[str] = []
     if between is not None:
         between, notes = _cut(PARAMETERS[name], float(start), between)
-    return search.found(float(start), _values(PARAMETERS[name], float(start), between), notes)
+    return search.range_around(float(start), _values(PARAMETERS[name], float(start), between), notes)
 
 
 def _cut(parameter: Parameter, start: float, between: Any) -> tuple[tuple[float, float], list[str]]:
@@ -190,7 +196,8 @@ def _cut(parameter: Parameter, start: float, between: Any) -> tuple[tuple[float,
     finite = [number_in(end, "between", allowed, -LARGEST, LARGEST, parameter.unit) for end in given]
     if len(finite) != 2 or finite[0] == finite[1]:
         raise InputError("between", given, allowed, remedy)
-    low, high = max(min(finite), parameter.lower), min(max(finite), parameter.upper)
+    low = max(min(finite), parameter.lower)
+    high = min(max(finite), parameter.upper)
     if low >= high:
         raise InputError("between", given, allowed, remedy, "lies outside the bounds")
     if parameter.unit == "-":
@@ -211,7 +218,8 @@ def _toward(start: float, end: float) -> np.ndarray:
     Even steps miss what lies near the start if the end is far away, so that the steps grow where the end is more than
     `RATIO` times the start away.
     """
-    distance, near = abs(end - start), abs(start) or 1.0
+    distance = abs(end - start)
+    near = abs(start) or 1.0
     steps = np.linspace(0.0, distance, STEPS + 1)[1:]
     if distance > RATIO * near:
         steps = np.geomspace(near / STEPS, distance, STEPS)
@@ -226,16 +234,26 @@ def _values(parameter: Parameter, start: float, between: tuple[float, float] | N
     if between is not None:
         values = np.concatenate([_toward(start, between[0])[::-1], [start], _toward(start, between[1])])
     elif signed or start == 0.0:
-        if math.isnan(parameter.default):
-            example = 0.0
-        else:
+        example = 0.0
+        if math.isfinite(parameter.default):
             example = abs(parameter.default)
-        width = 4.0 * max(abs(start), example if math.isfinite(example) else 0.0, 1e-6)
+        width = 4.0 * max(abs(start), example, 1e-6)
         values = start + width * np.linspace(-1.0, 1.0, 2 * STEPS + 1)
     else:
         values = np.sort(start * RATIO ** np.linspace(-1.0, 1.0, 2 * STEPS + 1))
     values[np.argmin(np.abs(values - start))] = start
     return np.unique(values[parameter.accepts(values)])
+
+
+def _run_around(is_met: np.ndarray, distance: np.ndarray) -> tuple[int, int]:
+    """Return first and last place of the run of places that meet a condition, around the nearest of them."""
+    inside = int(np.flatnonzero(is_met)[np.argmin(distance[is_met])])
+    first, last = inside, inside
+    while first > 0 and is_met[first - 1]:
+        first -= 1
+    while last < len(is_met) - 1 and is_met[last + 1]:
+        last += 1
+    return first, last
 
 
 class _Search:
@@ -244,16 +262,18 @@ class _Search:
     def __init__(
         self, case: Case, name: str, condition: str, database: MaterialDatabase | None, options: Mapping[str, Any]
     ) -> None:
-        self.case, self.name, self.database = case, name, database
+        self.case = case
+        self.name = name
+        self.database = database
         self.plain = without_units(condition, unit_of, "find")
         self.condition = condition
-        asked = names(self.plain, "find") - set(REGIMES)
-        for one in asked - {"regime"}:
-            if one not in PARTS and one not in PARAMETERS:
-                raise unknown_name("find", one, (*PARTS, "regime", *PARAMETERS))
-        self.results = sorted(asked & set(PARTS))
-        self.parameters = sorted(asked & set(PARAMETERS))
-        groups = {PARTS[one].variable.group for one in self.results} - {STATUS}
+        used = names(self.plain, "find") - set(REGIMES)
+        for word in used - {"regime"}:
+            if word not in PARTS and word not in PARAMETERS:
+                raise unknown_name("find", word, (*PARTS, "regime", *PARAMETERS))
+        self.results = sorted(used & set(PARTS))
+        self.parameters = sorted(used & set(PARAMETERS))
+        groups = {PARTS[result].variable.group for result in self.results} - {STATUS}
         if VERDICT in groups:
             groups |= set(groups_of("find", ["all"]))
         self.options = {**options, "outputs": tuple(sorted(groups | {"forces"}))}
@@ -261,21 +281,18 @@ class _Search:
 
     def at(self, values: Iterable[float]) -> list[tuple[bool, str]]:
         """Return for each value whether the condition is met, and what the results are."""
-        cases: list[Case | None] = []
-        why: list[str] = []
-        for value in values:
+        answers: list[tuple[bool, str]] = []
+        cases: dict[int, Case] = {}
+        for number, value in enumerate(values):
+            answers.append((False, ""))
             try:
-                cases.append(replace(self.case, **{self.name: float(value)}))
-                why.append("")
+                cases[number] = replace(self.case, **{self.name: float(value)})
             except InputError as error:
-                cases.append(None)
-                why.append(str(error.errors[0]))
-        solved = [one for one in cases if one is not None]
-        told = iter(self._solved(solved) if solved else ())
-        return [
-            (False, f"it is refused: {text}") if one is None else next(told)
-            for one, text in zip(cases, why, strict=True)
-        ]
+                answers[number] = (False, f"it is refused: {error.errors[0]}")
+        if cases:
+            for number, answer in zip(cases, self._solved(list(cases.values())), strict=True):
+                answers[number] = answer
+        return answers
 
     def _solved(self, cases: list[Case]) -> list[tuple[bool, str]]:
         ds = solve(cases, database=self.database, **self.options)
@@ -285,24 +302,24 @@ class _Search:
         lacking = [one for one in self.results if one not in columns]
         if lacking:
             raise InputError("find", self.condition, f"results of this roller; it has no {', '.join(lacking)}")
-        for one in self.results:
-            low = PARTS.get(f"{one}_low")
-            if low is not None and low.variable.name in ds:
-                if (low.values(ds).values < columns[one] * (1.0 - ROUNDING)).any():
-                    self.ranged |= {one}
-                else:
-                    self.ranged |= set()
+        for result in self.results:
+            low = PARTS.get(f"{result}_low")
+            if low is None or low.variable.name not in ds:
+                continue
+            if (low.values(ds).values < columns[result] * (1.0 - ROUNDING)).any():
+                self.ranged.add(result)
         regime = ds["regime"].values
         columns["regime"] = np.array(REGIMES, dtype=object)[regime]
         columns |= {one: np.array([getattr(case, one) for case in cases], dtype=object) for one in self.parameters}
-        held = np.broadcast_to(meets(self.plain, {**columns, **{r: r for r in REGIMES}}, "find"), (len(cases),))
-        out = []
-        for i, good in enumerate(held.tolist()):
-            said = [f"{one} {self._band(ds, one, i, float(columns[one][i]))}" for one in self.results]
-            if regime[i] != REGIMES.index("rolling") or not said:
-                said.insert(0, REGIMES[regime[i]].replace("_", " "))
-            out.append((bool(good), ", ".join(said) + "."))
-        return out
+        words = {**columns, **{regime: regime for regime in REGIMES}}
+        is_met = np.broadcast_to(meets(self.plain, words, "find"), (len(cases),))
+        answers = []
+        for i, good in enumerate(is_met.tolist()):
+            parts = [f"{name} {self._band(ds, name, i, float(columns[name][i]))}" for name in self.results]
+            if regime[i] != REGIMES.index("rolling") or not parts:
+                parts.insert(0, REGIMES[regime[i]].replace("_", " "))
+            answers.append((bool(good), ", ".join(parts) + "."))
+        return answers
 
     def _band(self, ds: xr.Dataset, name: str, place: int, value: float) -> str:
         """Write a result, and both ends of its range where placeholders give it one."""
@@ -316,62 +333,62 @@ class _Search:
 
     def notes(self) -> tuple[str, ...]:
         """Say what the condition does not count."""
-        said = [
+        sentences = [
             f"{one} holds at the values of the placeholders; {one}_low is surely reached."
             for one in sorted(self.ranged)
         ]
         alone = self.case.guide_overrollings_per_hour is None and self.name != "guide_overrollings_per_hour"
         if alone and any(one.startswith("pair_life") for one in self.results):
-            said.append("The guide's hours are not known: give guide_overrollings_per_hour.")
-        return tuple(said)
+            sentences.append("The guide's hours are not known: give guide_overrollings_per_hour.")
+        return tuple(sentences)
 
     def odd_at(self, value: float) -> list[str]:
         """Return the doubts about the case with another value that the case itself does not have."""
-        if self.database is None:
+        database = self.database
+        if database is None:
             database = load_database()
-        else:
-            database = self.database
         try:
-            there = replace(self.case, **{self.name: value})
+            changed = replace(self.case, **{self.name: value})
         except InputError:  # the search tells that it is refused
             return []
-        own = doubts_of_case(self.case, database)
-        return [text for text in doubts_of_case(there, database) if text not in own]
+        of_case = doubts_of_case(self.case, database)
+        return [text for text in doubts_of_case(changed, database) if text not in of_case]
 
-    def found(self, start: float, values: np.ndarray, notes: Iterable[str] = ()) -> Found:
+    def range_around(self, start: float, values: np.ndarray, notes: Iterable[str] = ()) -> Found:
         """Return the range of values that meet the condition and holds the start, or is next to it.
 
         The `notes` are added to those of the search.
         """
-        told = self.at(values)
-        held = np.array([good for good, _ in told])
+        answers = self.at(values)
+        is_met = np.array([good for good, _ in answers])
         tried = (float(values[0]), float(values[-1]))
         unit = PARAMETERS[self.name].unit
-        if not held.any():
-            nearest = told[int(np.argmin(np.abs(values - start)))][1]
-            why, none = f"now {nearest}", math.nan
+        if not is_met.any():
+            nearest = answers[int(np.argmin(np.abs(values - start)))][1]
+            why = f"now {nearest}"
+            none = math.nan
             return Found(self.name, unit, self.condition, start, none, none, tried, why, "", (*self.notes(), *notes))
-        inside = np.flatnonzero(held)[np.argmin(np.abs(values[held] - start))]
-        first, last = inside, inside
-        while first > 0 and held[first - 1]:
-            first -= 1
-        while last < len(values) - 1 and held[last + 1]:
-            last += 1
-        ends = [(float(values[first]), float(values[first - 1]) if first else math.nan)]
-        ends += [(float(values[last]), float(values[last + 1]) if last < len(values) - 1 else math.nan)]
-        whys = [told[first - 1][1] if first else "", told[last + 1][1] if last < len(values) - 1 else ""]
-        there = [(end, why) for end, why in zip(ends, whys, strict=True) if not math.isnan(end[1])]
-        said = {end[1]: why for end, why in there}
+        first, last = _run_around(is_met, np.abs(values - start))
+        # of each end, the last value that meets the condition and the first one beyond; an open end has no bracket
+        brackets: dict[int, tuple[float, float]] = {}
+        results: dict[float, str] = {}
+        for side, last_inside, beyond in ((0, first, first - 1), (1, last, last + 1)):
+            if 0 <= beyond < len(values):
+                brackets[side] = (float(values[last_inside]), float(values[beyond]))
+                results[float(values[beyond])] = answers[beyond][1]
 
         def meets_at(_: list[int], inner: list[float]) -> list[bool]:
-            answers = self.at(inner)
-            said.update(zip(inner, (text for _, text in answers), strict=True))
-            return [good for good, _ in answers]
+            of_inner = self.at(inner)
+            results.update(zip(inner, (text for _, text in of_inner), strict=True))
+            return [good for good, _ in of_inner]
 
-        closer = iter(narrowed([end for end, _ in there], PARTS_OF_A_STEP, meets_at))
-        ends = [end if math.isnan(end[1]) else next(closer) for end in ends]
-        whys = [said.get(outside, "") for _, outside in ends]
-        low, high = ends[0][0], ends[1][0]
+        closer = narrowed(list(brackets.values()), PARTS_OF_A_STEP, meets_at)
+        ends = [float(values[first]), float(values[last])]
+        texts = ["", ""]
+        for side, (met, beyond_end) in zip(brackets, closer, strict=True):
+            ends[side] = met
+            texts[side] = results[beyond_end]
+        low, high = ends
         odd = dict.fromkeys(text for end in (low, high) for text in self.odd_at(end))
         notes = (*self.notes(), *notes, *(f"Doubtful: {text}" for text in odd))
-        return Found(self.name, unit, self.condition, start, low, high, tried, whys[0], whys[1], notes)
+        return Found(self.name, unit, self.condition, start, low, high, tried, texts[0], texts[1], notes)

@@ -140,7 +140,8 @@ def geometry_problems(columns: Mapping[str, np.ndarray]) -> Iterator[tuple[int, 
         bad = np.flatnonzero(sound & ~(value > 0))
         sound[bad] = False
         for i in bad.tolist():
-            groove, radius = get["guide_profile_radius"][i], geometry.rolling_radius[i]
+            groove = get["guide_profile_radius"][i]
+            radius = geometry.rolling_radius[i]
             limit = groove * np.cos(geometry.contact_angle[i])
             words = {"value": value[i], "groove": -groove, "radius": -radius, "limit": limit}
             yield i, InputError(name, float(get[name][i]), allowed.format(**words), remedy.format(**words))

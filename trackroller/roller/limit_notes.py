@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from trackroller.damage import asked, fields_of, judged
+from trackroller.damage import fields_of, judged, limits_of
 from trackroller.damage.limit import SN_SCATTER, Limit, SolvedRollers, missing
 from trackroller.materials.material import UNNAMED
 from trackroller.materials.properties import Value
@@ -130,33 +130,38 @@ def notes_of(ds: xr.Dataset) -> list[str]:
 
 def lacks_of(ds: xr.Dataset) -> list[Lack]:
     """Return the values that the limits of a result lack."""
-    return [Lack(**found.groupdict(default="")) for note in notes_of(ds) if (found := _LACK.fullmatch(note))]
+    matches = map(_LACK.fullmatch, notes_of(ds))
+    return [Lack(**match.groupdict(default="")) for match in matches if match is not None]
 
 
 def placeholders_of(ds: xr.Dataset) -> list[Placeholder]:
     """Return the placeholders of materials on which the limits of a result rest."""
     out = []
     for note in notes_of(ds):
-        found = _PLACEHOLDERS.fullmatch(note)
-        if found is not None:
-            for one in _VALUE.finditer(found["values"]):
-                low, high = (float(one[end]) if one[end] else np.nan for end in ("low", "high"))
-                texts = found["limit"], found["material"], one["name"], one["note"] or ""
-                out.append(Placeholder(*texts, low, high, one["units"] or ""))
+        placeholders = _PLACEHOLDERS.fullmatch(note)
+        if placeholders is None:
+            continue
+        for value in _VALUE.finditer(placeholders["values"]):
+            low = float(value["low"] or np.nan)
+            high = float(value["high"] or np.nan)
+            texts = placeholders["limit"], placeholders["material"], value["name"], value["note"] or ""
+            out.append(Placeholder(*texts, low, high, value["units"] or ""))
     return out
 
 
 def notes_on_limits(table: CaseTable, options: Options) -> list[str]:
     """Return one sentence for each value that a limit asked for lacks, and for each that is a placeholder."""
-    solved, bodies = solved_of(table, {}, options), {"roller": table.roller, "guide": table.guide}
+    solved = solved_of(table, {}, options)
+    bodies = {"roller": table.roller, "guide": table.guide}
     names = {body: own.name for body, own in bodies.items()}
     guesses = dict.fromkeys(
         (str(name), tuple(own.items()))
         for body in bodies.values()
         for name, own in zip(body.name, body.guesses, strict=True)
     )
-    out, served = [], to_compute(solved, options)
-    for limit in asked(options.outputs, options.not_checked):
+    out = []
+    served = to_compute(solved, options)
+    for limit in limits_of(options.outputs, options.not_checked):
         out += [lack.line for lack in _lacks(limit, solved, names)]
         required = {}
         if limit in served:
@@ -191,7 +196,8 @@ def _lacks(limit: Limit, solved: SolvedRollers, names: Mapping[str, np.ndarray])
         values.append(("scatter_in_cycles", np.isnan(solved.materials["scatter_in_stress"])))
     for name, here in values:
         unknown = np.isnan(solved.materials[name]) & here
-        for material in dict.fromkeys(m for i, body in enumerate(BODIES) for m in names[body][unknown[:, i]]):
+        materials = np.concatenate([names[body][unknown[:, i]] for i, body in enumerate(BODIES)])
+        for material in dict.fromkeys(materials):
             yield Lack(limit.name, name, material, _remedy_of_value(name, material))
 
 

@@ -79,7 +79,9 @@ class Part:
         KeyError
             If the data set lacks the variable, or the contact, body or limit.
         """
-        place: dict[str, Any] = {dim: int(key) if dim == "contact" else key for dim, key in self.at.items()}
+        place: dict[str, Any] = dict(self.at)
+        if "contact" in place:
+            place["contact"] = int(place["contact"])
         part = ds[self.variable.name].sel(place, drop=True)
         if "contact" not in part.dims:
             return part
@@ -125,9 +127,11 @@ def declared(name: str) -> Variable:
     """
     if name in PARTS:
         return PARTS[name].variable
-    life = "life" in name
-    unknown = Variable(name, "", (), "1", "", name, scale="log10" if life else "natural", life=life)
-    return VARIABLES.get(name, unknown)
+    if name in VARIABLES:
+        return VARIABLES[name]
+    if "life" in name:
+        return Variable(name, "", (), "1", "", name, scale="log10", life=True)
+    return Variable(name, "", (), "1", "", name, scale="natural", life=False)
 
 
 def is_life(name: str) -> bool:
@@ -146,9 +150,10 @@ def body_of(name: str) -> str:
 
 def pair_first(lives: Iterable[str]) -> list[str]:
     """Return lives, those of the pair first, then those of the roller."""
-    order = ("pair", "roller")
-    of = {name: PARTS[name].of if name in PARTS else "" for name in lives}
-    return sorted(of, key=lambda name: order.index(of[name]) if of[name] in order else len(order))
+    ranks = dict.fromkeys(lives, 2)
+    for name in ranks.keys() & PARTS.keys():
+        ranks[name] = {"pair": 0, "roller": 1}.get(PARTS[name].of, 2)
+    return sorted(ranks, key=ranks.__getitem__)
 
 
 def unit_of(name: str) -> str | None:

@@ -98,8 +98,8 @@ def _text(path: Path, field: str) -> str:
 def _check_scales(table: UserTable, path: Path, field: str) -> None:
     """Refuse a scale other than 1 in a comment: nobody knows whether the numbers contain it."""
     for number, remark in table.remarks.items():
-        for found in _SCALE.finditer(remark):
-            stated = next(filter(None, found.groups()))
+        for scale in _SCALE.finditer(remark):
+            stated = next(filter(None, scale.groups()))
             if _scale(stated) != 1.0:
                 wrong = f"states a scale of {stated}, which is not applied"
                 remedy = "Multiply the numbers, or remove this line."
@@ -169,8 +169,7 @@ def _points(
     names = [table.names[place] for place in places]
     for number, line in table.lines.items():
         cells = [line[place] for place in places]
-        told = any(isinstance(cell, Refused) or not cell for cell in cells)
-        if told:
+        if any(isinstance(cell, Refused) or not cell for cell in cells):  # the reader has added their errors
             continue
         try:
             points[number] = [_length(cell, name) for cell, name in zip(cells, names, strict=True)]

@@ -52,7 +52,9 @@ def _mirror_image(name: str, values: np.ndarray) -> np.ndarray:
         elif dimension == "component":
             odd = np.reshape(ODD_COMPONENTS, (-1, *(1,) * (values.ndim - axis - 1)))
             values = np.where(odd, 0.0 - values, values)
-    return 0.0 - values if variable.odd else values
+    if variable.odd:
+        return 0.0 - values
+    return values
 
 
 def _turned(values: np.ndarray, axis: int) -> np.ndarray:

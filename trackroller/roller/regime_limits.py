@@ -24,7 +24,8 @@ if TYPE_CHECKING:
 
 # Parts into which the first round, and each further one, cuts the range of each search. Cases near lift-off are dear,
 # and many rounds of few cases need the least of them.
-FIRST, ROUNDS = 8, (4,) * 8
+FIRST = 8
+ROUNDS = (4,) * 8
 _LOCKED = validity_bit("jamming")
 _FRICTION = PARAMETERS["friction_coefficient"].upper
 _FIELD = {"locking": "friction_coefficient", "lifting": "friction_coefficient"}  # limits of one field
@@ -93,16 +94,24 @@ def limits(case: Case, contact_model: str = "kalker", database: MaterialDatabase
     def holds(cases: list[Case]) -> dict[str, np.ndarray]:
         return _conditions(solve(cases, "forces", contact_model=model, accuracy="preview", database=database))
 
-    now, free = holds([nominal]), holds([replace(nominal, **{"motor_force": 0.0})])
-    lifted, rolls = not now["axial_force"][0], free["motor_force"][0]
-    start = 0.0 if lifted else case.axial_force
+    now = holds([nominal])
+    free = holds([replace(nominal, **{"motor_force": 0.0})])
+    lifted = not now["axial_force"][0]
+    rolls = free["motor_force"][0]
+    start = case.axial_force
+    if lifted:
+        start = 0.0
+    friction = 0.0
+    if isinstance(nominal.friction_coefficient, (int, float)):
+        friction = float(nominal.friction_coefficient)
     searches = [("axial_force", start, -span), ("axial_force", start, span), ("locking", 0.0, _FRICTION)]
-    friction = nominal.friction_coefficient
-    searches += [("lifting", float(friction) if isinstance(friction, (int, float)) else 0.0, _FRICTION)]
+    searches.append(("lifting", friction, _FRICTION))
     if rolls and not lifted:
         searches += [("motor_force", 0.0, -span), ("motor_force", 0.0, span)]
     lowest, highest, locking, lifting, *motor = _edges(holds, nominal, searches)
-    return Limits((lowest, highest), (motor[0], motor[1]) if motor else (math.nan, math.nan), locking, lifting)
+    if not motor:
+        motor = [math.nan, math.nan]
+    return Limits((lowest, highest), (motor[0], motor[1]), locking, lifting)
 
 
 def _conditions(ds: xr.Dataset) -> dict[str, np.ndarray]:
@@ -129,18 +138,21 @@ def _edges(
     def near(places: Sequence[int], values: Sequence[float]) -> list[bool]:
         """Return whether the condition of each search `places` holds at a value."""
         fields = [_FIELD.get(names[place], names[place]) for place in places]
-        found = holds([replace(case, **{field: value}) for field, value in zip(fields, values, strict=True)])
-        return [bool(found[names[place]][row]) for row, place in enumerate(places)]
+        truths = holds([replace(case, **{field: value}) for field, value in zip(fields, values, strict=True)])
+        return [bool(truths[names[place]][row]) for row, place in enumerate(places)]
 
-    edges, going = [math.nan] * len(searches), {}
+    edges = [math.nan] * len(searches)
+    going = {}
     lines = [np.linspace(start, end, FIRST + 1).tolist() for _, start, end in searches]
     answers = iter(near([i for i, line in enumerate(lines) for _ in line], [v for line in lines for v in line]))
     for i, line in enumerate(lines):
-        held = [next(answers) for _ in line]
-        if all(held):
+        truths = [next(answers) for _ in line]
+        if all(truths):
             edges[i] = math.copysign(math.inf, line[-1] - line[0])
-        elif held[0]:
-            going[i] = line[held.index(False) - 1], line[held.index(False)]
+        elif truths[0]:
+            going[i] = line[truths.index(False) - 1], line[truths.index(False)]
     places = list(going)
-    found = narrowed(list(going.values()), ROUNDS, lambda numbers, v: near([places[n] for n in numbers], v))
-    return [edges[i] if i not in going else found[places.index(i)][0] for i in range(len(searches))]
+    ends = narrowed(list(going.values()), ROUNDS, lambda numbers, v: near([places[n] for n in numbers], v))
+    for i, (edge, _) in zip(places, ends, strict=True):
+        edges[i] = edge
+    return edges

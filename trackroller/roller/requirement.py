@@ -28,6 +28,7 @@ if TYPE_CHECKING:
 KEY = "requirement"
 WORDS = ("min", "max", "probability")
 DEFAULT = "pair_life_hours"  # of {min: 500} without the name of an output
+LIVES_OF_PAIR = ("pair_life_to_first_limit_hours", DEFAULT, "roller_life_hours")  # that a target in hours may name
 YEARS = re.compile(r"\s*([0-9.eE+-]+)\s*(?:a|yr|yrs|year|years)\s*", re.ASCII)
 
 
@@ -117,7 +118,8 @@ def _one(name: str, given: Any, duty: Mapping[str, float] | None) -> Requirement
         share = math.nan
     ends = {end: given[end] for end in ("min", "max") if end in given}
     numbers = collected(ends, lambda end, value: _end(name, value, f"{where}.{end}", duty))
-    least, most = numbers.get("min", -math.inf), numbers.get("max", math.inf)
+    least = numbers.get("min", -math.inf)
+    most = numbers.get("max", math.inf)
     if least >= most:
         raise InputError(where, dict(given), "min below max")
     written = {end: _again(ends[end], numbers[end]) for end in ends}
@@ -146,16 +148,18 @@ def _share(given: Any, where: str) -> float:
 
 def _years(given: Any) -> float | None:
     """Return the number of years of a text such as '3 years'; None for anything else."""
-    found = None
+    years = None
     if isinstance(given, str):
-        found = YEARS.fullmatch(given)
-    number = number_or_nan(found[1]) if found else math.nan
-    return None if math.isnan(number) else number
+        years = YEARS.fullmatch(given)
+    if years is None or math.isnan(number_or_nan(years[1])):
+        return None
+    return number_or_nan(years[1])
 
 
 def _end(name: str, given: Any, where: str, duty: Mapping[str, float] | None) -> float:
     """Return a smallest or largest value in the unit of its output, a life in years by the duty in hours."""
-    unit, in_years = unit_of(name), _years(given)
+    unit = unit_of(name)
+    in_years = _years(given)
     if in_years is not None and unit == "h":
         if duty is None:
             raise InputError(where, given, "years beside a duty, or hours of travel", EXAMPLE, "needs a duty")
@@ -182,5 +186,5 @@ def requirement_of(ds: xr.Dataset) -> dict[str, Requirement]:
     duty = None
     if "duty" in ds.attrs:
         duty = json.loads(ds.attrs["duty"])
-    found: dict[str, Requirement] = checked_requirement(json.loads(ds.attrs.get(KEY, "{}")), duty)
-    return found
+    requirement: dict[str, Requirement] = checked_requirement(json.loads(ds.attrs.get(KEY, "{}")), duty)
+    return requirement

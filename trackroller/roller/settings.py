@@ -43,7 +43,8 @@ def checked_sheet(value: Any) -> dict[str, str]:
         remedy = "Write sheet: {project: Lift 7, part: R-12, author: Ada}."
         raise InputError("sheet", value, f"texts by name: {', '.join(SHEET_FIELDS)}", remedy)
     check_names("sheet: key", value, SHEET_FIELDS)
-    given, wrong = {name: text for name, text in value.items() if text is not None}, Collector()
+    given = {name: text for name, text in value.items() if text is not None}
+    wrong = Collector()
     for name, text in given.items():
         with wrong.part():
             if isinstance(text, bool) or not isinstance(text, (str, int, float)) or len(str(text)) > LONGEST:
@@ -137,28 +138,28 @@ def checked_case(values: Mapping[str, Any]) -> tuple[Case, dict[str, Any], dict[
     >>> case.axial_force, options, beside
     (70.0, {'contact_model': 'sliding'}, {'sheet': {'part': '7'}})
     """
-    left = with_options(values)
+    fields = with_options(values)
     wrong = Collector()
     beside: dict[str, Any] = {}
-    options = {key: left.pop(key) for key in OPTIONS if key in left}
-    if left.get("duty") is not None:
+    options = {key: fields.pop(key) for key in OPTIONS if key in fields}
+    if fields.get("duty") is not None:
         with wrong.part():
-            left |= _by_strokes(left)
-    for key in (name for name in BESIDE if name in left):
+            fields |= _by_strokes(fields)
+    for key in (name for name in BESIDE if name in fields):
         with wrong.part():
-            beside[key] = _checked_beside(key, left.pop(key), beside.get("duty"))
+            beside[key] = _checked_beside(key, fields.pop(key), beside.get("duty"))
     with wrong.part():
-        check_fields("case field", left, (*FIELDS, *ALIASES, *RADII, *OPTIONS, *OTHER_OPTIONS, *BESIDE))
+        check_fields("case field", fields, (*FIELDS, *ALIASES, *RADII, *OPTIONS, *OTHER_OPTIONS, *BESIDE))
     for key in options:
         if OPTIONS[key].kind == "words" and isinstance(options[key], str):
             options[key] = [part.strip() for part in options[key].split(",")]
     with wrong.part():
-        case = Case.from_dict({key: value for key, value in left.items() if key in (*FIELDS, *ALIASES, *RADII)})
+        case = Case.from_dict({key: value for key, value in fields.items() if key in (*FIELDS, *ALIASES, *RADII)})
     database = load_database()
     for name in MATERIAL_FIELDS:
         with wrong.part():
-            if isinstance(left.get(name), str):
-                database.material(left[name], name)
+            if isinstance(fields.get(name), str):
+                database.material(fields[name], name)
     with wrong.part():
         if options:
             from trackroller.roller.options import Options  # heavy: numba

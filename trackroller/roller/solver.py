@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numba.core.registry import cpu_target
 
-from trackroller.damage import asked, fatigue, judged, verdict
+from trackroller.damage import fatigue, judged, limits_of, verdict
 from trackroller.damage.limit import Limit
 from trackroller.errors import InputError
 from trackroller.materials import load_database
@@ -163,7 +163,10 @@ def solve(
     ds = with_coordinates(_solve_table(table, Options(**given), single), table)
     if not single:
         return ds
-    return with_inputs(ds, cases if isinstance(cases, Case) else Case.from_dict(cases), database)
+    case = cases
+    if not isinstance(cases, Case):
+        case = Case.from_dict(cases)
+    return with_inputs(ds, case, database)
 
 
 def _solve_design(cases: xr.Dataset, given: Mapping[str, Any], database: MaterialDatabase | None) -> xr.Dataset:
@@ -192,7 +195,7 @@ def _solve_table(table: CaseTable, options: Options, single: bool) -> xr.Dataset
     tell_errors(ds, worn, options)
     checks_limits = verdict.GROUP in options.outputs or options.life_criterion in fatigue.STRESS_OF
     warm = temperature.notes(worn, block)
-    if checks_limits or warm or any(limit.shared for limit in asked(options.outputs)):
+    if checks_limits or warm or any(limit.shared for limit in limits_of(options.outputs)):
         ds.attrs[NOTES] = "\n".join([*notes_on_limits(worn, options), *warm])
     return ds
 
@@ -220,12 +223,14 @@ def _solve_window(table: CaseTable, options: Options) -> Block:
     if options.shortcuts:
         one_handed, mirrored = handed(table)
     else:
-        one_handed, mirrored = table, np.zeros(len(table), bool)
+        one_handed = table
+        mirrored = np.zeros(len(table), bool)
 
     def solve_all(cases: CaseTable) -> Block:
         return join([meet(few, options, _solve_block) for few in _cut(cases, BLOCK)])
 
-    distinct, number = one_handed, np.arange(len(table))
+    distinct = one_handed
+    number = np.arange(len(table))
     # limits of patches depend on the speed and on all values of the materials
     if options.shortcuts and len(table) > 1 and not stages_outcome.of_patches(_limits(one_handed, options)):
         rows, number = distinct_contacts.distinct_mechanics(one_handed)
@@ -274,28 +279,30 @@ def _solve_group(table: CaseTable, options: Options, across: int) -> Block:
 def block_of(results: StageResults, options: Options) -> Block:
     """Return the results of balanced rollers with the stages that the outputs need."""
     scene = results.scene
-    wanted = set(options.outputs)
+    outputs = set(options.outputs)
     limits = _limits(scene.table, options)
-    wanted |= {need for limit in limits for need in limit.needs}
+    outputs |= {need for limit in limits for need in limit.needs}
     stages.forces(results)
     stages.force_error(results, options)
     stages.contact(results, options)
     stages.steep_friction(results, options)
-    if "friction_work" in wanted:
+    if "friction_work" in outputs:
         stages.friction_work(results, options)
     stages_stress.stop(results, options)
-    if wanted & {"peak_stress", "subsurface"}:
+    if outputs & {"peak_stress", "subsurface"}:
         stages_stress.peak_stress(results, options)
     if "tractions" in options.outputs:
         stages.tractions(results, options)
-    if "subsurface" in wanted:
+    if "subsurface" in outputs:
         stages_stress.subsurface(results, options)
     stages.settle(results)
     results.values |= {name: results.in_mm(name) for name in results.values}  # the limits take N and mm
     stages_outcome.patch_limits(results, options, limits)
     model = np.array([CONTACT_MODELS.index(name) for name in scene.model.used(scene.n)], dtype=np.int8)
     settings = options.settings.name
-    rung = np.full(scene.n, RUNGS.index(settings) if settings in RUNGS else 0, dtype=np.int8)
+    rung = np.zeros(scene.n, dtype=np.int8)
+    if settings in RUNGS:
+        rung[:] = RUNGS.index(settings)
     return Block(results.values, results.regime, results.converged, results.bits, model, rung, results.stopped)
 
 

@@ -25,7 +25,8 @@ if TYPE_CHECKING:
     from trackroller.materials import MaterialDatabase
     from trackroller.roller.case_table import CaseTable
 
-CASE, MATERIALS = "case", "materials"  # names of attributes, JSON both
+CASE = "case"  # names of attributes, JSON both
+MATERIALS = "materials"
 NOT_GIVEN = "not_given"  # attribute: JSON list of the parameters that were not given
 DOUBTS = "doubts"  # attribute: JSON list of sentences on unusual values
 RADII = "radii"  # attribute: JSON of the outer radius and groove depth that gave the axis distance
@@ -70,18 +71,17 @@ def with_coordinates(ds: xr.Dataset, table: CaseTable) -> xr.Dataset:
     table : CaseTable
         The cases of this result. A number that no case gives is left out.
     """
-    dims = ("case",) if "case" in ds.dims else ()
-    drawn = bool((table.roller_profile != "").all())  # the profile stands in the place of the radius
-    given = {name: np.asarray(getattr(table, name), dtype=float) for name in PARAMETERS}
-    coords: dict[str, Any] = {
-        name: (dims, values if dims else values[0], _labels(name))
-        for name, values in given.items()
-        if not np.isnan(values).all() and not (name == "roller_profile_radius" and drawn)
-    }
+    columns = {name: np.asarray(getattr(table, name), dtype=float) for name in PARAMETERS}
+    columns = {name: values for name, values in columns.items() if not np.isnan(values).all()}
+    if (table.roller_profile != "").all():  # the profile stands in the place of the radius
+        columns.pop("roller_profile_radius", None)
+    labels = {name: _labels(name) for name in columns}
     for name, body in zip(MATERIAL_FIELDS, (table.roller, table.guide), strict=True):
-        names = np.array([str(one) for one in body.name])
-        coords[name] = (dims, names if dims else names[0], {"long_name": name.replace("_", " ")})
-    return ds.assign_coords(coords)
+        columns[name] = np.array([str(material) for material in body.name])
+        labels[name] = {"long_name": name.replace("_", " ")}
+    if "case" in ds.dims:
+        return ds.assign_coords({name: ("case", values, labels[name]) for name, values in columns.items()})
+    return ds.assign_coords({name: ((), values[0], labels[name]) for name, values in columns.items()})
 
 
 def _labels(name: str) -> dict[str, str]:
@@ -97,8 +97,10 @@ def with_design(ds: xr.Dataset, design: xr.Dataset, database: MaterialDatabase |
     """
     if STUDY not in design.attrs:
         return ds
-    own = {MATERIALS: materials_of_design(design, load_database() if database is None else database)}
-    return ds.assign_coords(dict(design.variables)).assign_attrs(design.attrs | own)
+    if database is None:
+        database = load_database()
+    materials = {MATERIALS: materials_of_design(design, database)}
+    return ds.assign_coords(dict(design.variables)).assign_attrs(design.attrs | materials)
 
 
 def materials_of_design(design: xr.Dataset, database: MaterialDatabase) -> str:

@@ -65,10 +65,12 @@ def settle(
     if "bulk_temperature_rise" not in block.values or not rows.size:
         return table, block
     reached = temperatures(table, block)
-    used, warm = np.full_like(reached, np.nan), table
+    used = np.full_like(reached, np.nan)
+    warm = table
     for _ in range(PASSES):
         used[rows] = reached[rows]
-        before, warm = warm, at_temperatures(table, used)
+        before = warm
+        warm = at_temperatures(table, used)
         rows = rows[_differ(before, warm)[rows]]  # equal values have equal results
         if not rows.size:
             break
@@ -134,7 +136,8 @@ def notes(table: CaseTable, block: Block) -> list[str]:
     """Return one sentence on each table that results rest on, and on each that a temperature leaves."""
     if "bulk_temperature_rise" not in block.values:
         return []
-    reached, out = temperatures(table, block), []
+    reached = temperatures(table, block)
+    out = []
     for i, body in enumerate(BODIES):
         own = getattr(table, body)
         for name, text in dict.fromkeys(zip(own.name, own.temperature_dependence, strict=True)):

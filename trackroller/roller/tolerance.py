@@ -49,14 +49,15 @@ def meet(table: CaseTable, options: Options, solve: Callable[[CaseTable, Options
     if tolerance is None:
         return solve(table, options)
     blocks: list[Block] = []
-    place, best = np.full(len(table), -1), np.full(len(table), np.inf)  # of the best result so far, and its error
-    left = np.arange(len(table))
+    place = np.full(len(table), -1)  # of the best result so far
+    best = np.full(len(table), np.inf)  # its error
+    unmet = np.arange(len(table))
     for rung in RUNGS:
         own = options.changed(accuracy=rung)
         if rung == RUNGS[-1]:
-            rows = left
+            rows = unmet
         else:
-            rows = left[_may_keep(table.take(left), own, tolerance)]
+            rows = unmet[_may_keep(table.take(unmet), own, tolerance)]
         if not rows.size and (blocks or rung != RUNGS[-1]):
             continue
         block = solve(table.take(rows), own)
@@ -67,11 +68,11 @@ def meet(table: CaseTable, options: Options, solve: Callable[[CaseTable, Options
         place[rows[better]] = sum(map(len, blocks)) + np.flatnonzero(better)
         best[rows[better]] = known[better]
         blocks.append(block)
-        left = left[~(best[left] <= 1.0)]
-    found = join(blocks).take(place)
-    missed = found.values["error_over_tolerance"] > 1.0
-    found.bits |= np.where(missed, validity_bit("tolerance_missed"), 0).astype(found.bits.dtype)
-    return found
+        unmet = unmet[~(best[unmet] <= 1.0)]
+    block_of_best = join(blocks).take(place)
+    missed = block_of_best.values["error_over_tolerance"] > 1.0
+    block_of_best.bits |= np.where(missed, validity_bit("tolerance_missed"), 0).astype(block_of_best.bits.dtype)
+    return block_of_best
 
 
 def _peak_tolerance(table: CaseTable, options: Options, tolerance: Tolerance) -> np.ndarray:
@@ -87,9 +88,9 @@ def _over(table: CaseTable, block: Block, options: Options, tolerance: Tolerance
 
     def largest(*names: str) -> Any:
         """Return the largest of results, (n,); a result that a regime leaves undefined does not count."""
-        told = [np.nan_to_num(block.values[name]).reshape(len(table), -1) for name in names if name in block.values]
-        if told:
-            return np.max(np.concatenate(told, axis=1), axis=1)
+        errors = [np.nan_to_num(block.values[name]).reshape(len(table), -1) for name in names if name in block.values]
+        if errors:
+            return np.max(np.concatenate(errors, axis=1), axis=1)
         return np.zeros(len(table))
 
     peaks = largest("error_estimate") / _peak_tolerance(table, options, tolerance)

@@ -20,7 +20,8 @@ class _Case:
     """One case of a table with its options, equal to cases that differ in travel alone."""
 
     def __init__(self, table: CaseTable, options: Options) -> None:
-        self.table, self.options = table, options
+        self.table = table
+        self.options = options
         columns = {f.name: getattr(table, f.name) for f in fields(table) if f.name not in ("travel", "roller", "guide")}
         bodies = [vars(body) for body in (table.roller, table.guide)]
         texts = [repr(values[0]) for part in (columns, *bodies) for values in part.values()]
@@ -49,11 +50,15 @@ class _Course:
             if step is None:  # nothing wears
                 return replace(self.wearing.start, travel=travel), ""
             state, results, _, self._end = step
-            self._states.append(state if self.wearing.end(results) else self.wearing.turned(state, results))
+            if not self.wearing.end(results):
+                state = self.wearing.turned(state, results)
+            self._states.append(state)
         later = next((i for i, state in enumerate(self._states) if state.travel >= travel), None)
         if later is None:
             return self._states[-1], self._end
-        return (between(self._states[later - 1], self._states[later], travel) if later else self._states[0]), ""
+        if later == 0:
+            return self._states[0], ""
+        return between(self._states[later - 1], self._states[later], travel), ""
 
 
 @lru_cache(maxsize=KEPT)
@@ -76,7 +81,8 @@ def with_travel(table: CaseTable, options: Options) -> tuple[CaseTable, dict[int
     InputError
         For Hertzian patches, or bodies without a wear coefficient.
     """
-    rows, lost = np.flatnonzero(table.travel > 0.0), {}
+    rows = np.flatnonzero(table.travel > 0.0)
+    lost = {}
     if not rows.size:
         return table, {}
     profiles = {name: getattr(table, name).copy() for name in ("guide_profile", "roller_profile")}

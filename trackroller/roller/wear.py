@@ -33,7 +33,8 @@ if TYPE_CHECKING:
 
 OUTPUTS = ("forces", "contact", "friction_work", "peak_stress", "life")
 PATCH = "contact"  # group of pressure and patch, which the states of every run have: page and sentences show them
-_C, _CB = ("contact",), ("contact", "body")
+_C = ("contact",)
+_CB = ("contact", "body")
 VARIABLES = variables(
     "groove",
     ("groove_depth", _CB, "mm", "d", "depth of the deepest worn place"),
@@ -63,7 +64,9 @@ FARTHEST = 1e9  # km
 ALIKE = 1e-6
 # Error of the largest pressure times the columns of elements, and over its `roughness` within NEAR columns: wear leaves
 # a ridge at the spin pole. The sum covers the difference to finer runs in 95 % of states of random rollers.
-COLUMN_ERROR, RIDGE_ERROR, NEAR = 0.5, 0.2, 3
+COLUMN_ERROR = 0.5
+RIDGE_ERROR = 0.2
+NEAR = 3
 Tell = Callable[["xr.Dataset", float], None]
 
 
@@ -133,10 +136,12 @@ def wear(
     allowed = "a travel > 0 km and at most 1e9 km, such as 500km"
     to = number_in(to, "to", allowed, np.nextafter(0.0, 1.0), FARTHEST, unit="km")
     check_names("option", options, OPTIONS)
-    given = Options(**{"normal": "halfspace", "outputs": OUTPUTS if outputs is None else outputs} | options)
-    if PATCH not in given.outputs:
-        given = given.changed(outputs=(*given.outputs, PATCH))
-    record = _Record(case, given, database, tell, to)
+    if outputs is None:
+        outputs = OUTPUTS
+    settings = Options(**{"normal": "halfspace", "outputs": outputs} | options)
+    if PATCH not in settings.outputs:
+        settings = settings.changed(outputs=(*settings.outputs, PATCH))
+    record = _Record(case, settings, database, tell, to)
     return record.run(resume)
 
 
@@ -144,7 +149,11 @@ class _Record:
     """The run of one roller: its march, and the results that were made of its states."""
 
     def __init__(self, case: Case, options: Options, database: MaterialDatabase, tell: Tell | None, to: float) -> None:
-        self.case, self.options, self.database, self.tell, self.to = case, options, database, tell, to
+        self.case = case
+        self.options = options
+        self.database = database
+        self.tell = tell
+        self.to = to
         self.table, self.mirrored = handed(to_table(case, database))
         self.wearing = Wearing(self.table, options)
         self.rows: list[xr.Dataset] = []
@@ -152,7 +161,8 @@ class _Record:
     def run(self, resume: xr.Dataset | None) -> xr.Dataset:
         """Return the results up to the end."""
         if resume is None:
-            state, step = None, 0.0
+            state = None
+            step = 0.0
         else:
             state, step = self._taken_up(resume)
         before: Groove | None = None
@@ -215,7 +225,13 @@ class _Record:
     def _values(self, state: Groove, turned: Groove, onward: float) -> dict[str, Any]:
         w = self.wearing
         both = (2, *state.depth.shape[1:])
-        depth, step = np.broadcast_to(state.depth, both), w.places[1] - w.places[0]
+        depth = np.broadcast_to(state.depth, both)
+        step = w.places[1] - w.places[0]
+        balance = boxes = np.full(3, np.nan)
+        if state.balance is not None:
+            balance = state.balance
+        if state.boxes is not None:
+            boxes = state.boxes
         around = 2.0 * np.pi * (w.radius[0] + w.places * np.sin(w.alpha[0]))
         return {
             "groove_depth": depth.max(axis=2),
@@ -229,8 +245,8 @@ class _Record:
             "closing": np.broadcast_to(state.closing, 2),
             "next_step": onward,
             "start_inclination": np.broadcast_to(state.inclined, 2),
-            "start_balance": np.full(3, np.nan) if state.balance is None else state.balance,
-            "start_box": np.broadcast_to(np.full(3, np.nan) if state.boxes is None else state.boxes, (2, 3)),
+            "start_balance": balance,
+            "start_box": np.broadcast_to(boxes, (2, 3)),
         }
 
     def _joined(self, end: str) -> xr.Dataset:
@@ -262,18 +278,18 @@ class _Record:
             return None, 0.0
         derived = ("fatigue_damage", "fatigue_damage_error", "life_travel", "life_travel_new", "place")
         self.rows = [ds.drop_vars(derived, errors="ignore").isel(travel=int(i)) for i in states]
-        last, m = self.rows[-1], self.wearing.contacts
+        last = self.rows[-1]
+        m = self.wearing.contacts
         known = {v.name: self._seen(last[v.name].values, v.dims) for v in VARIABLES if v.name in last}
-        new = bool(np.isnan(known["start_balance"]).any())
         state = Groove(
             float(last.travel),
             known["worn_depth"][:m],
             known["closing"][:m],
             known["start_inclination"][:m],
             float(known["groove_step_error"]),
-            None if new else known["start_balance"],
-            None if new else known["start_box"][:m],
         )
+        if not np.isnan(known["start_balance"]).any():
+            state = replace(state, balance=known["start_balance"], boxes=known["start_box"][:m])
         return state, float(last.next_step)
 
 
@@ -281,7 +297,9 @@ def _pressure_error(state: Groove, results: StageResults) -> np.ndarray:
     """Return the estimated relative error of the largest pressure, (2,) [1]; 0 for the new groove."""
     patch: Any = results.patch
     out = np.zeros(2)
-    for k in range(2 if state.depth.any() else 0):
+    if not state.depth.any():
+        return out
+    for k in range(2):
         top = int(np.argmax(patch.pressure[k].max(axis=0)))
         ridge = roughness(patch.pressure[k][:, max(top - NEAR, 0) : top + NEAR + 1])
         out[k] = COLUMN_ERROR / patch.shape[1] + RIDGE_ERROR * ridge
@@ -290,7 +308,8 @@ def _pressure_error(state: Groove, results: StageResults) -> np.ndarray:
 
 def _of_lives(ds: xr.Dataset, per_km: np.ndarray) -> dict[str, Any]:
     """Return the damage sum along the travel, and the travel at which it reaches 1, with and without wear."""
-    travel, cycles = ds["travel"].values, ds["life_cycles"].transpose("travel", "contact", "body").values
+    travel = ds["travel"].values
+    cycles = ds["life_cycles"].transpose("travel", "contact", "body").values
     with np.errstate(divide="ignore", invalid="ignore"):
         rate = per_km / cycles
         one, two = rate[:-1], rate[1:]

@@ -135,12 +135,15 @@ class Wearing:
         none = np.zeros(self.contacts)
         self.start = Groove(0.0, np.zeros((self.contacts, 2, 2)), none, none)
         self.new = self.solve(self.start)
-        self.cells, self.scale, self._lean = np.array([-1.0, 0.0, 1.0]), np.nan, none
+        self.cells = np.array([-1.0, 0.0, 1.0])
+        self.scale = np.nan
+        self._lean = none
         self.element_error = 0.0
         if self.end(self.new):
             return
         patch: Any = self.new.patch
-        wide, (low, high) = float(np.min(patch.semi_axis_lateral)), self._gap(table, 1).limits
+        wide = float(np.min(patch.semi_axis_lateral))
+        low, high = self._gap(table, 1).limits
         step = 2.0 * wide / patch.shape[1]
         self.cells = step * np.arange(
             np.floor(max(low / step, -REACH * wide / step)), np.ceil(min(high, REACH * wide) / step) + 1
@@ -157,8 +160,10 @@ class Wearing:
 
     def _moved(self, closing: np.ndarray) -> np.ndarray:
         """Return how far the roller has moved outward along the tangent planes, (m,) [mm]: it sinks by the closing."""
-        tangent, sides = np.tan(self.alpha[0]), np.broadcast_to(closing, 2)
-        sunk, apart = sides.mean() * tangent, 0.5 * (sides[1] - sides[0]) / tangent
+        tangent = np.tan(self.alpha[0])
+        sides = np.broadcast_to(closing, 2)
+        sunk = sides.mean() * tangent
+        apart = 0.5 * (sides[1] - sides[0]) / tangent
         return np.array([sunk + apart, sunk - apart])[: self.contacts]
 
     def worn_table(self, state: Groove) -> CaseTable:
@@ -185,8 +190,11 @@ class Wearing:
         if state.balance is None or state.boxes is None:
             scene = prepare(self.worn_table(state), self.options, self._across)
             return StageResults.start(scene, balance(scene))
-        nan, boxes = np.full((3, 1, 2), np.nan), np.broadcast_to(state.boxes, (2, 3)).tolist()
-        shift, normal, rolls = state.balance[:1], state.balance[None, 1:], np.full(1, eq.ROLLING, np.int8)
+        nan = np.full((3, 1, 2), np.nan)
+        boxes = np.broadcast_to(state.boxes, (2, 3)).tolist()
+        shift = state.balance[:1]
+        normal = state.balance[None, 1:]
+        rolls = np.full(1, eq.ROLLING, np.int8)
         near = eq.Equilibrium(rolls, rolls > 0, nan[0, :, 0], rolls > 0, shift, normal, Resultants(*nan))
         scene = prepare(self.worn_table(state), self.options, self._across, [Box(*row) for row in boxes])
         return StageResults.start(scene, balance(scene, near))
@@ -205,7 +213,8 @@ class Wearing:
         """Return a solved state with its own inclination, balance and boxes, from which the next state starts."""
         patch: Any = results.patch
         side = np.array([1.0, -1.0])[: self.contacts]
-        middle, wide = side * patch.centre[: self.contacts], patch.semi_axis_lateral[: self.contacts]
+        middle = side * patch.centre[: self.contacts]
+        wide = patch.semi_axis_lateral[: self.contacts]
         return replace(
             state,
             inclined=self._lean - self._leaning(results, self.worn_table(state)),
@@ -220,13 +229,13 @@ class Wearing:
         return gap(*texts, g, r, alpha, radius, float(table.guide_curve_radius[0]), side)
 
     def _patches(self, results: StageResults, table: CaseTable) -> list[WearingPatch]:
-        t, out = surface_tractions(results), []
+        """Return the patch of each contact with its pressure and its rates of wear; x counts outward in the gap."""
+        t = surface_tractions(results)
+        out = []
         energy = dissipation(results)[0][0]
         for k in range(self.contacts):
-            slip, shear = (
-                np.hypot(t.slip_lateral[k], t.slip_rolling[k]),
-                np.hypot(t.shear_lateral[k], t.shear_rolling[k]),
-            )
+            slip = np.hypot(t.slip_lateral[k], t.slip_rolling[k])
+            shear = np.hypot(t.shear_lateral[k], t.shear_rolling[k])
             cell = (t.x[k, 1] - t.x[k, 0]) * (t.y[k, 1] - t.y[k, 0])
             # constant friction: |tau| = mu p wherever surfaces slide, to more digits than an iteration has
             bound = shear
@@ -260,7 +269,9 @@ class Wearing:
 
     def _advanced(self, state: Groove, patches: list[WearingPatch], travel: float) -> Groove:
         """Return the state after an implicit step of `travel` [km]."""
-        depth, closing, moved = state.depth.copy(), state.closing.copy(), self._moved(state.closing)
+        depth = state.depth.copy()
+        closing = state.closing.copy()
+        moved = self._moved(state.closing)
         for k, patch in enumerate(patches):
             worn, closes = patch.worn(travel)
             worn = evened_at_rims(worn, patch.loaded)
@@ -288,6 +299,12 @@ class Wearing:
         new = replace(two, depth=depth, closing=closing, error=at.error + error)
         return new, error / allowed, ""
 
+    def _begin(self, state: Groove | None) -> tuple[Groove, StageResults]:
+        """Return the state from which a march begins, with its results; the new groove if none is given."""
+        if state is None:
+            return self.start, self.new
+        return state, self.solve(state)
+
     def march(
         self, state: Groove | None = None, step: float = 0.0, states: int = 1
     ) -> Iterator[tuple[Groove, StageResults, float, str]]:
@@ -305,11 +322,14 @@ class Wearing:
         states : int
             Number of states so far, which counts towards the limit.
         """
-        at = self.start if state is None else state
-        results, reason = (self.new if state is None else self.solve(at)), self.end(self.new)
+        at, results = self._begin(state)
+        reason = self.end(self.new)
         yield at, results, step, reason
-        for _ in range(states, states if reason else STEPS):
-            patches, at = self._patches(results, self.worn_table(at)), self.turned(at, results)
+        if reason:
+            return
+        for _ in range(states, STEPS):
+            patches = self._patches(results, self.worn_table(at))
+            at = self.turned(at, results)
             if any(p.edges[0] < self.cells[0] - p.width or p.edges[-1] > self.cells[-1] + p.width for p in patches):
                 yield at, results, step, "wide"
                 return
@@ -328,16 +348,18 @@ class Wearing:
                         break
                 if reason:
                     step *= SHRINK
+                    tries += 1
                 else:
                     step *= max(SHRINK, 0.9 / np.sqrt(ratio))
-                tries = tries + 1 if reason else 0
+                    tries = 0
                 if step < least or tries == TRIES:
                     yield at, results, step, reason or "steps"
                     return
-            at, results, step = new, after, step * min(GROWTH, 0.9 / np.sqrt(max(ratio, 1e-12)))
+            at = new
+            results = after
+            step = step * min(GROWTH, 0.9 / np.sqrt(max(ratio, 1e-12)))
             yield at, results, step, ""
-        if not reason:
-            yield at, results, step, "steps"
+        yield at, results, step, "steps"
 
 
 def _rates(table: CaseTable, options: Options, per_km: np.ndarray) -> np.ndarray:
@@ -353,11 +375,14 @@ def _rates(table: CaseTable, options: Options, per_km: np.ndarray) -> np.ndarray
             raise InputError(
                 "wear_table", None, "a table of mass loss over frictional work for wear_law: energy", remedy
             )
-        name, what, k = "density", "a number [kg/m3]", np.array([1.0 / body.density[0] for body in bodies])
+        name = "density"
+        allowed = "a number [kg/m3]"
+        k = np.array([1.0 / body.density[0] for body in bodies])
     else:
-        name, what = "wear_coefficient", "a number [mm3/(N m)]"
+        name = "wear_coefficient"
+        allowed = "a number [mm3/(N m)]"
         k = np.array([body.wear_coefficient[0] for body in bodies])
     if np.isnan(k).all():
         remedy = f"Give it: roller_material: {{like: NAME, {name}: NUMBER}}."
-        raise InputError(name, None, f"{what} of roller or guide", remedy)
+        raise InputError(name, None, f"{allowed} of roller or guide", remedy)
     return np.nan_to_num(1e-3 * np.nan_to_num(table.wear_coefficient_factor[0], nan=1.0) * k * per_km)

@@ -13,8 +13,8 @@ from trackroller.roller.stored_inputs import solve_command
 from trackroller.study.design.build import case_columns
 from trackroller.study.design.growth import as_planned
 from trackroller.study.store import chunks
+from trackroller.study.store.fingerprint import StudyCases
 from trackroller.study.store.folder import StudyFolder
-from trackroller.study.store.identity import Cases
 from trackroller.study.store.ledger import Ledger
 
 if TYPE_CHECKING:
@@ -77,15 +77,15 @@ def repeat_case(study: Study, number: int, folder: StudyFolder) -> Repeat:
     from trackroller.roller.solver import solve  # numba compiles on import; the checks come first
 
     study = as_planned(study, folder.record())
-    ledger = Ledger(Cases(study), folder)
+    ledger = Ledger(StudyCases(study), folder)
     design = ledger.cases.design
-    place = ledger.place
-    if not 0 <= number < len(place):
-        raise InputError("case", number, f"a case number from 0 to {len(place) - 1}")
-    if place[number] < 0:
+    state_number = ledger.state_number
+    if not 0 <= number < len(state_number):
+        raise InputError("case", number, f"a case number from 0 to {len(state_number) - 1}")
+    if state_number[number] < 0:
         raise WorkError("this case is not solved by this version of the program: run the study first.")
     options, group = options_of_cases(design, {})
-    state = ledger.states.isel(case=place[[number]])
+    state = ledger.states.isel(case=state_number[[number]])
     before = chunks.read(ledger.paths[state["file"].item()]).isel(case=state["row"].values)
     row = design.drop_vars(list(design.coords)).drop_attrs().isel(case=[number])
     solved = solve(row, database=study.materials, **options[group[number]])

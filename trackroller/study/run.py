@@ -18,11 +18,11 @@ from trackroller.files import interrupts_wait_for_files, locked
 from trackroller.study.cluster import workers
 from trackroller.study.solve_chunk import Executor, Solver, solve_chunk, solve_here
 from trackroller.study.store import chunks
+from trackroller.study.store.fingerprint import StudyCases
 from trackroller.study.store.folder import Count, StudyFolder, Tell, unheard
 from trackroller.study.store.gather import gather
-from trackroller.study.store.identity import Cases
-from trackroller.study.store.labels import labelled
 from trackroller.study.store.ledger import Ledger, study_folder, working_ledger
+from trackroller.study.store.solved_dataset import labelled
 
 if TYPE_CHECKING:
     from trackroller.study.file.study import Study
@@ -92,7 +92,7 @@ class Runner:
         folder = study_folder(study.name, self.results).create()
         with locked(folder.lock.with_name(".search"), tell=self.tell):
             if self.rerun_failed:
-                Ledger(Cases(study), folder).forget_failed()
+                Ledger(StudyCases(study), folder).forget_failed()
             yield folder
 
 
@@ -141,7 +141,7 @@ def solve_study(study: Study, started: Count = unheard, progress: Count = unhear
     xarray.Dataset
         The same data set that `run_study` writes to `study.nc`.
     """
-    identified = Cases(study)
+    identified = StudyCases(study)
     design = identified.design
     options, group = identified.options
     cases = design.drop_vars(list(design.coords)).drop_attrs().assign_coords(case=np.arange(len(group)))

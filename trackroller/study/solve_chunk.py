@@ -15,9 +15,9 @@ from trackroller.errors import InputError, ShapeError, WorkError
 from trackroller.files import Reads, locked
 from trackroller.materials import MaterialDatabase, load_database
 from trackroller.study.store import chunks
+from trackroller.study.store.fingerprint import solver_and_materials
 from trackroller.study.store.folder import Count, StudyFolder, Tell, unheard
-from trackroller.study.store.identity import solver_and_materials
-from trackroller.study.store.inputs import check_inputs
+from trackroller.study.store.input_files import check_inputs
 
 log = logging.getLogger("trackroller")
 BLOCK_SECONDS = 3.0  # between two steps of the progress bar

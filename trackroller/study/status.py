@@ -18,9 +18,9 @@ from trackroller.study.design.growth import as_planned
 from trackroller.study.design.levels import in_words
 from trackroller.study.file.load import load_study
 from trackroller.study.store.chunks import FAILED, CorruptFile, read
+from trackroller.study.store.fingerprint import StudyCases
 from trackroller.study.store.folder import StudyFolder, check_folder
-from trackroller.study.store.identity import Cases
-from trackroller.study.store.inputs import study_of_folder
+from trackroller.study.store.input_files import study_of_folder
 from trackroller.study.store.ledger import Ledger, chunk_size, study_folder, unused_cases
 from trackroller.study.store.manifest import why_altered
 
@@ -141,9 +141,9 @@ def status_of(study: Study, folder: StudyFolder) -> Status:
     """
     check_folder(folder.root)
     study = as_planned(study, folder.record())
-    ledger = Ledger(Cases(study), folder)
-    solved = np.flatnonzero(ledger.place >= 0)
-    states = ledger.states.isel(case=ledger.place[solved])
+    ledger = Ledger(StudyCases(study), folder)
+    solved = np.flatnonzero(ledger.state_number >= 0)
+    states = ledger.states.isel(case=ledger.state_number[solved])
     bad = states["regime"].values == FAILED
     failed = solved[bad]
     seconds = ledger.states.attrs["seconds"]
@@ -152,7 +152,7 @@ def status_of(study: Study, folder: StudyFolder) -> Status:
     else:
         speed = study_rate(study)
     status = Status(
-        total=len(ledger.place),
+        total=len(ledger.state_number),
         done=len(solved),
         failed=len(failed),
         regimes={name: int((states["regime"] == code).sum()) for code, name in enumerate(REGIMES)},

@@ -158,8 +158,12 @@ def head_names_and_units(heads: list[str], used: Collection[str], kind: TableKin
         plain = unit in PLAIN
         with wrong.part():
             _check_named(head, name, unit, used, kind)
-        names.append(name if known or plain else whole)
-        units.append(unit if known and not plain else "")
+        if not known and not plain:
+            name = whole
+        names.append(name)
+        if plain or not known:
+            unit = ""
+        units.append(unit)
     for name, beside in itertools.pairwise(names):
         with wrong.part():
             _check_unit_beside(name, beside, kind)

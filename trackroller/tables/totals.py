@@ -61,5 +61,5 @@ def _sums_up(above: list[list[str]], line: list[str], numbers: Sequence[int]) ->
 
 def value_of(cell: str) -> float:
     """Return the number of a cell, whatever unit stands behind it; NaN for a cell without a number."""
-    parts = split_quantity(cell)
-    return number_or_nan(parts[0] if parts else cell)
+    digits, _ = split_quantity(cell) or (cell, "")
+    return number_or_nan(digits)

@@ -63,7 +63,8 @@ _STATED_UNIT = re.compile(
 _BARE_UNITS = ("N", "%", "lbf", "kgf", "kp")
 _OTHER_FORMATS = (".xls", ".xlsb", ".ods", ".fods", ".numbers")
 _OLD = "a workbook of the old format .xls, or one with a password"
-_ZIP, _OLE = b"PK\x03\x04", b"\xd0\xcf\x11\xe0"  # first bytes of new and of old workbooks
+_ZIP = b"PK\x03\x04"  # first bytes of new workbooks
+_OLE = b"\xd0\xcf\x11\xe0"  # first bytes of old workbooks
 
 
 @dataclass
@@ -360,7 +361,7 @@ def _is_other_unit(name: str, unit: str, known: Mapping[str, str]) -> bool:
 
 def _units_of(text: str) -> list[str]:
     """Return the words of a comment that may be units: in brackets, behind 'in' or 'unit', or no word of plain text."""
-    stated = [next(filter(None, found)) for found in _STATED_UNIT.findall(text)]
+    stated = [next(filter(None, groups)) for groups in _STATED_UNIT.findall(text)]
     words = re.sub(r"\d[\d.,]*\s*[^\s\d,;:=()\[\]]+", " ", text)  # without quantities such as 3 kN
     others = [word.strip(".") for word in re.split(r"[\s,;:=#()\[\]]+", words)]
     bare = [word for word in others if re.search(r"[A-ZµμΩ/%°]", word[1:]) or word in _BARE_UNITS]
@@ -398,13 +399,14 @@ def _with_one_sign(column: list[str], cells: list[str], signs: frozenset[str]) -
         certain = [cell for cell in cells if decimal_signs([cell])]
     if not certain:
         return column
-    own = decimal_signs(certain[:1])
+    sign = decimal_signs(certain[:1])
     allowed = f"one decimal sign in the file; {certain[0]} has another one"
-    read = []
+    checked = []
     for cell in column:
-        is_other = bool(decimal_signs([cell]) - own)
-        read.append(Refused(cell, allowed, "Write all numbers in the same way.") if is_other else cell)
-    return read
+        if decimal_signs([cell]) - sign:
+            cell = Refused(cell, allowed, "Write all numbers in the same way.")
+        checked.append(cell)
+    return checked
 
 
 def _in_own_units(table: UserTable) -> bool:
@@ -416,16 +418,29 @@ def _in_own_units(table: UserTable) -> bool:
 def _plain_numbers(cells: list[str], j: int, table: UserTable) -> Sequence[str]:
     """Return the numbers of a column as the program writes them."""
     name = table.names[j]
-    read = plain_column(cells, table.signs)
+    numbers = plain_column(cells, table.signs)
     if name not in table.known:
-        return [cell if isinstance(cell, Refused) else Stored(cell) for cell in read]
+        return list(map(_stored, numbers))
     unit = table.units[j]
     if unit:
-        return [f"{cell} {unit}" if _is_without_unit(cell) else cell for cell in read]
-    own = table.known[name]
-    if own not in PLAIN and any(map(_with_unit, read)):
-        return list(map(_beside_units, read))
-    return read
+        return [_in_unit_of_head(cell, unit) for cell in numbers]
+    if table.known[name] not in PLAIN and any(map(_with_unit, numbers)):
+        return list(map(_beside_units, numbers))
+    return numbers
+
+
+def _stored(cell: str) -> str:
+    """Return a cell of a further column, whose number is not read again."""
+    if isinstance(cell, Refused):
+        return cell
+    return Stored(cell)
+
+
+def _in_unit_of_head(cell: str, unit: str) -> str:
+    """Return a cell with the unit of its column, unless it states a unit of its own."""
+    if _is_without_unit(cell):
+        return f"{cell} {unit}"
+    return cell
 
 
 def _beside_units(cell: str) -> str:

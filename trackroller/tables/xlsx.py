@@ -38,7 +38,7 @@ _REFERENCE = re.compile(r"\$?([A-Z]{1,3})\$?(\d+)(?::\$?([A-Z]{1,3})\$?(\d+))?(?
 _WHOLE_COLUMN = re.compile(r"\w+\[[^\[\]]*\]|\$?([A-Z]{1,3}):\$?\1(?![\w(])", re.IGNORECASE)  # `Table1[Load]`, `A:A`
 
 
-def sheet_lines(content: bytes, path: Path, field: str, what: str, most_rows: int | None = None) -> Lines:
+def sheet_lines(content: bytes, path: Path, field: str, row_noun: str, most_rows: int | None = None) -> Lines:
     """Return numbers and cells of the rows of a workbook's visible sheet, or of its sheet of cases or blocks.
 
     Parameters
@@ -49,7 +49,7 @@ def sheet_lines(content: bytes, path: Path, field: str, what: str, most_rows: in
         Its path, for messages.
     field : str
         Key of the study or spectrum that names the file, for messages.
-    what : str
+    row_noun : str
         What a row describes; of several sheets the one with this name in the plural is read.
     most_rows : int, optional
         Return the first rows only, and leave out the checks of the whole sheet.
@@ -77,7 +77,7 @@ def sheet_lines(content: bytes, path: Path, field: str, what: str, most_rows: in
             _check_size(content, path, field)
             short = most_rows is not None
             values = load_workbook(io.BytesIO(content), read_only=short, data_only=True, keep_links=False)
-            sheet = _chosen(values.worksheets, path, field, what)
+            sheet = _chosen(values.worksheets, path, field, row_noun)
             if short:
                 sheet.reset_dimensions()  # some programs write wrong ones
                 return _filled_up(_texts(row) for row in sheet.iter_rows(max_row=most_rows, max_col=MAX_COLUMNS))
@@ -110,10 +110,10 @@ def _is_computed_on_load(content: bytes) -> bool:
         return any(b'fullCalcOnLoad="1"' in archive.read(name) for name in parts)
 
 
-def _chosen(sheets: list[Any], path: Path, field: str, what: str) -> Any:
+def _chosen(sheets: list[Any], path: Path, field: str, row_noun: str) -> Any:
     """Return the only visible sheet that holds cells, or the one that is named for what its rows describe."""
     shown = [sheet for sheet in sheets if sheet.sheet_state == "visible"]
-    named = [sheet for sheet in sheets if sheet.title.strip().lower() in (what, f"{what}s")]
+    named = [sheet for sheet in sheets if sheet.title.strip().lower() in (row_noun, f"{row_noun}s")]
     if len(named) == 1 and named[0] in shown:
         return named[0]
     if len(named) == 1:
@@ -126,7 +126,7 @@ def _chosen(sheets: list[Any], path: Path, field: str, what: str) -> Any:
     if len(meant) != 1:
         titles = ", ".join(sheet.title for sheet in meant or sheets)
         allowed = "a workbook with one visible sheet that holds cells"
-        raise InputError(field, f"sheets {titles} of {path}", allowed, f"Name the sheet that is meant '{what}s'.")
+        raise InputError(field, f"sheets {titles} of {path}", allowed, f"Name the sheet that is meant '{row_noun}s'.")
     return meant[0]
 
 
@@ -190,9 +190,9 @@ def _few(noun: str, names: Sequence[object]) -> str:
     if len(names) == 1:
         return f"{noun} {names[0]}"
     first = f"{noun}s {', '.join(map(str, names[:MOST_NAMED]))}"
-    more = len(names) - MOST_NAMED
-    if more > 0:
-        return f"{first} and {more} more"
+    further = len(names) - MOST_NAMED
+    if further > 0:
+        return f"{first} and {further} more"
     return first
 
 
@@ -277,7 +277,7 @@ def _formatted(value: float, code: str) -> str:
     """
     if isinstance(value, int) and abs(value) > LARGEST_WHOLE:
         return str(value)
-    number = Stored(value if isinstance(value, int) else repr(value))
+    number = Stored(repr(value))
     if code in _USUAL:
         return number
     section = _section(value, code)

@@ -9,7 +9,7 @@ from command_line import trackroller
 import trackroller as tr
 from trackroller.parameters.example import EXAMPLE, drive_question, not_given, not_given_text
 from trackroller.roller.stored_inputs import not_given_of
-from trackroller.study.store.identity import Cases
+from trackroller.study.store.fingerprint import StudyCases
 
 STUDY = """
 name: hall
@@ -39,7 +39,7 @@ def test_the_written_study_holds_every_value_and_gives_the_same_cases(study, tmp
     monkeypatch.setattr("trackroller.study.file.load.not_given", lambda named: {})  # nothing else fills a value in
     again = tr.load_study(written)
     assert again.merged() == study.merged() and again.not_given == (), "the file names every parameter"
-    np.testing.assert_array_equal(Cases(again).fingerprints, Cases(study).fingerprints)
+    np.testing.assert_array_equal(StudyCases(again).fingerprints, StudyCases(study).fingerprints)
     assert again.design().drop_attrs().identical(study.design().drop_attrs())
 
 

@@ -19,8 +19,8 @@ from trackroller.study.file.load import load_study
 from trackroller.study.run import run_study
 from trackroller.study.store import chunks, manifest
 from trackroller.study.store.crate import damaged_files, read_crate, write_crate
+from trackroller.study.store.fingerprint import StudyCases, chunk_name
 from trackroller.study.store.folder import StudyFolder
-from trackroller.study.store.identity import Cases, chunk_name
 from trackroller.study.store.ledger import Ledger
 from trackroller.study.store.manifest import why_altered
 from trackroller.study.store.netcdf import read_result
@@ -219,7 +219,7 @@ def test_a_ledger_passes_over_a_file_that_another_process_has_just_replaced(tmp_
     listed = folder.solved_files()
     monkeypatch.setattr(StudyFolder, "solved_files", lambda self: listed)
     folder.chunk(chunk_name(gone)).unlink()
-    found = Ledger(Cases(load_study({"name": "one", "factors": {"axial_force": {"values": [0]}}})), folder)
+    found = Ledger(StudyCases(load_study({"name": "one", "factors": {"axial_force": {"values": [0]}}})), folder)
     assert found.states["case"].values.tolist() == kept.tolist() and not found.corrupt
 
 

@@ -113,6 +113,8 @@ def _section(axes: Axes, part: xr.Dataset, body: str, plane: tuple[str, ...], dr
     depth = "Depth $z_\\mathrm{C}$ [mm]" if axis == "x" else "$z_\\mathrm{C}$ [mm]"
     axes.set(title=f"{body.capitalize()}, {words} section{place}", ylabel=depth)
     _labels(axes, f"${axis}_\\mathrm{{C}}$ ({words}) [mm]")
+    if axis == "y":  # the narrow section
+        axes.locator_params(axis="x", nbins=2)
     _mark_peak(axes, part, (axis, "z"))
     return image
 

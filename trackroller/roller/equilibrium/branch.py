@@ -34,7 +34,9 @@ def follow_friction(roller: Roller, bounds: Bounds) -> tuple[Solution, np.ndarra
     lifted : numpy.ndarray of bool, shape (m,)
         True for rollers that lift off.
     """
-    loads, law, rows = roller.loads, roller.law, roller.rows
+    loads = roller.loads
+    law = roller.law
+    rows = roller.rows
     m = rows.size
     solution = Solution(np.full(m, np.inf), np.zeros(m), np.full((2, m), np.nan), np.full((3, 2, m), np.nan))
     lifted, lost, answered, shed, grip = *np.zeros((4, m), bool), np.zeros(m)

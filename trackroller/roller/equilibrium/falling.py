@@ -16,7 +16,8 @@ from trackroller.roller.equilibrium.roller import Roller
 
 POINTS = 24  # slips of the search
 FIRST, LAST = -1.5, 3.5  # decades of slip over its scale between which the search looks
-GOLDEN, REFINEMENTS = 0.381966011250105, 12
+GOLDEN = 0.381966011250105
+REFINEMENTS = 12
 SWEEPS = 16  # largest number of steps with the fine law; where its forces jump, more steps do not help
 NEAR = 0.1  # torque over its scale by which the coarse law may fall short where the fine law has a balance
 
@@ -46,9 +47,13 @@ def first_balance(roller: Roller, whole: Bounds, fine: bool = False) -> tuple[Bo
     way = np.sign(roller.motor_force)  # driving needs a slip < 0
     normal = roller.floored(roller.without_friction())
 
+    steps = 1
+    if fine:
+        steps = 2
+
     def excess(w, pick):
         """Return the torque beyond the required one, > 0 where friction suffices; the normal forces follow."""
-        for _ in range(2 if fine else 1):
+        for _ in range(steps):
             f = roller.contact(roller.shift(w, pick), normal[:, pick], fine, pick)
             normal[:, pick] = roller.floored(roller.normal_forces(f[0] / normal[:, pick], pick), pick)
         return -way[pick] * roller.torque(f, pick)
@@ -56,8 +61,10 @@ def first_balance(roller: Roller, whole: Bounds, fine: bool = False) -> tuple[Bo
     low, high = w_low.copy(), w_high.copy()
     slips = np.concatenate([[0.0, 0.0], np.logspace(FIRST, LAST, POINTS)])  # 0 twice, for the normal forces
     points = np.clip(way * (slips / np.hypot(1.0, slips))[:, None], w_low, w_high)  # (points, m)
-    open_, beyond = np.flatnonzero(way != 0), np.zeros(way.size, bool)
-    best, place = np.full(way.size, -np.inf), np.zeros(way.size, int)
+    open_ = np.flatnonzero(way != 0)
+    beyond = np.zeros(way.size, bool)
+    best = np.full(way.size, -np.inf)
+    place = np.zeros(way.size, int)
     for k, w in enumerate(points):
         t = excess(w[open_], open_)
         higher = t > best[open_]

@@ -85,20 +85,29 @@ def bracketed(
     normal : numpy.ndarray, shape (2, m)
         Normal forces [N].
     """
-    m, (w_low, w_high) = roller.rows.size, bounds
+    m = roller.rows.size
+    w_low, w_high = bounds
+    t_low, t_high = np.full(m, np.nan), np.full(m, np.nan)  # the torque at the bounds
     normal = roller.floored(roller.without_friction())
-    t_low, t_high = np.full(m, np.nan), np.full(m, np.nan)
-    w, side = np.clip(np.zeros(m), w_low, w_high), np.zeros(m)
+    w = np.clip(np.zeros(m), w_low, w_high)
+    side = np.zeros(m)  # on which side of the root the last slip was
     active = np.arange(m)
+    unmet_above = 0.0
+    if fine:
+        unmet_above = settled(roller)
     for _ in range(sweeps):
         f = _following(roller, w, normal, fine, active)
         t = roller.torque(f, active)
-        up, at = t > 0, w[active]
+        up = t > 0
+        at = w[active]
         sign = np.where(up, 1.0, -1.0)
+        # a bound that stays twice counts with half its torque, so that the next slip comes closer to it
         share = np.where(sign == side[active], 0.5, 1.0)
         lo, hi = np.where(up, at, w_low[active]), np.where(up, w_high[active], at)
         tl, th = np.where(up, t, share * t_low[active]), np.where(up, share * t_high[active], t)
-        w_low[active], w_high[active], t_low[active], t_high[active], side[active] = lo, hi, tl, th, sign
+        w_low[active], w_high[active] = lo, hi
+        t_low[active], t_high[active] = tl, th
+        side[active] = sign
         with np.errstate(divide="ignore", invalid="ignore"):
             new = (lo * th - hi * tl) / (th - tl)
         new = np.where(np.isfinite(new) & (new > lo) & (new < hi), new, (lo + hi) / 2)
@@ -106,7 +115,7 @@ def bracketed(
         moved = np.abs(new - at)
         w[active] = new
         # Newton's method refines rollers whose torque is balanced already
-        unmet = np.abs(t) > (settled(roller) if fine else 0.0) * roller.torque_scale[active]
+        unmet = np.abs(t) > unmet_above * roller.torque_scale[active]
         active = active[(moved > tolerance) & (hi - lo > tolerance) & unmet]
         if active.size == 0:
             break
@@ -122,7 +131,10 @@ def _following(roller: Roller, w, normal, fine: bool, rows: np.ndarray) -> np.nd
     """Return the contact forces (3, 2, m) of `rows` at slip w; the normal forces follow, in three steps if `fine`."""
     f = np.empty((3, 2, rows.size))
     go = np.arange(rows.size)
-    for _ in range(3 if fine else 1):
+    steps = 1
+    if fine:
+        steps = 3
+    for _ in range(steps):
         k = rows[go]
         f[:, :, go] = roller.contact(roller.shift(w[k], k), normal[:, k], fine, k)
         new = roller.floored(roller.normal_forces(f[0][:, go] / normal[:, k], k), k)
@@ -141,7 +153,10 @@ def _jacobian(roller: Roller, w, normal, pick) -> np.ndarray:
     slips, normals = np.concatenate((w, w, w + step)), np.concatenate((normal, normal * (1 + h), normal), axis=1)
     picks, f = np.concatenate((pick, pick, pick)), np.empty((3, 2, 3 * m))
     # an iterative law starts from the state before; the others take the three states at once
-    for part in np.split(np.arange(3 * m), 1 if roller.goal <= CLOSED else 3):
+    count = 3
+    if roller.goal <= CLOSED:
+        count = 1
+    for part in np.split(np.arange(3 * m), count):
         f[:, :, part] = roller.contact(roller.shift(slips[part], picks[part]), normals[:, part], False, picks[part])
     base, grown, moved = f[:, :, :m], f[:, :, m : 2 * m], f[:, :, 2 * m :]
     r0 = roller.residuals(normal, base, pick)

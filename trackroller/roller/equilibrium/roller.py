@@ -79,7 +79,8 @@ class RollerLoads:
         rows : numpy.ndarray of int, shape (2 m,)
             Number of the roller of each contact.
         """
-        sine, second = self.sine[rows], slice(len(rows) // 2, None)
+        sine = self.sine[rows]
+        second = slice(len(rows) // 2, None)
         sine[second] = -sine[second]
         slip = Slip(sine, self.cosine[rows], self.guide_profile_radius[rows], self.rolling_radius[rows], shift)
         return self.shape.take(rows).at(normal), slip
@@ -89,17 +90,24 @@ class Roller:
     """The equations of m rollers, the rows `rows` of the loads."""
 
     def __init__(self, loads: RollerLoads, law: ContactLaw, rows: np.ndarray) -> None:
-        self.loads, self.rows, self.law, self.step = loads, rows, law, loads.difference_step
+        self.loads = loads
+        self.rows = rows
+        self.law = law
+        self.step = loads.difference_step
         self.goal = TOLERANCE * loads.converged
-        self.radial_force, self.axial_force = loads.radial_force[rows], loads.axial_force[rows]
-        self.motor_force, self.friction = loads.motor_force[rows], loads.friction[rows]
-        self.radius, self.shape = loads.rolling_radius[rows], loads.shape.take(rows)
+        self.radial_force = loads.radial_force[rows]
+        self.axial_force = loads.axial_force[rows]
+        self.motor_force = loads.motor_force[rows]
+        self.friction = loads.friction[rows]
+        self.radius = loads.rolling_radius[rows]
+        self.shape = loads.shape.take(rows)
         self.sin, self.cos = loads.sine[rows], loads.cosine[rows]
         self.load = np.abs(self.radial_force) + np.abs(self.axial_force)
         self.largest = self.load * np.maximum(1e3, 10.0 / np.minimum(self.sin, self.cos))
         # The slip varies over the patch by the spin and by the curved profile of the guide, which ends at its equator.
         # On a roller smaller than its patch, the spin moment decays slowly with the slip; the last factor counts this.
-        root, flat = np.cbrt(self.load * np.maximum(1.0, 0.5 / self.cos)), loads.guide_profile_radius[rows] * self.cos
+        root = np.cbrt(self.load * np.maximum(1.0, 0.5 / self.cos))
+        flat = loads.guide_profile_radius[rows] * self.cos
         wide, long = self.shape.lateral, self.shape.rolling
         bend = np.minimum((wide * root * self.cos) ** 2 / flat, flat)
         varies = 0.5 * (self.sin * np.hypot(wide, long) * root + bend)

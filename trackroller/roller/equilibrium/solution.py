@@ -23,7 +23,8 @@ from trackroller.roller.equilibrium.roller import LAST_SLIP, ContactLaw, Roller,
 ROLLING, FULL_SLIP, LIFT_OFF, FAILED = (REGIMES.index(name) for name in ("rolling", "full_slip", "lift_off", "failed"))
 # Largest residual of a solution. Where friction falls steeply, a patch has many states of adhesion and slip; its forces
 # jump between these states, and the balance may lie within such a jump.
-SOLVED, SOLVED_FALLING = 1e-6, 1e-2
+SOLVED = 1e-6
+SOLVED_FALLING = 1e-2
 LEAST_FRICTION = 1e-100  # smaller friction coefficients count as zero; their forces would underflow
 # Share of the complete friction from which braking counts as full slip: loads in round numbers may need exactly the
 # complete friction, and rounding must not choose the regime then.
@@ -31,7 +32,8 @@ COMPLETE = 1.0 - 1e-9
 NEARLY = 0.999  # share of the complete friction above which braking is compared with the contact law
 # Share of the complete friction up to which friction drives a roller whose slip varies over its patches by less than
 # the second number times the rolling radius. All contact laws gave 0.98 of it or more on 9000 random rollers.
-SURELY, SMALL_PATCH = 0.9, 0.1
+SURELY = 0.9
+SMALL_PATCH = 0.1
 LIMIT_FRICTION = 1e-12  # friction coefficient that stands for the limit mu -> 0
 
 
@@ -144,7 +146,8 @@ def _solve_rolling(loads: RollerLoads, law: ContactLaw, rows: np.ndarray, answer
     go = np.flatnonzero(~beyond)
     if go.size == 0:
         return rows
-    roller, bounds = Roller(eased, law, rows[go]), bounds.take(go)
+    roller = Roller(eased, law, rows[go])
+    bounds = bounds.take(go)
     solution, slides = _balance(roller, bounds, whole.take(go), unsure[go])
     beyond[go] = slides
     lift = _settle_branch(roller, solution, bounds, slides)
@@ -201,7 +204,9 @@ def _balance(roller: Roller, bounds: Bounds, whole: Bounds, unsure: np.ndarray) 
     Roots that the coarse law misses are searched again with the fine law. Where friction falls with the slip speed,
     this search covers the `whole` range, and `bounds` are overwritten by the bounds that it ends with.
     """
-    loads, law, rows = roller.loads, roller.law, roller.rows
+    loads = roller.loads
+    law = roller.law
+    rows = roller.rows
     w, n = bracketed(roller, bounds.copy(), fine=False, sweeps=25, tolerance=1e-3)
     solution = newton_polish(roller, w, n, bounds, settled(roller))
     slides = np.zeros(rows.size, bool)
@@ -213,7 +218,8 @@ def _balance(roller: Roller, bounds: Bounds, whole: Bounds, unsure: np.ndarray) 
         solution.put_better(bad, again, loads.converged)
         slides[bad[none]] = True
     elif bad.size:  # slow, but it finds every root
-        part, ends = Roller(loads, law, rows[bad]), bounds.take(bad)
+        part = Roller(loads, law, rows[bad])
+        ends = bounds.take(bad)
         w, n = bracketed(part, ends.copy(), fine=True, sweeps=80, tolerance=1e-15)
         solution.put(bad, newton_polish(part, w, n, ends, settled(part)))
     return solution, slides

@@ -29,12 +29,12 @@ def balance(scene: Scene, near: eq.Equilibrium | None = None) -> eq.Equilibrium:
         return correction.law(patch, scene.kinematics(slip, rows), friction, rows, fine)
 
     def correct(rows: np.ndarray, balanced: eq.Equilibrium) -> np.ndarray:
-        wanted = np.zeros(scene.n, bool)
-        wanted[rows] = True
-        asked = np.flatnonzero(scene.mirror.asked(np.tile(wanted, 2)))
+        in_rows = np.zeros(scene.n, bool)
+        in_rows[rows] = True
+        solved = np.flatnonzero(scene.mirror.to_solve(np.tile(in_rows, 2)))
         patch, slip = scene.contacts(balanced)
-        number = asked % scene.n
-        change = correction.solve(patch.take(asked), slip.take(asked), scene.loads.friction[number], number)
+        number = solved % scene.n
+        change = correction.solve(patch.take(solved), slip.take(solved), scene.loads.friction[number], number)
         largest = np.zeros(scene.n)
         np.maximum.at(largest, number, change)  # NaN stays NaN
         return largest[rows]

@@ -21,14 +21,16 @@ from trackroller.roller.stages.patch_stresses import PatchStresses
 from trackroller.roller.stages.scene import surface_tractions
 
 SECTION_ORDER = 24  # quadrature points of sections: they meet the rim exactly, where the quadrature is hardest
-SEEDS, FINALISTS = 5, 2  # least effort of the search under tractions with adhesion
+SEEDS = 5  # least effort of the search under tractions with adhesion
+FINALISTS = 2
 QUICK_SEEDS = 3  # seeds of a quick search
 PIECE = 256  # patches whose tractions on grids are held at once
 FINER_PIECE = 16  # the same on twice the elements
 # Estimated relative error of a peak above which the patch is solved again on twice the elements, and the number of
 # elements for which it holds; it falls with the area of an element. Stresses have narrow ridges where sliding begins,
 # which carry the peaks of such patches. Their search therefore takes finer rules and steps.
-REFINED_ERROR, REFINED_AT = 1.5e-2, 28
+REFINED_ERROR = 1.5e-2
+REFINED_AT = 28
 CHANGE_WEIGHT = 1.6  # weight of the change by elements where it alone decides
 REFINED_SHARE = 0.5  # share of the error that the contact model adds to a peak, below which finer elements gain little
 FINER_SEARCH: dict[str, Any] = {"scan": 8, "polish": 24, "step": 0.004}
@@ -37,7 +39,9 @@ FINER_SEARCH: dict[str, Any] = {"scan": 8, "polish": 24, "step": 0.004}
 # the peak found by more than POLE_SPREAD, which is the error of the formula, the peak is too low by up to POLE_WEIGHT
 # times the rest. This holds for adhesion areas below SMALL_SHARE of the patch. Measured on 443 rolling designs, see
 # tests/roller/test_tolerance.py.
-POLE_SPREAD, POLE_WEIGHT, SMALL_SHARE = 0.04, 1.6, 0.01
+POLE_SPREAD = 0.04
+POLE_WEIGHT = 1.6
+SMALL_SHARE = 0.01
 UNSEEN_ERROR = 3e-4  # relative error of peaks under tractions on elements that no estimate shows
 
 
@@ -67,9 +71,11 @@ class EllipseStresses(PatchStresses):
         """Return the records of the existing patches that the half-space kernels take, see `patch_rows`."""
         results = self.results
         good = results.good
+        if slip is None:
+            slip = results.slip
         return patch_rows(
             results.patch.take(good),
-            (results.slip if slip is None else slip).take(good),
+            slip.take(good),
             results.friction[good],
             sliding.spin_model_index(self.options.spin_model),
             results.slides_along[good],
@@ -107,27 +113,28 @@ class EllipseStresses(PatchStresses):
             return results.share[np.cumsum(results.good)[flat] - 1], None
         return shares
 
-    def bounds(self, wanted: np.ndarray) -> np.ndarray:
+    def bounds(self, searched: np.ndarray) -> np.ndarray:
         """Return the largest of a few points of each patch, (m, 2) [MPa]."""
-        patches, parts = self.rows()[wanted[self.results.good]], []
-        numbers = np.flatnonzero(wanted)
+        patches = self.rows()[searched[self.results.good]]
+        parts = []
+        numbers = np.flatnonzero(searched)
         for rows in _pieces(numbers.size):
             flat = numbers[rows]
             parts.append(lower_bounds(patches[rows], self.poisson_ratio[flat], self.fields(flat)[0]))
-        return np.concatenate(parts) * self.results.patch.max_pressure[wanted][:, None]
+        return np.concatenate(parts) * self.results.patch.max_pressure[searched][:, None]
 
-    def peaks(self, asked: np.ndarray) -> Peak:
+    def peaks(self, searched: np.ndarray) -> Peak:
         """Return the peak stresses; contact 2 is searched as its mirror image, so that mirrored cases agree."""
         results = self.results
         second = np.repeat([False, True], results.scene.n)
-        patches = self.rows(replace(results.slip, sine=np.abs(results.slip.sine)))[asked[results.good]]
-        ratios = self.poisson_ratio[asked]
+        patches = self.rows(replace(results.slip, sine=np.abs(results.slip.sine)))[searched[results.good]]
+        ratios = self.poisson_ratio[searched]
         if self._gridded:
-            peak = self._search_grids(patches, ratios, np.flatnonzero(asked), second[asked])
+            peak = self._search_grids(patches, ratios, np.flatnonzero(searched), second[searched])
         else:
             peak = self._search(patches, ratios)
-        second = second[asked]
-        pressure = results.patch.max_pressure[asked][:, None]
+        second = second[searched]
+        pressure = results.patch.max_pressure[searched][:, None]
         return replace(peak, stress=peak.stress * pressure, x=np.where(second, -1.0, 1.0)[:, None] * peak.x)
 
     def _search_grids(self, patches: np.ndarray, ratios: np.ndarray, flat: np.ndarray, second: np.ndarray) -> Peak:
@@ -135,8 +142,11 @@ class EllipseStresses(PatchStresses):
 
         `flat` are the numbers of the patches; the `second` are searched as their mirror images.
         """
-        results, settings, elements = self.results, self.options.settings.peak, self.options.settings.elements
-        own, peak = results.scene.model.peak_error, Peak.empty(len(patches))
+        results = self.results
+        settings = self.options.settings.peak
+        elements = self.options.settings.elements
+        own = results.scene.model.peak_error
+        peak = Peak.empty(len(patches))
         # adhesion and the spin pole make several summits of nearly the same height
         if own:
             seeds = QUICK_SEEDS
@@ -152,12 +162,17 @@ class EllipseStresses(PatchStresses):
                 effort = replace(settings, finalists=FINALISTS)
             peak.put(piece, find_peaks(patches[piece], ratios[piece], effort, fields, coarse, bool(own)))
         # a model with an error of its own gains nothing from elements where the search alone is rough
-        doubt = (CHANGE_WEIGHT * peak.change if own else peak.error).max(axis=1)
+        if own:
+            doubt = (CHANGE_WEIGHT * peak.change).max(axis=1)
+            size = PIECE
+        else:
+            doubt = peak.error.max(axis=1)
+            size = FINER_PIECE
         goal = np.maximum(refined_above(elements), REFINED_SHARE * own * results.friction[flat])
         rough = np.flatnonzero((doubt > goal) & (results.slides_along[flat] == 0))
         if not own and settings.step > FINER_SEARCH["step"]:
             settings = replace(settings, **FINER_SEARCH)
-        for piece in _pieces(rough.size, PIECE if own else FINER_PIECE):
+        for piece in _pieces(rough.size, size):
             rows = rough[piece]
             given = patches[rows], ratios[rows], flat[rows], second[rows], settings
             finer, converged = self._on_twice_the_elements(*given)
@@ -172,24 +187,28 @@ class EllipseStresses(PatchStresses):
         self, patches: np.ndarray, ratios: np.ndarray, flat: np.ndarray, second: np.ndarray, settings: PeakSettings
     ) -> tuple[Peak, np.ndarray]:
         """Return the peaks under tractions on twice the elements, and whether these converged, (m,)."""
-        model, none = self.results.scene.model, np.zeros(len(flat), bool)
+        model = self.results.scene.model
+        none = np.zeros(len(flat), bool)
         shares = self._shares(flat, model.finer_shares)
         if shares is None:  # the model does not refine patches
             return Peak.empty(len(flat)), none
-        (fields, coarse), converged = (mirrored(part, second) for part in shares[:2]), shares[2]
+        fields, coarse = (mirrored(part, second) for part in shares[:2])
+        converged = shares[2]
         return find_peaks(patches, ratios, settings, fields, coarse, bool(model.peak_error)), converged
 
     def _missed_at_pole(self, peak: Peak, flat: np.ndarray) -> np.ndarray:
         """Return by how much the peaks of patches `flat` may be too low at the spin pole, (m,), see `POLE_SPREAD`."""
-        (patch, slip, friction, rows), model = self.results.of(flat), self.results.scene.model
+        patch, slip, friction, rows = self.results.of(flat)
+        model = self.results.scene.model
         stress = model.pole_stress(patch, slip, friction, rows)
         higher = stress / peak.stress.min(axis=1) - 1.0 - POLE_SPREAD
-        asked = np.flatnonzero((higher > 0.0) & (friction > LITTLE_FRICTION) & (self.results.slides_along[flat] == 0))
+        missed = np.flatnonzero((higher > 0.0) & (friction > LITTLE_FRICTION) & (self.results.slides_along[flat] == 0))
         out = np.zeros(len(flat))
-        if asked.size:
-            stick = model.stick(*self.results.of(flat[asked]))
-            small = 1.0 if stick is None else stick < SMALL_SHARE  # an unknown adhesion area may be small
-            out[asked] = small * POLE_WEIGHT * higher[asked]
+        if missed.size:
+            out[missed] = POLE_WEIGHT * higher[missed]
+            stick = model.stick(*self.results.of(flat[missed]))
+            if stick is not None:  # an unknown adhesion area may be small
+                out[missed] *= stick < SMALL_SHARE
         return out
 
     def _search(self, patches: np.ndarray, ratios: np.ndarray) -> Peak:
@@ -214,7 +233,8 @@ class EllipseStresses(PatchStresses):
 
     def _field_of(self, flat: int) -> np.ndarray:
         """Return the traction over its bound on the grid on which the peak was found, (2, ny, nx)."""
-        results, number = self.results, np.array([flat])
+        results = self.results
+        number = np.array([flat])
         refined = results.refined[results.scene.mirror.source(number)][0]
         if refined:
             fields, *_ = self._shares(number, results.scene.model.finer_shares)

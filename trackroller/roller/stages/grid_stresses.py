@@ -16,7 +16,8 @@ from trackroller.roller.stages.patch_stresses import PatchStresses
 from trackroller.roller.stages.scene import surface_tractions
 
 # A peak is refined if its estimated error exceeds both REFINED_ERROR times the tolerance and FINEST_ERROR.
-REFINED_ERROR, FINEST_ERROR = 4.0, 5e-3
+REFINED_ERROR = 4.0
+FINEST_ERROR = 5e-3
 REFINEMENTS = 2, 4  # times the elements of the solved pressure
 LARGEST_GRID = 160  # largest number of elements across after a refinement
 RIDGE_ERROR = 0.02  # error of the solved pressure's stress per `roughness`, which no other tractions on it show
@@ -38,10 +39,10 @@ class GridStresses(PatchStresses):
         """Return the tractions of the existing patch number `flat` of 2 n."""
         return _load(surface_tractions(self.results), int(np.count_nonzero(self.results.good[:flat])))
 
-    def bounds(self, wanted: np.ndarray) -> np.ndarray:
+    def bounds(self, searched: np.ndarray) -> np.ndarray:
         """Return the largest stress at a few points below each patch, (m, 2) [MPa]."""
         out = []
-        for flat in np.flatnonzero(wanted).tolist():
+        for flat in np.flatnonzero(searched).tolist():
             load = self.load(flat)
             a, b = load.size
             centre = np.array([load.x.mean(), load.y.mean(), 0.0])
@@ -51,15 +52,17 @@ class GridStresses(PatchStresses):
             out.append([von_mises(stress).max() for stress in stresses])
         return np.array(out).reshape(-1, 2)
 
-    def peaks(self, asked: np.ndarray) -> Peak:
+    def peaks(self, searched: np.ndarray) -> Peak:
         """Return the peak stresses.
 
         Where the slip turns within an element (its pole in a slender patch), the element size limits the accuracy. If
         the model computes the tractions on finer elements, the patch is searched again with more elements, until the
         estimated error is as small as that of other patches.
         """
-        results, options = self.results, self.options
-        flat, ratios = np.flatnonzero(asked), self.poisson_ratio[asked]
+        results = self.results
+        options = self.options
+        flat = np.flatnonzero(searched)
+        ratios = self.poisson_ratio[searched]
         loads = [self.load(place) for place in flat.tolist()]
         seeds = max(2, options.settings.peak.finalists)
         outward = np.where(flat < results.scene.n, 1.0, -1.0)
@@ -85,10 +88,12 @@ class GridStresses(PatchStresses):
 
     def _refined(self, flat: int, times: int) -> GridLoad:
         """Return the tractions of one patch on finer elements across, and along too if that is the longer side."""
-        asked, slip, friction, rows = self.results.of(np.array([flat]))
-        patch = cast(GridPatch, asked)  # the stage chooses this class for solved patches only
-        long = bool(patch.semi_axis_rolling[0] * patch.shape[1] > patch.semi_axis_lateral[0] * patch.shape[0])
-        finer = patch.refined(times if long else 1, times)
+        solved, slip, friction, rows = self.results.of(np.array([flat]))
+        patch = cast(GridPatch, solved)  # the stage chooses this class for solved patches only
+        along = 1
+        if patch.semi_axis_rolling[0] * patch.shape[1] > patch.semi_axis_lateral[0] * patch.shape[0]:
+            along = times
+        finer = patch.refined(along, times)
         return _load(self.results.scene.model.surface(finer, slip, friction, rows), 0)
 
     def at(self, flat: int, points: np.ndarray, body: int, sign: float) -> np.ndarray:

@@ -49,16 +49,23 @@ def prepare(table: CaseTable, options: Options, across: int = 1, near: Boxes | N
     across, near : factor on the elements across solved patches and boxes to start from, see `models.model_of`
     """
     alpha, r_a, k_x, k_y = contact_geometry(vars(table))
-    unit = r_a if options.normal == "hertz" else np.ones(len(table))  # drawn profiles are in mm
-    r_a, k_x, k_y = r_a / unit, rounded(k_x * unit), rounded(k_y * unit)
-    guide, curve = rounded(table.guide_profile_radius / unit), rounded(table.guide_curve_radius / unit)
+    unit = np.ones(len(table))  # drawn profiles are in mm
+    if options.normal == "hertz":
+        unit = r_a
+    r_a = r_a / unit
+    k_x = rounded(k_x * unit)
+    k_y = rounded(k_y * unit)
+    guide = rounded(table.guide_profile_radius / unit)
+    curve = rounded(table.guide_curve_radius / unit)
     hertz = shape(k_x, k_y, contact_modulus(*bodies(table)), options.hertz)
     turning = None
     if "curve" in options.slip_terms:
         turning = turning_of(curve, guide, np.cos(alpha))
         # a contact beyond the axis of a concave guide cannot turn with it: its shape is NaN, and the row fails
         hertz = replace(hertz, lateral=np.where(np.isnan(turning), np.nan, hertz.lateral))
-    law = law_of(table.friction_law[0] if len(table) else None)
+    law = law_of(None)
+    if len(table):
+        law = law_of(table.friction_law[0])
     model = model_of(table, options, r_a, law, table.velocity * MM_PER_S, across, near)
     loads = eq.RollerLoads(
         rounded(table.radial_force / unit**2),
@@ -80,7 +87,10 @@ def prepare(table: CaseTable, options: Options, across: int = 1, near: Boxes | N
     else:
         twins = np.zeros(len(table), bool)
     turned = np.array([inclined(str(text)) for text in table.guide_profile]).reshape(-1, 2) * [1.0, -1.0]
-    return Scene(table, loads, model, unit, Mirror(twins), bare, len(table), turning, turned if turned.any() else None)
+    inclination = None
+    if turned.any():
+        inclination = turned
+    return Scene(table, loads, model, unit, Mirror(twins), bare, len(table), turning, inclination)
 
 
 def forces(results: StageResults) -> None:
@@ -89,18 +99,26 @@ def forces(results: StageResults) -> None:
     Where the resultant of the pressure lies beside the nominal point of contact, its offset adds F_N x_p to the tilting
     moment, and in full slip F_A x_p is the spin moment.
     """
-    f, b, loads, v = results.balance.forces, results.balance, results.scene.loads, results.values
+    f = results.balance.forces
+    b = results.balance
+    loads = results.scene.loads
+    v = results.values
     offset = results.by_contact(results.patch.pressure_centre)
     slides = (results.regime == eq.FULL_SLIP)[:, None]
-    v["normal_force"], v["lateral_force"] = b.normal_force, f.lateral_force
+    v["normal_force"] = b.normal_force
+    v["lateral_force"] = f.lateral_force
     if results.scene.inclined is not None:
         v["lateral_force"] = f.lateral_force - b.normal_force * results.scene.inclined
     v["driving_force"] = f.driving_force
     v["spin_moment"] = np.where(slides, offset * f.driving_force, f.spin_moment)
-    v["rolling_radius_shift"], v["slip"] = b.shift, b.shift / loads.rolling_radius
+    v["rolling_radius_shift"] = b.shift
+    v["slip"] = b.shift / loads.rolling_radius
     height = results.scene.table.axis_distance / results.scene.unit
     h_n, h_t = lever_arms(height, loads.guide_profile_radius, loads.contact_angle)
-    m, a, t, n = f.spin_moment, f.driving_force, f.lateral_force, b.normal_force
+    m = f.spin_moment
+    a = f.driving_force
+    t = f.lateral_force
+    n = b.normal_force
     # eqs (10), (11), (12)
     v["drilling_torque"] = (m[:, 0] - m[:, 1]) * loads.sine
     tilting = h_n * (n[:, 0] - n[:, 1]) + h_t * (t[:, 0] + t[:, 1])
@@ -118,7 +136,8 @@ def force_error(results: StageResults, options: Options) -> None:
     An error of the ratio F_T/F_N of one contact changes F_N of both contacts by eqs (7), (9). The relative change is
     largest in a contact near lift-off.
     """
-    scene, v = results.scene, results.values
+    scene = results.scene
+    v = results.values
     error = scene.model.force_error(scene.n)
     twins = scene.mirror.symmetric
     error[twins] = np.fmax(error[twins, :1], error[twins, 1:])
@@ -138,8 +157,10 @@ def force_error(results: StageResults, options: Options) -> None:
 
 def _load_error(results: StageResults, of_ratio: np.ndarray) -> np.ndarray:
     """Return the relative errors of F_N that errors (n, 2) of the ratios F_T/F_N cause by eqs (7), (9), (n, 2)."""
-    v, loads = results.values, results.scene.loads
-    normal, (one, two) = v["normal_force"], (v["lateral_force"] / v["normal_force"]).T
+    v = results.values
+    loads = results.scene.loads
+    normal = v["normal_force"]
+    one, two = (v["lateral_force"] / normal).T
     own = np.stack([own_change(loads.sine, loads.cosine, two), own_change(loads.sine, loads.cosine, -one)], axis=1)
     wedge = np.abs(determinant(loads.sine, loads.cosine, one, two))
     return (own * of_ratio + (of_ratio * normal)[:, ::-1] / normal) / wedge[:, None]
@@ -147,15 +168,19 @@ def _load_error(results: StageResults, of_ratio: np.ndarray) -> np.ndarray:
 
 def contact(results: StageResults, options: Options) -> None:
     """Add extent, pressure, shear, adhesion area and spin pole of both contacts."""
-    v, patch, model = results.values, results.patch, results.scene.model
+    v = results.values
+    patch = results.patch
+    model = results.scene.model
     wide, long = patch.half_extents
-    v["semi_axis_lateral"], v["semi_axis_rolling"] = results.by_contact(wide), results.by_contact(long)
+    v["semi_axis_lateral"] = results.by_contact(wide)
+    v["semi_axis_rolling"] = results.by_contact(long)
     v["max_pressure"] = results.by_contact(patch.max_pressure)
     v["patch_area"] = results.by_contact(patch.area)
     v["pressure_centre"] = results.by_contact(patch.pressure_centre)
     results.flag("conformal", np.logical_or.reduce(results.by_contact(patch.reaches_edge), axis=1))
     pole_x, pole_y = _spin_pole(results, options)
-    v["spin_pole_lateral"], v["spin_pole_rolling"] = results.by_contact(pole_x), results.by_contact(pole_y)
+    v["spin_pole_lateral"] = results.by_contact(pole_x)
+    v["spin_pole_rolling"] = results.by_contact(pole_y)
     # mu p_max is exact where the whole patch slides under a constant friction law, and a bound elsewhere
     v["max_shear"] = results.by_contact(results.friction * patch.max_pressure)
     if model.full_sliding or results.scene.frictionless:
@@ -168,7 +193,8 @@ def contact(results: StageResults, options: Options) -> None:
 
 def _spin_pole(results: StageResults, options: Options) -> tuple[np.ndarray, np.ndarray]:
     """Return the spin pole x, y [mm] of the model's slip field, (2 n,), eqs (22), (23)."""
-    patch, pole_x = results.patch, results.slip.pole_lateral
+    patch = results.patch
+    pole_x = results.slip.pole_lateral
     with np.errstate(invalid="ignore"):
         pole_y = np.nan_to_num(pole_rolling(pole_x - patch.centre, patch.semi_axis_lateral, patch.semi_axis_rolling))
     if options.spin_model == "concentric":
@@ -184,7 +210,8 @@ def steep_friction(results: StageResults, options: Options) -> None:
     balance fail for this reason. A failed roller has no pressure; its forces without friction give an estimate.
     """
     scene = results.scene
-    table, loads = scene.table, scene.loads
+    table = scene.table
+    loads = scene.loads
     if not loads.falling or not scene.model.elastic:
         return
     shear_modulus = Elastic.of_pair(*bodies(table)).shear_modulus
@@ -201,8 +228,9 @@ def steep_friction(results: StageResults, options: Options) -> None:
 
 def _stick_share(results: StageResults) -> np.ndarray:
     """Return the share of the adhesion area in both patches of each roller [1], 0 in full slip, (n, 2)."""
-    mirror, rolls = results.scene.mirror, results.good & (results.slides_along == 0)
-    share = results.scene.model.stick(*results.of(mirror.asked(rolls)))
+    mirror = results.scene.mirror
+    rolls = results.good & (results.slides_along == 0)
+    share = results.scene.model.stick(*results.of(mirror.to_solve(rolls)))
     if share is None:
         return results.full(surface_tractions(results).stick_share)
     out = np.where(results.good, 0.0, np.nan)
@@ -225,13 +253,14 @@ def _largest_shear(results: StageResults) -> np.ndarray:
 
 def dissipation(results: StageResults) -> tuple[np.ndarray, np.ndarray]:
     """Return the friction energy int |tau| |v| per distance, and the work that the pressures supply, (n, 2) [N]."""
-    per_distance, pressed = np.full(2 * results.scene.n, np.nan), np.zeros(2 * results.scene.n)
+    per_distance = np.full(2 * results.scene.n, np.nan)
+    pressed = np.zeros(2 * results.scene.n)
     rolls = results.good & (results.slides_along == 0)
     if results.scene.frictionless:
         per_distance[rolls] = 0.0
     elif rolls.any():
         mirror = results.scene.mirror
-        works = results.scene.model.power(*results.of(mirror.asked(rolls)))
+        works = results.scene.model.power(*results.of(mirror.to_solve(rolls)))
         per_distance[rolls] = mirror.spread(rolls, works.dissipated)
         pressed[rolls] = mirror.spread(rolls, works.by_pressure)
     return results.by_contact(per_distance), results.by_contact(pressed)
@@ -239,7 +268,8 @@ def dissipation(results: StageResults) -> tuple[np.ndarray, np.ndarray]:
 
 def friction_work(results: StageResults, options: Options) -> None:
     """Add the friction energy per distance travelled, its estimated error, and the energy balance."""
-    v, model = results.values, results.scene.model
+    v = results.values
+    model = results.scene.model
     v["friction_energy_per_distance"], pressed = dissipation(results)
     _energy_balance(results, v["friction_energy_per_distance"], pressed)
     forces = v["driving_force"].T.reshape(-1), v["spin_moment"].T.reshape(-1)
@@ -248,9 +278,9 @@ def friction_work(results: StageResults, options: Options) -> None:
     lost = 0.0
     if model.elastic:
         lost = np.nan_to_num(np.abs(v["energy_residual"]))[:, None]
-    told = v["force_error_estimate"]
+    error = v["force_error_estimate"]
     with np.errstate(invalid="ignore"):
-        v["friction_energy_error_estimate"] = np.where(told > 0.0, told * factor + lost, told)
+        v["friction_energy_error_estimate"] = np.where(error > 0.0, error * factor + lost, error)
 
 
 def _energy_balance(results: StageResults, local: np.ndarray, pressed: np.ndarray) -> None:
@@ -264,7 +294,8 @@ def _energy_balance(results: StageResults, local: np.ndarray, pressed: np.ndarra
     ASSUME: the drive supplies no part of the work of the pressures; the torque of pressures that shear shifts is not in
     the balance of the drive torque.
     """
-    v, loads = results.values, results.scene.loads
+    v = results.values
+    loads = results.scene.loads
     xi = v["slip"]
     spin = results.by_contact(results.slip.spin)
     v["friction_energy_balance"] = -(xi[:, None] * v["driving_force"] + spin * v["spin_moment"])
@@ -278,7 +309,8 @@ def _energy_balance(results: StageResults, local: np.ndarray, pressed: np.ndarra
 
 def settle(results: StageResults) -> None:
     """Take the mark of convergence from rolling rows with a force, a pressure or a peak that is no finite number."""
-    v, rolls = results.values, results.regime == eq.ROLLING
+    v = results.values
+    rolls = results.regime == eq.ROLLING
     for name in FINITE & v.keys():
         settled = ~rolls | np.isfinite(v[name]).all(axis=tuple(range(1, v[name].ndim)))
         if name == "peak_stress":

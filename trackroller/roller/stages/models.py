@@ -54,7 +54,9 @@ def model_of(
         patches = None
     else:
         patches = _patches(table, options, rolling_radius, across, near)
-    name, settings, terms = options.contact_model, options.settings, options.slip_terms
+    name = options.contact_model
+    settings = options.settings
+    terms = options.slip_terms
     return contact_model(name, settings, elastic, options.spin_model, law, travel_speed, terms, patches)
 
 
@@ -94,8 +96,10 @@ def finer_across(table: CaseTable, options: Options) -> np.ndarray:
     if options.normal == "hertz":
         return out
     alpha, radius, *_ = contact_geometry(vars(table))
-    gaps, modulus = _gaps(table, radius), contact_modulus(*bodies(table))
-    mean, tilt = np.abs(table.radial_force) / np.cos(alpha), table.axial_force / np.sin(alpha)
+    gaps = _gaps(table, radius)
+    modulus = contact_modulus(*bodies(table))
+    mean = np.abs(table.radial_force) / np.cos(alpha)
+    tilt = table.axial_force / np.sin(alpha)
     known: dict[tuple, int] = {}
     for row in range(len(table)):
         if not (has_details(str(table.guide_profile[row])) or has_details(str(table.roller_profile[row]))):

@@ -69,21 +69,23 @@ def _ends(table: CaseTable) -> dict[str, np.ndarray]:
 
     A value whose place in its range is given has no range, and a given factor replaces that of the wear coefficient.
     """
-    given, out = ~np.isnan(table.placeholder_position), {}
+    given = ~np.isnan(table.placeholder_position)
+    out = {}
     bodies = [distinct(own.ends) for own in (table.roller, table.guide)]
-    for name in sorted({name for materials, _ in bodies for ends in materials for name in ends}):
-        held = given
+    ranges = [ends for materials, _ in bodies for ends in materials]
+    for name in sorted({name for ends in ranges for name in ends}):
+        is_fixed = given
         if name == "wear_coefficient":
-            held = given | ~np.isnan(table.wear_coefficient_factor)
+            is_fixed = given | ~np.isnan(table.wear_coefficient_factor)
         columns = [np.array([ends.get(name, (1.0, 1.0)) for ends in materials])[place] for materials, place in bodies]
-        out[name] = np.where(held[:, None, None], 1.0, np.stack(columns, axis=1))
+        out[name] = np.where(is_fixed[:, None, None], 1.0, np.stack(columns, axis=1))
     return {name: shares for name, shares in out.items() if np.any(shares != 1.0)}
 
 
 def to_compute(solved: SolvedRollers, options: Options) -> tuple[Limit, ...]:
     """Return the limits to compute: those named among the outputs, and those of the verdict that a case serves."""
-    wanted = computed(options.outputs, options.not_checked, options.life_criterion)
-    return tuple(own for own in wanted if own.group in options.outputs or own.verdict is None or own.served(solved))
+    candidates = computed(options.outputs, options.not_checked, options.life_criterion)
+    return tuple(own for own in candidates if own.group in options.outputs or own.verdict is None or own.served(solved))
 
 
 def of_patches(limits: Iterable[Limit]) -> tuple[Limit, ...]:
@@ -94,7 +96,8 @@ def of_patches(limits: Iterable[Limit]) -> tuple[Limit, ...]:
 def _unworn_gap(table: CaseTable, case: int, contact: int, lateral: np.ndarray) -> np.ndarray:
     """Return the gap of the undeformed profiles at lateral places of one contact of a case, see `SolvedRollers`."""
     alpha = float(np.deg2rad(table.contact_angle[case]))
-    axis, guide_radius = float(table.axis_distance[case]), float(table.guide_profile_radius[case])
+    axis = float(table.axis_distance[case])
+    guide_radius = float(table.guide_profile_radius[case])
     between = gap(
         str(table.guide_profile[case]),
         str(table.roller_profile[case]),
@@ -111,20 +114,24 @@ def _unworn_gap(table: CaseTable, case: int, contact: int, lateral: np.ndarray) 
 def limits(table: CaseTable, v: dict[str, np.ndarray], options: Options, regime: np.ndarray) -> None:
     """Add the results of the limits asked for to the results `v`, and the verdict if it is asked for."""
     solved = solved_of(table, v, options, regime)
-    wanted = to_compute(solved, options)
-    there = of_patches(wanted)  # see `patch_limits`
-    for limit in wanted:
-        if limit not in there:
+    computed_limits = to_compute(solved, options)
+    on_patches = of_patches(computed_limits)  # see `patch_limits`
+    for limit in computed_limits:
+        if limit not in on_patches:
             v |= limit.evaluate(solved)
     places = [solved]
-    if any(limit.moves(solved) for limit in wanted):
-        places += [_at_end(solved, wanted, end) for end in (0, 1)]
+    if any(limit.moves(solved) for limit in computed_limits):
+        places += [_at_end(solved, computed_limits, end) for end in (0, 1)]
         for end, place in zip(("low", "high"), places[1:], strict=True):
-            names = [one.name for limit in wanted for one in limit.results if one.end == end]
+            names = [result.name for limit in computed_limits for result in limit.results if result.end == end]
             v |= {name: place.values[name] for name in names}
     if verdict.GROUP in options.outputs:
-        names, counted = list(LIMITS), judged(options.outputs, options.not_checked)
-        known = [_nothing(limit) if limit not in wanted else limit for limit in counted]
+        names = list(LIMITS)
+        counted = judged(options.outputs, options.not_checked)
+        known = list(counted)
+        for i, limit in enumerate(counted):
+            if limit not in computed_limits:
+                known[i] = _nothing(limit)
         v |= verdict.verdict(places, known, [names.index(limit.name) for limit in counted], len(names))
     for name in [name for name in v if name.startswith("_") and name != BEYOND_TABLE]:
         del v[name]
@@ -135,26 +142,28 @@ def _nothing(limit: Limit) -> Limit:
     return dataclasses.replace(limit, verdict=lambda solved, results: Verdict(None, None))
 
 
-def _at_end(solved: SolvedRollers, wanted: tuple[Limit, ...], end: int) -> SolvedRollers:
+def _at_end(solved: SolvedRollers, limits: tuple[Limit, ...], end: int) -> SolvedRollers:
     """Return the rollers and their results with the placeholders at the worse (0) or the better (1) end."""
-    values, moved = dict(solved.values), solved.at_end(end)
-    there = of_patches(wanted)
-    for limit in (limit for limit in wanted if limit.moves(solved)):
-        if limit in there:
-            own = {one.name: values[f"_{end}_{one.name}"] for one in limit.results}
+    values = dict(solved.values)
+    moved = solved.at_end(end)
+    on_patches = of_patches(limits)
+    for limit in (limit for limit in limits if limit.moves(solved)):
+        if limit in on_patches:
+            own = {result.name: values[f"_{end}_{result.name}"] for result in limit.results}
         else:
             own = limit.evaluate(dataclasses.replace(moved, values=values))
         values |= own
     return dataclasses.replace(moved, values=values)
 
 
-def patch_limits(results: StageResults, options: Options, wanted: tuple[Limit, ...]) -> None:
+def patch_limits(results: StageResults, options: Options, limits: tuple[Limit, ...]) -> None:
     """Add the results of the limits that need the tractions of the patches, or what these limits share.
 
     Limits that rest on placeholders are also computed at both ends of their ranges, as `_0_NAME` and `_1_NAME`.
     """
     scene = results.scene
-    own, shared = of_patches(wanted), [limit for limit in wanted if limit.shared is not None]
+    own = of_patches(limits)
+    shared = [limit for limit in limits if limit.shared is not None]
     if not own and not shared:
         return
 
@@ -212,7 +221,8 @@ def validity(table: CaseTable, block: Block, options: Options) -> None:
     """Set the validity flags where the assumptions of the model do not hold, see `parameters.validity`."""
     v = block.values
     bit = {name: 1 << i for i, name in enumerate(VALIDITY)}
-    r_g, alpha = table.guide_profile_radius, np.deg2rad(table.contact_angle)
+    r_g = table.guide_profile_radius
+    alpha = np.deg2rad(table.contact_angle)
     r_a = rolling_radius(table.axis_distance, r_g, alpha)
     radii = [[table.roller_profile_radius, r_a / np.cos(alpha)], [r_g, table.guide_curve_radius / np.cos(alpha)]]
     smallest = np.min(np.abs(radii), axis=1).T
@@ -223,7 +233,9 @@ def validity(table: CaseTable, block: Block, options: Options) -> None:
 
     def warn(name: str, condition: np.ndarray) -> None:
         """Set a flag where the condition holds: (n,) of the pair of bodies, or (n, 2) of each body."""
-        body[:] |= np.where(condition if condition.ndim == 2 else condition[:, None], bit[name], 0).astype(np.int32)
+        if condition.ndim == 1:
+            condition = condition[:, None]
+        body[:] |= np.where(condition, bit[name], 0).astype(np.int32)
 
     with np.errstate(invalid="ignore"):
         warn("half_space", size[:, None] > 0.3 * smallest)

@@ -21,19 +21,20 @@ class PatchStresses:
     """
 
     def __init__(self, results: StageResults, options: Options) -> None:
-        self.results, self.options = results, options
+        self.results = results
+        self.options = options
         table = results.scene.table
         nu = np.stack([table.roller.poisson_ratio, table.guide.poisson_ratio], axis=1)
         if options.stress_bodies == "published":
             nu = np.repeat(nu.mean(axis=1, keepdims=True), 2, axis=1)
         self.poisson_ratio = np.concatenate([nu, nu])
 
-    def bounds(self, wanted: np.ndarray) -> np.ndarray:
-        """Return a lower bound of the peak stress below the m patches `wanted` (2 n,), (m, 2) [MPa]."""
+    def bounds(self, searched: np.ndarray) -> np.ndarray:
+        """Return a lower bound of the peak stress below the m patches `searched` (2 n,), (m, 2) [MPa]."""
         raise NotImplementedError
 
-    def peaks(self, asked: np.ndarray) -> Peak:
-        """Return the peak stresses [MPa] below the m patches `asked` (2 n,), arrays (m, 2)."""
+    def peaks(self, searched: np.ndarray) -> Peak:
+        """Return the peak stresses [MPa] below the m patches `searched` (2 n,), arrays (m, 2)."""
         raise NotImplementedError
 
     def at(self, flat: int, points: np.ndarray, body: int, sign: float) -> np.ndarray:

@@ -147,7 +147,8 @@ class StageResults:
 
     def in_mm(self, name: str) -> np.ndarray:
         """Return the result `name` in N and mm, (n, ...)."""
-        values, power = self.values[name], POWER.get(name, 0)
+        values = self.values[name]
+        power = POWER.get(name, 0)
         if power:
             return values * self.scene.unit.reshape(-1, *(1,) * (values.ndim - 1)) ** power
         return values
@@ -158,9 +159,9 @@ class StageResults:
         out[self.good] = flat_good
         return self.by_contact(out)
 
-    def of(self, asked: np.ndarray) -> tuple[Patch, Slip, np.ndarray, np.ndarray]:
-        """Return patch, slip, friction and roller numbers of the patches `asked`, as contact models take them."""
-        return self.patch.take(asked), self.slip.take(asked), self.friction[asked], self.rows[asked]
+    def of(self, patches: np.ndarray) -> tuple[Patch, Slip, np.ndarray, np.ndarray]:
+        """Return patch, slip, friction and roller numbers of the patches `patches`, as contact models take them."""
+        return self.patch.take(patches), self.slip.take(patches), self.friction[patches], self.rows[patches]
 
     def flag(self, name: str, condition: np.ndarray) -> None:
         """Set the validity flag `name` where the condition (n,) holds."""
@@ -170,14 +171,16 @@ class StageResults:
 def surface_tractions(results: StageResults) -> SurfaceTractions:
     """Return the tractions of the existing patches on a grid; they are computed at the first call."""
     if results.surface is None:
-        good, mirror = results.good, results.scene.mirror
-        asked = mirror.asked(good)
-        patch, slip, friction, rows = results.of(asked)
-        rolling = replace(slip, shift=np.where(results.slides_along[asked] == 0, slip.shift, 0.0))
+        good = results.good
+        mirror = results.scene.mirror
+        solved = mirror.to_solve(good)
+        patch, slip, friction, rows = results.of(solved)
+        rolling = replace(slip, shift=np.where(results.slides_along[solved] == 0, slip.shift, 0.0))
         # in full slip the tractions are known; without friction the model has nothing to solve
-        rubs = np.where(results.slides_along[asked] == 0, friction, 0.0)
+        rubs = np.where(results.slides_along[solved] == 0, friction, 0.0)
         t = mirror.spread_surface(good, results.scene.model.surface(patch, rolling, rubs, rows))
-        mu, along = results.friction[good], results.slides_along[good]
+        mu = results.friction[good]
+        along = results.slides_along[good]
         full = (along != 0)[:, None, None]
         results.surface = replace(
             t,

@@ -12,7 +12,8 @@ from trackroller.roller.stages.patch_stresses import PatchStresses
 from trackroller.roller.stages.scene import StageResults
 from trackroller.roller.stop import PEAK, compared, holds, parse_condition
 
-SECTION_SIDES, SECTION_DEPTH = 1.5, 2.0  # extent of the sections over the semi-axis and over the smaller semi-axis
+SECTION_SIDES = 1.5  # extent of the sections over the semi-axis
+SECTION_DEPTH = 2.0  # depth of the sections over the smaller semi-axis
 
 
 def stresses_of(results: StageResults, options: Options) -> PatchStresses:
@@ -38,10 +39,10 @@ def stop(results: StageResults, options: Options) -> None:
 
 def peak_bound(results: StageResults, options: Options) -> np.ndarray:
     """Return a lower bound of the peak stress of each contact and body, (n, 2, 2) [MPa]."""
-    wanted = results.good & ~np.tile(results.stopped, 2)
+    searched = results.good & ~np.tile(results.stopped, 2)
     out = np.full((2 * results.scene.n, 2), np.nan)
-    if wanted.any():
-        out[wanted] = stresses_of(results, options).bounds(wanted)
+    if searched.any():
+        out[searched] = stresses_of(results, options).bounds(searched)
     if options.stress_bodies == "published":
         out[:, 1] = out[:, 0]
     return results.by_contact(out)
@@ -51,14 +52,14 @@ def peak_stress(results: StageResults, options: Options) -> None:
     """Add the peak von Mises stress of each contact and body, its place and its error estimate."""
     good = results.good & ~np.tile(results.stopped, 2)
     mirror = results.scene.mirror
-    asked = mirror.asked(good)
-    peak = stresses_of(results, options).peaks(asked)
+    solved = mirror.to_solve(good)
+    peak = stresses_of(results, options).peaks(solved)
     quantities = {
         "peak_stress": (peak.stress, 1.0),
         "peak_x": (peak.x, -1.0),
         "peak_y": (peak.y, 1.0),
         "peak_z": (peak.z, 1.0),
-        "error_estimate": (peak.error + results.scene.model.peak_error * results.friction[asked][:, None], 1.0),
+        "error_estimate": (peak.error + results.scene.model.peak_error * results.friction[solved][:, None], 1.0),
     }
     for name, (value, sign) in quantities.items():
         full = np.full((2 * results.scene.n, 2), np.nan)
@@ -71,7 +72,9 @@ def peak_stress(results: StageResults, options: Options) -> None:
 
 def subsurface(results: StageResults, options: Options) -> None:
     """Add all stress components on the two section planes through each peak."""
-    m, n, v = options.settings.section_points, results.scene.n, results.values
+    m = options.settings.section_points
+    n = results.scene.n
+    v = results.values
     depths = (m + 1) // 2
     sizes: dict[str, tuple[int, ...]] = {"xz_x": (m,), "xz_z": (depths,), "yz_y": (m,), "yz_z": (depths,)}
     sizes |= {"von_mises_xz": (depths, m), "von_mises_yz": (depths, m)}
@@ -90,7 +93,9 @@ def _sections(
     results: StageResults, options: Options, stresses: PatchStresses, flat: int, place: tuple[int, int, int]
 ) -> None:
     """Fill the two sections through the peak at `place`: number of the case, contact and body."""
-    v, patch, (case, contact, body) = results.values, results.patch, place
+    v = results.values
+    patch = results.patch
+    case, contact, body = place
     m = options.settings.section_points
     a, b = patch.semi_axis_lateral[flat], patch.semi_axis_rolling[flat]
     across = patch.centre[flat] + np.linspace(-SECTION_SIDES * a, SECTION_SIDES * a, m)
@@ -106,4 +111,5 @@ def _sections(
         v[f"stress_{plane}"][case, :, contact, body] = stress.T.reshape(6, depth.size, m)
         v[f"von_mises_{plane}"][place] = von_mises(stress).reshape(depth.size, m)
         v[f"{plane}_z"][place] = depth
-    v["xz_x"][place], v["yz_y"][place] = across, along
+    v["xz_x"][place] = across
+    v["yz_y"][place] = along

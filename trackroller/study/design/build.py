@@ -213,14 +213,19 @@ def _friction(materials: MaterialDatabase, columns: dict[str, np.ndarray]) -> tu
     records = []
 
     @functools.cache
-    def known(value: Any, roller: str, guide: str) -> float:
+    def coefficient(value: Any, roller: str, guide: str) -> float:
+        """Return the coefficient of a case; one from the database is recorded."""
         if isinstance(value, (int, float)) and not math.isnan(value):
             return float(value)
         level = None
         if isinstance(value, str) and value in FRICTION_LEVELS:
             level = value
-        records.append(materials.friction_record(roller, guide, level))
-        return float(records[-1]["value"])
+        record = materials.friction_record(roller, guide, level)
+        records.append(record)
+        return float(record["value"])
 
-    coefficients = _mapped(known, float, values, *(_mapped(str, object, columns[name]) for name in MATERIAL_FIELDS))
-    return coefficients, {FRICTION: json.dumps(records)} if records else {}
+    names = [_mapped(str, object, columns[name]) for name in MATERIAL_FIELDS]
+    coefficients = _mapped(coefficient, float, values, *names)
+    if not records:
+        return coefficients, {}
+    return coefficients, {FRICTION: json.dumps(records)}

@@ -126,14 +126,13 @@ _WithKeys = create_model(
         for name, (key, method) in study_keys().items()
     },
 )
+_TYPES_OF_OPTIONS: dict[str, Any] = {option.name: _TYPES.get(option.kind, str) for option in IN_STUDY}
+_TYPES_OF_OPTIONS |= {option.name: str | tuple[str, ...] for option in IN_STUDY if option.factor}
 _WithOptions = create_model(
     "_WithOptions",
     __base__=_WithKeys,
     **{  # type: ignore[call-overload]
-        option.name: (
-            str | tuple[str, ...] if option.factor else _TYPES.get(option.kind, str),
-            Field(option.default, description=option.meaning),
-        )
+        option.name: (_TYPES_OF_OPTIONS[option.name], Field(option.default, description=option.meaning))
         for option in IN_STUDY
     },
 )

@@ -14,7 +14,7 @@ import numpy as np
 import pandas as pd
 
 from trackroller.errors import Collector, InputError
-from trackroller.files import opened
+from trackroller.files import UTF_16, opened
 from trackroller.numerics.numbers import number_or_nan
 from trackroller.numerics.table_cells import Refused, decimal_signs, plain_column
 from trackroller.numerics.units import in_unit, split_quantity
@@ -28,7 +28,6 @@ MOST_BYTES = 500_000_000  # of a log; its numbers take about as much memory
 FIRST_BYTES = 200_000  # of a log, in which heads, units and decimal sign show
 PIECE = 200_000  # lines that are read at once
 SMALLER = "Split the log, write a spectrum of each part, and put the blocks of all of them into one file."
-UTF_16 = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
 
 
 @dataclass

@@ -279,7 +279,8 @@ def by_limit(spectrum: Spectrum, solved: xr.Dataset, by_curve: np.ndarray, break
         for name in ("utilisation", *(f"life_hours_by_limit{end}" for end in verdict.ENDS))
     )
     travel = np.array([block.hours for block in spectrum.blocks])[:, None, None]
-    worst = np.argmax(np.nan_to_num(by_curve.sum(axis=0), nan=np.inf), axis=0)
+    unknown = np.isnan(by_curve.sum(axis=0))  # such a track counts before a known one
+    worst = np.argmax(np.where(unknown == unknown.any(axis=0), np.nansum(by_curve, axis=0), -1.0), axis=0)
     of_fatigue = np.take_along_axis(by_curve, worst[None, None], axis=1)[:, 0]
     most = np.max(np.where(travel > 0, used, 0.0), axis=0)
     # D_crit belongs to Miner's rule of the S-N curve; other limits are reached at a sum of 1

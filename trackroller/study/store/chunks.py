@@ -21,7 +21,7 @@ from trackroller.files import memory
 from trackroller.parameters import REGIMES
 from trackroller.roller.dataset import file_attributes, joined
 from trackroller.study.store.digests import sums_up
-from trackroller.study.store.identity import chunk_name
+from trackroller.study.store.fingerprint import chunk_name
 from trackroller.study.store.netcdf import too_large
 from trackroller.study.store.put import put_unlisted
 

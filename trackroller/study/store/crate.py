@@ -24,7 +24,7 @@ from trackroller.files import sha256
 from trackroller.roller.differences import Difference, compare
 from trackroller.study.store.crate_entries import CRATE, crate_graph
 from trackroller.study.store.folder import StudyFolder, check_readable
-from trackroller.study.store.inputs import study_of_folder
+from trackroller.study.store.input_files import study_of_folder
 from trackroller.study.store.manifest import REPORT, check_unaltered, digests_of
 from trackroller.study.store.netcdf import read_result
 from trackroller.study.store.provenance import versions

@@ -23,8 +23,8 @@ from trackroller.files import (
 )
 from trackroller.study.store.manifest import BLOCK, GATHERED, SCRATCH, WHAT, Manifest, files_below, remove_empty
 from trackroller.study.store.mark import MARK, OURS, is_study, read_mark, signed
+from trackroller.study.store.program_digest import solver_digest
 from trackroller.study.store.put import put_unlisted, sweep
-from trackroller.study.store.sources import solver_digest
 from trackroller.yaml_file import parse_mapping
 
 Tell = Callable[[str], None]

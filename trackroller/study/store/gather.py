@@ -16,11 +16,11 @@ from trackroller.files import reserve
 from trackroller.roller.dataset import file_attributes, united
 from trackroller.study.store import chunks
 from trackroller.study.store.folder import Tell, reporting, unheard
-from trackroller.study.store.labels import labelled
 from trackroller.study.store.ledger import Ledger
 from trackroller.study.store.manifest import digests_of
 from trackroller.study.store.provenance import DATE
 from trackroller.study.store.put import put
+from trackroller.study.store.solved_dataset import labelled
 
 MOST_MEMORY = 10_000_000  # bytes of a result in memory; a larger one lies in a temporary file
 
@@ -67,8 +67,8 @@ def gather(ledger: Ledger, tell: Tell = unheard, attrs: Mapping[str, str] | None
     ledger = ledger.anew()
     if not digests_of(folder.design):
         write_design(ledger)
-    count = len(ledger.place)
-    missing = int((ledger.place < 0).sum())
+    count = len(ledger.state_number)
+    missing = int((ledger.state_number < 0).sum())
     if missing:
         damaged = "".join(f" Corrupt: {reason}." for reason in ledger.corrupt.values())
         raise WorkError(f"{missing} of {count} cases are not solved.{damaged} Start the run again.")
@@ -94,7 +94,7 @@ def collect(ledger: Ledger, solved: slice | np.ndarray = slice(None)) -> xr.Data
     solved : slice or numpy.ndarray of int, shape (n,)
         The wanted cases of the design, each of which is solved; all by default.
     """
-    place = ledger.place[solved]
+    place = ledger.state_number[solved]
     results: dict[Hashable, xr.Variable] = {}
     coords: dict[Hashable, xr.Variable] = {}
     attrs: dict[str, Any] = {}

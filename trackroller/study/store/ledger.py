@@ -34,13 +34,13 @@ from trackroller.study.design.levels import in_words
 from trackroller.study.file.config import check_name
 from trackroller.study.store import chunks
 from trackroller.study.store.crate_entries import CRATE
+from trackroller.study.store.fingerprint import StudyCases, chunk_name, solver_and_materials
 from trackroller.study.store.folder import StudyFolder, Tell, unheard
-from trackroller.study.store.identity import Cases, chunk_name, solver_and_materials
-from trackroller.study.store.inputs import store_inputs
+from trackroller.study.store.input_files import store_inputs
 from trackroller.study.store.manifest import Manifest
+from trackroller.study.store.program_digest import solver_digest
 from trackroller.study.store.provenance import now
 from trackroller.study.store.put import sweep
-from trackroller.study.store.sources import solver_digest
 from trackroller.yaml_file import parse_mapping
 
 if TYPE_CHECKING:
@@ -59,7 +59,7 @@ class Ledger:
 
     Attributes
     ----------
-    cases : Cases
+    cases : StudyCases
         The cases of the study, which a process builds and identifies once.
     folder : StudyFolder
         Files of the study.
@@ -73,7 +73,7 @@ class Ledger:
         Names of the files that hold the cases which are in no planned chunk.
     """
 
-    cases: Cases
+    cases: StudyCases
     folder: StudyFolder
     chunks: dict[str, int] = field(default_factory=dict)
     size: int = 0
@@ -135,11 +135,11 @@ class Ledger:
     def find(self, fingerprints: np.ndarray) -> np.ndarray:
         """Return the index of each wanted case in `states`, shape (n,); -1 marks a case that is not solved."""
         cases = self.states["case"].values
-        place = np.searchsorted(cases, fingerprints)
-        return np.where(np.append(cases, b"")[place] == fingerprints, place, -1)
+        number = np.searchsorted(cases, fingerprints)
+        return np.where(np.append(cases, b"")[number] == fingerprints, number, -1)
 
     @cached_property
-    def place(self) -> np.ndarray:
+    def state_number(self) -> np.ndarray:
         """Return the index of each case of the design in `states`, shape (n,); -1 marks a case that is not solved."""
         return self.find(self.cases.fingerprints)
 
@@ -188,7 +188,9 @@ def read_ledger(study: Study, folder: StudyFolder) -> Ledger | None:
     record = folder.record()
     if record.get("key") != plan_key(study):
         return None
-    return Ledger(Cases(study), folder, record["chunks"], record["size"], record["distinct"], tuple(record["uses"]))
+    return Ledger(
+        StudyCases(study), folder, record["chunks"], record["size"], record["distinct"], tuple(record["uses"])
+    )
 
 
 def sound_ledger(files: Ledger) -> tuple[Ledger | None, list[str]]:
@@ -222,8 +224,8 @@ def planned(files: Ledger) -> Ledger:
     names = cases.fingerprints
     options, group = cases.options
     distinct, first = np.unique(names, return_index=True)
-    place = files.find(distinct)
-    missing = np.sort(first[place < 0])
+    state_number = files.find(distinct)
+    missing = np.sort(first[state_number < 0])
     size = chunk_size(study, len(missing))
     columns = {name: cases.design[name].values for name in case_columns(cases.design)}
     # a value that all cases share is written once
@@ -241,7 +243,7 @@ def planned(files: Ledger) -> Ledger:
         attrs = {"options": json.dumps(options[group[part[0]]]), "identity": identity, "words": words}
         chunks.write(folder.case_list(name), block.assign_attrs(attrs))
         sizes[name] = len(part)
-    uses = sorted(files.paths[i].name for i in np.unique(files.states["file"].values[place[place >= 0]]))
+    uses = sorted(files.paths[i].name for i in np.unique(files.states["file"].values[state_number[state_number >= 0]]))
     return replace(files, chunks=sizes, size=len(names), distinct=len(distinct), uses=tuple(uses))
 
 
@@ -256,10 +258,10 @@ def unused_cases(ledger: Ledger) -> str:
     study = ledger.study
     folder = ledger.folder
     solved = ledger.states.sizes["case"]
-    place = ledger.place
+    state_number = ledger.state_number
     if study.config.method.proposes or study.config.until is not None:  # each step is a design of its own
         return ""
-    unused = solved - len(np.unique(place[place >= 0]))
+    unused = solved - len(np.unique(state_number[state_number >= 0]))
     if not unused or folder.of_another_solver:
         return ""
     before = folder.earlier()
@@ -390,7 +392,7 @@ def _plan(study: Study, folder: StudyFolder, tell: Tell, rerun_failed: bool) -> 
     if folder.of_another_solver:
         tell(f"the solver's code has changed since {folder.root} was planned: all its cases are solved anew")
     _check_same_study(study, folder)
-    files = Ledger(Cases(study), folder)
+    files = Ledger(StudyCases(study), folder)
     _check_files(files)
     sweep(folder.root)
     if rerun_failed:

@@ -18,7 +18,7 @@ from trackroller.parameters import OPTIONS
 from trackroller.roller.dataset import file_attributes
 from trackroller.roller.stored_inputs import NOT_GIVEN
 from trackroller.study.store.mark import STORE_FORMAT
-from trackroller.study.store.sources import solver_digest
+from trackroller.study.store.program_digest import solver_digest
 
 if TYPE_CHECKING:
     from trackroller.study.file.study import Study

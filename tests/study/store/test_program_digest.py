@@ -11,18 +11,18 @@ from pathlib import Path
 import pytest
 import test_resume
 
-from trackroller.study.store import sources
+from trackroller.study.store import program_digest
 
 HERE = Path(__file__).parents[1]
-ROOT = sources.PACKAGE.parent
+ROOT = program_digest.PACKAGE.parent
 
 
 def names(room: str) -> set[str]:
-    return {path.relative_to(sources.PACKAGE).as_posix() for path in sources.room_files(room)}
+    return {path.relative_to(program_digest.PACKAGE).as_posix() for path in program_digest.room_files(room)}
 
 
 def test_the_solver_depends_on_its_rooms_and_their_data():
-    found = names(sources.SOLVER)
+    found = names(program_digest.SOLVER)
     wanted = """roller/geometry.py roller/case.py roller/solver.py parameters/__init__.py parameters/options.py
     roller/expected_errors.json contact/table/kalker_table.npz contact/kalker_linear.csv damage/fatigue.py errors.py
     contact/profiles.py numerics/quadrature.py materials/materials.yaml"""
@@ -34,21 +34,21 @@ def test_the_solver_depends_on_its_rooms_and_their_data():
 def test_every_shipped_file_belongs_to_a_room():
     """The digest would leave out a file of another kind, or of another room."""
     shipped = {
-        path.relative_to(sources.PACKAGE).as_posix()
-        for path in sources.PACKAGE.rglob("*")
+        path.relative_to(program_digest.PACKAGE).as_posix()
+        for path in program_digest.PACKAGE.rglob("*")
         if path.is_file() and "__pycache__" not in path.parts
     }
-    assert shipped - {"py.typed", "__init__.py"} == names(sources.ROOMS[-1])
+    assert shipped - {"py.typed", "__init__.py"} == names(program_digest.ROOMS[-1])
 
 
 def test_digest_file_keeps_its_date(tmp_path):
-    path = Path(sources.digest_file(tmp_path / "code", "roller"))
+    path = Path(program_digest.digest_file(tmp_path / "code", "roller"))
     os.utime(path, (1, 1))
-    assert sources.digest_file(tmp_path / "code", "roller") == str(path)
+    assert program_digest.digest_file(tmp_path / "code", "roller") == str(path)
     assert path.stat().st_mtime == 1
     path.write_text("another\n")
-    sources.digest_file(tmp_path / "code", "roller")
-    assert path.read_text().strip() == sources.code_digest("roller")
+    program_digest.digest_file(tmp_path / "code", "roller")
+    assert path.read_text().strip() == program_digest.code_digest("roller")
 
 
 GEOMETRY = Path("roller") / "geometry.py"
@@ -76,21 +76,23 @@ def edit(package: Path, change: str) -> None:
 @pytest.fixture
 def copied(tmp_path):
     """Copy the package and return the folder of the copy."""
-    return shutil.copytree(sources.PACKAGE, tmp_path / "trackroller", ignore=shutil.ignore_patterns("__pycache__"))
+    return shutil.copytree(
+        program_digest.PACKAGE, tmp_path / "trackroller", ignore=shutil.ignore_patterns("__pycache__")
+    )
 
 
 @pytest.mark.parametrize("change", CHANGES)
 def test_only_a_change_in_a_room_changes_its_digest(copied, change, monkeypatch):
-    before = sources.code_digest(sources.SOLVER)
-    monkeypatch.setattr(sources, "PACKAGE", copied)
-    assert sources.code_digest(sources.SOLVER) == before, "the place of a package does not count"
+    before = program_digest.code_digest(program_digest.SOLVER)
+    monkeypatch.setattr(program_digest, "PACKAGE", copied)
+    assert program_digest.code_digest(program_digest.SOLVER) == before, "the place of a package does not count"
     (copied / "roller" / "__pycache__").mkdir()
     (copied / "roller" / "__pycache__" / "geometry.pyc").touch()
     (copied / "roller" / "geometry.py~").touch()
     (copied / "roller" / ".geometry.py").touch()
-    assert sources.code_digest(sources.SOLVER) == before, "what Python or an editor leaves does not count"
+    assert program_digest.code_digest(program_digest.SOLVER) == before, "what Python or an editor leaves does not count"
     edit(copied, change)
-    assert (sources.code_digest(sources.SOLVER) != before) == CHANGES[change][3]
+    assert (program_digest.code_digest(program_digest.SOLVER) != before) == CHANGES[change][3]
 
 
 @pytest.mark.long

@@ -7,7 +7,7 @@ versions of the program rarely differ by comments alone, and no rule has to say 
 The solver's digest is part of each case's fingerprint (`solver_digest`). Rules of the workflow depend on a digest file
 instead of on source files, because the date of a source file changes when a copy is made::
 
-    from trackroller.study.store.sources import digest_file
+    from trackroller.study.store.program_digest import digest_file
 
     rule sensitivity:
         input:
@@ -18,7 +18,7 @@ instead of on source files, because the date of a source file changes when a cop
 
 Examples
 --------
->>> from trackroller.study.store.sources import code_digest, room_files
+>>> from trackroller.study.store.program_digest import code_digest, room_files
 >>> [path.name for path in room_files("errors")]
 ['environment.py', 'errors.py']
 >>> len(code_digest("errors"))

@@ -2,7 +2,7 @@
 
 A fingerprint is the SHA-256 (first 128 bits, as hexadecimal digits) of
 
-- the digest of the solver's source and data files (`trackroller.study.store.sources.solver_digest`),
+- the digest of the solver's source and data files (`trackroller.study.store.program_digest.solver_digest`),
 - the source of a contact model from outside,
 - the options of `solve` where they matter to the case (`trackroller.parameters.OPTIONS` says where),
 - the numeric parameters with the friction coefficient resolved, the friction law and the drawn profiles,
@@ -33,7 +33,7 @@ from trackroller.roller.case import CaseTable, MaterialArrays, to_table
 from trackroller.roller.case_table import TEXTS
 from trackroller.roller.options import options_of_cases
 from trackroller.study.design.carriage_cases import ROW
-from trackroller.study.store.sources import solver_digest
+from trackroller.study.store.program_digest import solver_digest
 
 if TYPE_CHECKING:
     from trackroller.study.file.study import Study
@@ -111,7 +111,7 @@ def solver_and_materials(database: MaterialDatabase) -> str:
 
 
 @dataclass(frozen=True)
-class Cases:
+class StudyCases:
     """The cases of a study, which are built and identified when they are first needed, and only once."""
 
     study: Study

@@ -1,0 +1,103 @@
+"""The record of a carriage against its rollers, each solved alone: limits, requirements, second models, materials."""
+
+import numpy as np
+import pytest
+from carts import ROLLER, cart, rollers_below, rollers_between, shuttle
+
+import trackroller as tr
+from trackroller.report.headlines import headline_of
+from trackroller.results.carriage_answer import answer_of_carriage
+
+POM = ROLLER | {"guide_material": "POM-C", "permissible_wear_depth": 0.2, "guide_overrollings_per_hour": 60}
+LAW = {"radial_force": 90.0, "axial_force": 40.0, "basic_life": 100.0, "law": "lubricated"}
+
+
+def alone(ds, roller, values):
+    """Return the results of one roller in each load case, and the share of the hours of each load case."""
+    own = ds.sel(roller=roller)
+    fields = {name: value for name, value in values.items() if name not in ("contact_model", "requirement")}
+    cases = []
+    for case in ds["load_case"].values:
+        loads = {name: float(own[name].sel(load_case=case)) for name in ("radial_force", "axial_force")}
+        speed = float(ds["speed"].sel(load_case=case))
+        loads |= {} if np.isnan(speed) else {"velocity": 60 * speed}
+        cases.append(tr.Case(**{**fields, **loads}))
+    solved = tr.solve(cases, ("forces", "peak_stress", "life", "limits"), contact_model="sliding")
+    time = ds["share"].values / np.array([case.velocity for case in cases])
+    return solved, time
+
+
+@pytest.fixture(scope="module")
+def polymer():
+    return tr.carriage(shuttle(rollers=rollers_between(roller=POM)))
+
+
+def test_limits_are_those_of_the_rollers_over_the_load_cases(polymer):
+    for roller in ("FL", "RR"):
+        solved, time = alone(polymer, roller, POM)
+        own = polymer.sel(roller=roller)
+        np.testing.assert_allclose(
+            own["utilisation"].sel(limit=solved["limit"].values), solved["utilisation"].max("case"), rtol=1e-12
+        )
+        for body in ("roller", "guide"):
+            hours = solved["life_hours_by_limit"].sel(limit="wear", body=body).values
+            mean = time.sum() / np.sum(time / hours)  # Palmgren-Miner by hand
+            assert float(own["life_hours_by_limit"].sel(limit="wear", body=body)) == pytest.approx(mean, rel=1e-9)
+
+
+def test_what_was_not_checked_is_listed_by_body(polymer):
+    left = answer_of_carriage(polymer).not_checked
+    roller, _ = alone(polymer, "FL", POM)
+    for body in ("roller", "guide"):
+        words = " ".join(left[body])
+        for limit in ("rating", "heat", "wear", "fatigue", "shakedown"):
+            unknown = bool(roller["utilisation"].sel(limit=limit, body=body).isnull().all())
+            unknown &= bool(roller["life_hours_by_limit"].sel(limit=limit, body=body).isnull().all())
+            assert (limit in words) == unknown, (limit, body)
+    assert "rating (material 'POM-C' has no hardness)" in left["guide"]
+
+
+def test_values_that_nobody_measured_or_gave_are_warnings(polymer):
+    codes = {}
+    for caution in answer_of_carriage(polymer).warnings:
+        codes.setdefault(caution.code, []).append(caution.where)
+    assert [text.partition(":")[0] for text in codes["guessed"]] == ["1.7225-quenched-tempered", "POM-C"]
+    assert any("axis distance" in text and "axial force" not in text for text in codes["not_given"])
+
+
+def test_a_catalogue_that_is_exceeded_comes_first_and_one_that_ends_sooner_is_told():
+    rollers = rollers_below(catalogue=LAW)
+    rollers["RR"]["catalogue"] = LAW | {"radial_force": 400.0}
+    ds = tr.carriage(cart(rollers=rollers, cases=[{"name": "run", "speed": "1 m/s"}]))
+    answer = answer_of_carriage(ds)
+    factors = {name: float(-ds["radial_force"].sel(roller=name)[0]) / 90.0 for name in ("FL", "FR", "RL")}
+    worst = max(factors, key=factors.get)
+    assert factors[worst] > 1
+    assert headline_of(answer).text.startswith(
+        f"Catalogue of the roller {worst} exceeded ({100 * factors[worst]:.0f} %)"
+    )
+    assert answer.headline["exceeded"][0]["km"] == pytest.approx(100 / (0.03 + 0.97 * factors[worst]) ** 3, rel=1e-9)
+    (told,) = [one.where for one in answer.warnings if one.code == "second_model" and "catalogue" in one.where]
+    km = 100 / (0.03 + 0.97 * float(-ds["radial_force"].sel(roller="RR")[0]) / 400.0) ** 3
+    assert ("RR" in told) == (km < float(ds["life_km"].sel(roller="RR")))
+    assert not any("catalogue" in words for words in answer.not_checked["roller"])
+
+
+def test_the_life_that_files_of_rollers_require_is_judged():
+    cases = [{"name": "slow", "share": 0.25, "speed": "0.5 m/s"}, {"name": "fast", "share": 0.75, "speed": "1 m/s"}]
+    ds = tr.carriage(cart(cases=cases))
+    life = {name: float(ds["life_hours"].sel(roller=name)) for name in ("FL", "RR")}
+    pace = 0.25 / 1.8 + 0.75 / 3.6  # hours a km
+    for share, state in ((0.5, "met"), (2.0, "missed")):
+        travel = ROLLER | {"required_travel": share * life["FL"] / pace, "permissible_wear_depth": 50}
+        rollers = rollers_below(roller=travel)
+        own = tr.carriage(cart(cases=cases, rollers=rollers))
+        answer = answer_of_carriage(own)
+        assert answer.headline["state"] == state and f": {state}" in headline_of(answer).text
+        assert answer.required[0].least == pytest.approx(share * life["FL"], rel=1e-6)
+    rollers = rollers_below()
+    rollers["RR"]["roller"] = ROLLER | {"requirement": {"pair_life_hours": {"min": 2 * life["RR"]}, "slip": {"max": 1}}}
+    answer = answer_of_carriage(tr.carriage(cart(cases=cases, rollers=rollers)))
+    assert answer.headline["state"] == "missed" and answer.headline["of"] == ["RR"]
+    assert dict(zip(answer.table["roller"], answer.table["state"], strict=True))["FL"] == ""
+    assert any("requirement.slip in its file is not judged" in one.where for one in answer.warnings)
