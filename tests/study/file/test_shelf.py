@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from typer.testing import CliRunner
 
 import trackroller as tr
+from trackroller.cli.main import app
 from trackroller.errors import InputError
 from trackroller.study.file.load import load_study, parse_study
+from trackroller.yaml_file import write_yaml
 
 HEAD = "name;axis_distance [mm];roller_profile_radius [mm];roller_material;mass [kg];price [EUR];order number"
 ROWS = (
@@ -90,6 +93,25 @@ def test_a_changed_file_is_noticed_and_only_its_rows_are_solved(tmp_path, monkey
     assert again.data["price"].values[0] == 11.0
     kept = [path.name for path in (tmp_path / "out" / "shelf" / "inputs" / "given").iterdir()]
     assert len(kept) == 1 and kept[0].endswith("-rollers.csv")
+
+
+def test_a_study_of_a_shelf_goes_on_and_is_repeated_from_its_folder(tmp_path, monkeypatch):
+    keys = {"name": "shelf", "base": USE, "factors": FACTORS} | QUICK
+    study(tmp_path, monkeypatch)
+    (tmp_path / "study.yaml").write_text(write_yaml(keys), encoding="utf-8")
+    assert command("run", "study.yaml", "-q").exit_code == 0
+    (tmp_path / "rollers.csv").write_text("\n".join([HEAD, *ROWS]).replace("12.50", "11") + "\n", encoding="utf-8")
+    assert "nothing is left to solve" in command("run", "study.yaml", "-q").output  # a price changes no case
+    (tmp_path / "rollers.csv").unlink()
+    assert command("verify", "results/shelf").exit_code == 0
+    again = command("rerun", "results/shelf", "--results", "again")
+    assert again.exit_code == 0 and "equal in every number" in " ".join(again.output.split())
+    assert tr.open_study("again/shelf").data["price"].values[0] == 11.0
+
+
+def command(*words):
+    """Return what the command line does."""
+    return CliRunner().invoke(app, list(words))
 
 
 def test_an_empty_cell_takes_the_value_of_base(tmp_path, monkeypatch):
