@@ -296,6 +296,30 @@ REMEDIES: dict[str, tuple[Any, dict[str, Any], str, dict[str, Any]]] = {
         "Only expressions may stand beside a table.",
         {"table": "cases.csv", "design": "table", "factors": {"motor_force": {"expression": "0.1 * axial_force"}}},
     ),
+    "a column without a blank in its name": (
+        study,
+        {"table": "blank.csv", "design": "table", "factors": {}, "constraints": ["load case != 'b' and slip < 0.1"]},
+        "Write load_case: a column is known by this name, too.",
+        {"table": "blank.csv", "design": "table", "factors": {}, "constraints": ["load_case != 'b' and slip < 0.1"]},
+    ),
+    "a column of numbers without a blank in its name": (
+        study,
+        {"table": "number.csv", "design": "table", "factors": {}, "constraints": ["load case < 3"]},
+        "Write load_case: a column is known by this name, too.",
+        {"table": "number.csv", "design": "table", "factors": {}, "constraints": ["load_case < 3"]},
+    ),
+    "a column without a blank, which was written as a text": (
+        study,
+        {"table": "run.csv", "design": "table", "factors": {}, "constraints": ["'run no' < 3"]},
+        "Write run_no: a column is known by this name, too.",
+        {"table": "run.csv", "design": "table", "factors": {}, "constraints": ["run_no < 3"]},
+    ),
+    "and in small letters": (
+        study,
+        {"constraints": ["slip < 0.1 AND max_pressure_1 < 900"]},
+        "Write and, or, not in small letters.",
+        {"constraints": ["slip < 0.1 and max_pressure_1 < 900"]},
+    ),
     "write the parameter's name": (
         study,
         {"table": "wrong.csv", "design": "table", "factors": {}},
@@ -334,6 +358,9 @@ def test_what_the_message_says_gives_a_result(name, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     Path("cases.csv").write_text(TABLE)
     Path("wrong.csv").write_text(TABLE.replace("axial_force", "axial load"))
+    Path("blank.csv").write_text("load case,axial_force\na,0\nb,10\n")
+    Path("run.csv").write_text("run no,axial_force\n1,0\n4,10\n")
+    Path("number.csv").write_text("load case,axial_force\n1,0\n4,10\n")
     do, wrong, remedy, mended = REMEDIES[name]
     with pytest.raises(tr.InputError) as caught:
         do(**wrong)

@@ -131,3 +131,51 @@ def test_only_a_study_keeps_its_finished_cases(tmp_path):
     (study.parent.parent / STUDY_MARK).write_text("{}")
     assert "finished case" not in str(disk_error(full, alone))
     assert "every finished case is kept" in str(disk_error(full, study))
+
+
+ODD = ["=1+1", "+20 N", "-x", "@SUM(A1)"]
+
+
+@pytest.mark.parametrize("name", ODD)
+@pytest.mark.parametrize("ending", ["csv", "xlsx"])
+def test_a_table_that_was_written_has_the_same_names_when_it_is_read(tmp_path, monkeypatch, name, ending):
+    """A material, a load case and a roller may have any name: what we write is inert, and is read as it was meant."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "config").mkdir()
+    add_material(tmp_path / "config/materials.yaml", name, like="PA6")
+    table = pd.DataFrame({"label": [name, "b"], "roller_material": ["PA6", name], "velocity": [60.0, 70.0]})
+    path = write_cases(table, tmp_path / f"t.{ending}")
+    study = {"name": "s", "design": "table", "table": path.name, "outputs": ["forces"], "contact_model": "sliding"}
+    read = tr.load_study(study).drawn.columns
+    assert read["label"].tolist() == [name, "b"] and read["roller_material"].tolist() == ["PA6", name]
+
+
+@pytest.mark.parametrize("name", ODD)
+def test_the_study_of_a_carriage_keeps_names_of_rollers_cases_and_materials(tmp_path, monkeypatch, name):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "config").mkdir()
+    add_material(tmp_path / "config/materials.yaml", name, like="PA6")
+    roller = ROLLER | {"roller": {"contact_model": "sliding", "velocity": 60}}
+    places = {name: [-100, 40, 0], "B": [100, 40, 0], "C": [-100, -40, 0], "D": [100, -40, 0]}
+    rollers = {key: roller | {"at": at} for key, at in places.items()}
+    rollers[name]["roller"] = {"contact_model": "sliding", "velocity": 60, "roller_material": name}
+    cart = CART | {"rollers": rollers, "cases": [{"name": name, "speed": 1}]}
+    (tmp_path / "cart.yaml").write_text(yaml.safe_dump(cart))
+    trackroller("carriage", "cart.yaml", "--study", "-o", "loads.yaml", cwd=tmp_path)
+    assert all(
+        cell[:1] not in "=+@"
+        for line in (tmp_path / "loads.csv").read_text().splitlines()[1:]
+        for cell in line.split(",")
+    )
+    read = tr.load_study("loads.yaml").drawn.columns
+    assert set(read["load_case"]) == {name} and name in read["roller"] and name in read["roller_material"]
+
+
+def test_a_formula_in_a_table_is_refused_and_a_name_with_an_apostrophe_is_taken(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    study = {"name": "s", "design": "table", "table": "t.csv", "outputs": ["forces"]}
+    (tmp_path / "t.csv").write_text("label,velocity\n=1+1,60\nb,70\n")
+    with pytest.raises(InputError, match=r"this is a formula\. Write its value; if it is a name, write ' before it"):
+        tr.load_study(study)
+    (tmp_path / "t.csv").write_text("label,velocity\n'=1+1,60\nb,70\n")
+    assert tr.load_study(study).drawn.columns["label"].tolist() == ["=1+1", "b"]

@@ -23,6 +23,7 @@ _WHERE = {
     "fit_bench": "trackroller.fit.bench",
     "fit_sn": "trackroller.fit.coupons",
     "next_tests": "trackroller.fit.next_tests",
+    "patch": "trackroller.one_patch.solve",
     "solve": "trackroller.roller.solver",
     "load_study": "trackroller.study.file.load",
     "open_study": "trackroller.results.stored_study",
@@ -53,6 +54,7 @@ if TYPE_CHECKING:
     from trackroller.halfspace.stress import stress_on_grid as stress_on_grid
     from trackroller.halfspace.stress import von_mises as von_mises
     from trackroller.materials import load_database as load_database
+    from trackroller.one_patch.solve import patch as patch
     from trackroller.report.show import explore as explore
     from trackroller.report.show import workbook as workbook
     from trackroller.results.size import size as size

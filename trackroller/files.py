@@ -527,13 +527,25 @@ def reserve(file: IO[bytes], size: int) -> None:
 def inert_cell(value: Any) -> Any:
     """Return a cell of a table with an apostrophe before a text that a spreadsheet would run as a formula.
 
-    Numbers stay as they are, as texts too.
+    Numbers stay as they are, as texts too. No name is refused for its first sign, because `+20 N` may name a load case:
+    each table that is written has inert cells, and each that is read has them as they were, see `cell_as_meant`.
     """
     if not isinstance(value, str) or not value.startswith(("=", "+", "-", "@", "\t", "\r")):
         return value
     if re.fullmatch(r"[+-]?[\d.,]+(e[+-]?\d+)?|[+-]inf", value):
         return value
     return f"'{value}"
+
+
+def cell_as_meant(cell: str) -> str:
+    """Return a cell of a table without the apostrophe that `inert_cell` has put before it, or a person.
+
+    Examples
+    --------
+    >>> cell_as_meant("'=1+1"), cell_as_meant("'30s"), cell_as_meant("'-5")
+    ('=1+1', "'30s", "'-5")
+    """
+    return cell[1:] if cell.startswith("'") and inert_cell(cell[1:]) == cell else cell
 
 
 def sha256(path: Path) -> str:

@@ -49,12 +49,19 @@ def _measured() -> Any:
 
 
 def errors() -> str:
-    """Return the text of the file of expected errors from the stored data: median, 95 and 99 %, and bound."""
+    """Return the text of the file of errors from the stored data.
+
+    Errors of discretisation have median, 95 and 99 %, and bound; told errors have their factors and errors of ratios.
+    """
     models: dict[str, Any] = {}
     for row in _measured()["rungs"]:
         levels = {name: [float(f"{float(v):.3g}") for v in own] for name, own in row["levels"].items()}
         models.setdefault(row["model"], {})[row["accuracy"]] = levels
-    return json.dumps({"made_by": MADE_BY, "models": models}, indent=1) + "\n"
+    told: dict[str, Any] = {}
+    for row in _measured()["told"]:
+        own = {part: {name: float(f"{v:.3g}") for name, v in row[part].items()} for part in ("weights", "ratio")}
+        told.setdefault(row["model"], {})[row["accuracy"]] = own
+    return json.dumps({"made_by": MADE_BY, "models": models, "told": told}, indent=1) + "\n"
 
 
 def costs() -> str:

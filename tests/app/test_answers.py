@@ -9,6 +9,7 @@ import re
 import threading
 from dataclasses import replace
 from itertools import pairwise
+from pathlib import Path
 
 import fake_solver
 import numpy as np
@@ -22,6 +23,7 @@ from trackroller.app.lane import STALE, Lane
 from trackroller.app.materials import material, save_material
 from trackroller.app.picture import curve, file_of_roller, picture, texts
 from trackroller.app.picture import find_range as range_of
+from trackroller.app.server import FILES, SOLVING, answer
 from trackroller.app.spectrum import spectrum
 from trackroller.app.studies import checked, file_of_study, headlines, listing, page_of
 from trackroller.errors import InputError, WorkError
@@ -337,3 +339,12 @@ def test_how_far_a_force_may_go_takes_years_and_shows_the_band_of_the_life():
     del values["duty"]
     with pytest.raises(InputError, match="needs a duty"):
         range_of(values, "axial_force", f"{life} >= 0.05 years")
+
+
+def test_every_question_of_the_page_has_a_function_that_answers():
+    """The script of the page names functions, which renaming them does not find."""
+    for name in SOLVING | FILES:
+        assert callable(answer(name))
+    scripts = (Path(__file__).resolve().parents[2] / "web" / "src" / "app").glob("*.js")
+    asked = {name for script in scripts for name in re.findall(r'\bask\(\s*"(\w+)"', script.read_text("utf-8"))}
+    assert len(asked) > 10 and asked <= {*SOLVING, *FILES}

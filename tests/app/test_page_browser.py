@@ -284,6 +284,11 @@ def test_what_if_sums_loads_by_share_and_finds_how_far_a_force_may_go(page):
     page.until("document.querySelector('.spectrum').textContent.includes('add up to 1')")
     page.until("document.querySelector('.side').textContent.includes('Solved with preview')")
     page.run("""document.querySelector('[aria-label="Value that the result has to meet"]').value = '5,5'""")
+    chosen = page.run("document.querySelector('.side select').selectedIndex")
+    page.run("document.querySelector('.side select').selectedIndex = -1")  # as before the curve is solved
+    page.run(clicked % json.dumps("How far may it go?"))
+    assert "still being solved" in page.run("document.querySelector('.side').textContent")
+    page.run(f"document.querySelector('.side select').selectedIndex = {chosen}")
     page.run(clicked % json.dumps("How far may it go?"))
     page.until("document.querySelector('.side').textContent.includes('pair_life_to_first_limit_hours >= 5.5')")
 

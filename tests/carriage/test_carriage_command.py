@@ -251,7 +251,7 @@ def test_tables_and_page(folder):
     page = (folder / "page.html").read_text(encoding="utf-8")
     for words in ("Margins", "Load factor", "own radius", "data:image/svg+xml"):
         assert words.lower() in page.lower()
-    assert page.count("<table") == 5
+    assert page.count("<table") == 8  # not checked, warnings, and values without a source, too
 
 
 def test_the_spectrum_is_read_as_it_is(folder):

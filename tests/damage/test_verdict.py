@@ -265,3 +265,9 @@ def test_the_head_of_a_sheet_names_each_limit_that_may_come_first():
     assert answer.headline["low"] == answer.headline["high"] == hours
     assert headline(answer).startswith(f"{rounded(hours)} h, then fatigue of the roller")
     assert hours < limit_row(answer, "wear", "roller")["low"]
+
+
+def test_a_solved_roller_is_told_its_headline_once():
+    ran = CliRunner().invoke(app, ["solve", "--set", "contact_model=sliding", "--set", "accuracy=preview"])
+    assert ran.exit_code == 0 and ran.output.count("then fatigue of the roller") == 1
+    assert "│ fatigue " in ran.output and "not checked, roller" in ran.output, "the limits stand at the end"

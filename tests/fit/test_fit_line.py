@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 import pytest
-from scipy import integrate, stats
+from scipy import integrate, optimize, stats
 
 from trackroller.fit.line import Line, Tests
 from trackroller.fit.posterior import Normal, log_prior, posterior
@@ -124,3 +124,37 @@ def test_an_estimate_at_a_bound_is_named():
     lives = np.concatenate([np.full(3, 10.0), np.full(3, 10.0) + 1e-9])
     line = Line(complete(np.log([800.0] * 3 + [700.0] * 3), lives))
     assert set(line.at_bound) == {"slope"}
+
+
+def test_the_interval_of_a_life_is_that_of_an_own_profile_where_newton_s_method_stalls():
+    """Three kinds of censoring: from the last place of the profile alone, one end was 1.7 times too long."""
+    stress = np.log([420.76, 420.76, 446.14, 446.14, 468.91, 468.91, 489.67, 489.67])
+    low = np.log([1244937, 1915288, 957644, 478822, 191529, 335175, 114917, 86188])
+    high = np.log([1244937, np.inf, 1436466, 718233, 287293, np.inf, 114917, np.inf])
+    line = Line(Tests(stress, low, high))
+
+    def loss(level, slope, log_scatter, reference):
+        middle, scatter = level - slope * (stress - reference), math.exp(log_scatter)
+        first, last = (low - middle) / scatter, (high - middle) / scatter
+        exact = low == high
+        likely = np.where(exact, stats.norm.logpdf(first) - log_scatter, 0.0)
+        within = stats.norm.cdf(last[~exact]) - stats.norm.cdf(first[~exact])
+        return -likely[exact].sum() - np.log(np.maximum(within, 1e-300)).sum()
+
+    def profile(life, log_stress):
+        """Return the least loss of lines on which 10 % have failed at `life`."""
+
+        def own(rest):
+            return loss(life - stats.norm.ppf(0.1) * math.exp(rest[1]), rest[0], rest[1], log_stress)
+
+        starts = (11.0, -0.5), (22.0, -0.8)
+        return min(optimize.minimize(own, start, method="Nelder-Mead").fun for start in starts)
+
+    goal = loss(*line.estimate, line.reference) + line.cut_off(0.9)
+    lows = []
+    for own in (384.2, 388.56, 393.0, 402.0):
+        interval = line.interval_of_life(math.log(own), 0.1)
+        lows.append(interval.low)
+        for end in interval:
+            assert profile(end, math.log(own)) == pytest.approx(goal, abs=2e-3)
+    assert lows == sorted(lows, reverse=True)

@@ -187,7 +187,7 @@ def random_cases(n, seed=3):
 
 
 @pytest.mark.slow
-def test_error_estimate_covers_the_error():
+def test_error_estimate_covers_the_error(estimates):
     """`standard` lies within 0.2 % of `reference` and within its own estimate in nearly all of a random sample."""
     cases = random_cases(120)
     a, b = solve_sliding(cases), solve_sliding(cases, accuracy="reference")

@@ -8,6 +8,8 @@ import pytest
 
 import trackroller as tr
 from trackroller.errors import InputError
+from trackroller.report.headlines import headline_of
+from trackroller.report.numbers import percent
 from trackroller.results.best import answer_of_search
 from trackroller.results.judging import optimum_of, spread
 
@@ -66,6 +68,9 @@ def test_listed_sizes_give_the_smallest_that_meets():
     shares = frame.groupby("axis_distance")[LIFE].apply(lambda own: (own >= 25).mean())
     assert answer.headline["designs"][0]["name"] == {"axis_distance": float(shares.index[shares >= 0.95][0])}
     assert shares.index[shares >= 0.95][0] < sizes[-1]
+    head = answer.headline
+    assert head["share"] == shares[shares >= 0.95].iloc[0] and (head["n"], head["wanted"]) == (32, 0.95)
+    assert f"of 32 drawn conditions reach 25 h; {percent(0.95)} are wanted" in headline_of(answer).text
 
 
 def test_corners_of_a_front_are_the_ends_of_the_ranges():

@@ -134,7 +134,10 @@ def test_bounds_are_sound_at_the_ends():
         ({"analysis": {"target": {"roller_life_hours": {"least": 5}}}}, ["analysis.target", "min, max"]),
         ({"analysis": {"target": {"slip": {"min": 2, "max": 1}}}}, ["min below max"]),
         ({"analysis": {"target": {"roller_life_hours": {"min": 0}}}}, ["life above 0"]),
-        ({"design": "morris", "analysis": {"target": {"slip": {"max": 1}}}}, ["morris", "inner_outer"]),
+        (
+            {"design": "morris", "analysis": {"target": {"slip": {"max": 1, "probability": 0.9}}}},
+            ["morris", "Remove probability", "inner_outer"],
+        ),
     ],
 )
 def test_wrong_targets_are_refused_with_field_and_remedy(change, parts):
@@ -142,3 +145,11 @@ def test_wrong_targets_are_refused_with_field_and_remedy(change, parts):
     with pytest.raises(InputError) as error:
         parse_study(POINTS | {"factors": factors} | change)
     assert all(part in str(error.value) for part in parts), error.value
+
+
+def test_a_design_without_weights_takes_a_requirement_without_a_probability():
+    """As the message says: without the probability morris draws the requirement beside its effects."""
+    factors = {"axial_force": {"normal": [0.0, 1.0]}, "friction_coefficient": {"uniform": [0.1, 0.3]}}
+    change = {"factors": factors, "design": "morris", "requirement": {"slip": {"max": 1}}}
+    study = parse_study({key: own for key, own in POINTS.items() if key != "analysis"} | change)
+    assert study.config.requirement["slip"].most == 1

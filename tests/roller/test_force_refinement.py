@@ -90,7 +90,7 @@ def test_weights_are_those_of_the_known_orders():
     assert 1.0 / 3.0 < sticks < extrapolation.weight(np.array([0.7]), np.ones(1), np.zeros(1)) <= 1.0
 
 
-def test_an_error_of_one_contact_loads_both(monkeypatch):
+def test_an_error_of_one_contact_loads_both(monkeypatch, estimates):
     """Only contact 1 errs: both normal forces change as the balance of forces does when its ratio F_T/F_N changes."""
     own = 1e-4
     monkeypatch.setattr(SlidingModel, "force_error", lambda self, n: np.tile([own, 0.0], (n, 1)))

@@ -47,7 +47,7 @@ def test_a_ridge_is_refined_and_a_smooth_peak_is_not(monkeypatch, ridge):
     assert solved(monkeypatch, SMOOTH)[1] == [POINTS[0]]
 
 
-def test_the_table_takes_few_elements_for_smooth_peaks_and_more_for_ridges(monkeypatch):
+def test_the_table_takes_few_elements_for_smooth_peaks_and_more_for_ridges(monkeypatch, estimates):
     """The peaks differ from the peaks on all elements by less than the estimated errors, and by 0.5 % where smooth."""
     few = PRESETS["preview"].elements
     for case, searched, largest in ((SMOOTH, [PARTS * few], 5e-3), (RIDGE, [PARTS * few, 2 * PARTS * few], 5e-2)):

@@ -2,11 +2,18 @@
 
 from __future__ import annotations
 
+import html
+import json
+import re
+
 import numpy as np
+import openpyxl
 import pytest
 from carriage.carts import ROLLER, SIDES
+from command_line import trackroller
 
 import trackroller as tr
+from trackroller.app.picture import texts
 from trackroller.carriage.file import load_carriage
 from trackroller.carriage.files import spectrum_of, study_of
 from trackroller.carriage.solve import cases_of, forces_of
@@ -15,7 +22,7 @@ from trackroller.errors import InputError
 from trackroller.roller.duty import checked_duty, in_hours
 from trackroller.roller.settings import checked_case
 from trackroller.study.spectrum.file import Spectrum, overrollings_per_shift
-from trackroller.yaml_file import write_yaml
+from trackroller.yaml_file import parse_mapping, write_yaml
 
 # 400 strokes of 0.9 m are 360 m a day, which take 0.1 h at 60 m/min
 DUTY = {"strokes_per_day": 400, "stroke": "0.9 m", "days_per_year": 300}
@@ -174,3 +181,52 @@ def test_overrollings_of_a_roller_beside_strokes_are_refused():
     values["rollers"]["FL"]["roller"] = ROLLER | {"guide_overrollings_per_hour": 60}
     with pytest.raises(InputError, match=r"rollers\.FL\.roller\.guide_overrollings_per_hour = 60"):
         load_carriage(values)
+
+
+# 400 strokes of 0.9 m: 0.36 km a day, 0.1 h at 1 m/s
+WORDS = "400 strokes of 0.9 m a day, 300 days a year: 0.1 h and 0.36 km a day"
+FAST = {"contact_model": "sliding", "accuracy": "preview"}
+
+
+def seen(folder, *words):
+    """Return what the terminal shows of a command with its tables unfolded, and the text of its page."""
+    told = trackroller(*words, "--report", "page.html", cwd=folder).stdout
+    page = html.unescape(re.sub(r"<[^>]+>", " ", (folder / "page.html").read_text()))
+    return " ".join(re.sub("[\u2500-\u257f]", " ", told).split()), " ".join(page.split())
+
+
+@pytest.mark.parametrize("hours", [False, True])
+def test_page_and_terminal_show_the_duty_as_it_was_given(tmp_path, monkeypatch, hours):
+    monkeypatch.setenv("COLUMNS", "300")
+    duty = {"hours_per_day": 0.1, "days_per_year": 300} if hours else DUTY
+    words = "0.1 h a day, 300 days a year" if hours else WORDS
+    base = {"velocity": 60, "motor_force": 0, "axial_force": 20}
+    (tmp_path / "case.yaml").write_text(write_yaml(FAST | base | {"duty": duty}))
+    blocks = [{"name": "a", "distance": 900, "radial_force": -200}]
+    (tmp_path / "load.yaml").write_text(write_yaml(FAST | {"base": base, "blocks": blocks, "duty": duty}))
+    (tmp_path / "cart.yaml").write_text(write_yaml(cart() | {"duty": duty}))
+    for shown in seen(tmp_path, "solve", "case.yaml"):
+        assert words in shown
+        assert "overrollings of a guide point per hour n_G" not in shown, "nobody gave it"
+    for command in (("spectrum", "load.yaml"), ("carriage", "cart.yaml")):
+        for shown in seen(tmp_path, *command):
+            assert (f"Duty: {WORDS}." in shown) is not hours
+
+
+def test_the_record_and_the_workbook_keep_the_strokes(tmp_path):
+    (tmp_path / "case.yaml").write_text(write_yaml(FAST | {"velocity": 60, "duty": DUTY | {"rollers_on_rail": 2}}))
+    told = json.loads(trackroller("solve", "case.yaml", "--json", cwd=tmp_path).stdout)["answer"]["facts"]
+    assert told["strokes"] == {"strokes_per_day": 400.0, "stroke": 0.9, "rollers_on_rail": 2.0}
+    assert told["duty"] == pytest.approx({"hours_per_day": 0.1, "days_per_year": 300})
+    trackroller("solve", "case.yaml", "-o", "roller.xlsx", cwd=tmp_path)
+    rows = {row[0]: row[2:] for row in openpyxl.load_workbook(tmp_path / "roller.xlsx")["inputs"].values}
+    assert rows["stroke"] == (0.9, "m", "given") and rows["strokes_per_day"] == (400, "-", "given")
+    assert rows["hours_per_day"] == (pytest.approx(0.1), "-", "strokes")
+    assert rows["guide_overrollings_per_hour"] == (pytest.approx(2 * PER_HOUR), "1/h", "strokes")
+
+
+def test_the_live_page_gives_a_file_that_is_taken():
+    values = FAST | {"velocity": 60, "duty": DUTY}
+    again, _, beside = checked_case(parse_mapping(texts(values)["YAML"], "case file"))
+    assert beside == {"duty": pytest.approx({"hours_per_day": 0.1, "days_per_year": 300})}
+    assert again.guide_overrollings_per_hour == pytest.approx(PER_HOUR)

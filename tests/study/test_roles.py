@@ -24,7 +24,7 @@ def test_the_program_knows_who_sets_each_parameter():
     use = {name for name, role in ROLE_OF.items() if role == "condition"}
     forces = {name for name in PARAMETERS if name.endswith("_force")} - {"permissible_radial_force"}
     others = {"friction_coefficient", "friction_law", "velocity", "guide_curve_radius", "guide_overrollings_per_hour"}
-    others |= {"travel", "wear_coefficient_factor", "placeholder_position", "ambient_temperature"}
+    others |= {"layer_flexibility", "travel", "wear_coefficient_factor", "placeholder_position", "ambient_temperature"}
     assert use == forces | others
     assert roles({"factors": LISTS}) == {"friction_coefficient": "condition", "roller_profile_radius": "choice"}
     swapped = {"friction_coefficient": "choice", "roller_profile_radius": "condition"}

@@ -137,8 +137,8 @@ def test_a_limit_that_a_placeholder_decides_is_open_in_its_blocks():
 
 def test_a_block_outside_the_half_space_is_named_before_any_life():
     blocks = [LOADED | {"radial_force": -300, "axial_force": 70}, EMPTY | {"axial_force": 0}]
-    base = BASE | {"roller_material": "POM-C", "guide_material": "C45", "roller_profile_radius": -6.6}
-    ds = solved(*blocks, base=base, limits=("fatigue",))
+    base = BASE | {"roller_material": "POM-C", "guide_material": "C45", "roller_profile_radius": -6.1}
+    ds = solved(*blocks, base=base | {"contact_angle": 45}, limits=("fatigue",))
     wide = ds["validity"].values & 1  # the first flag: half_space
     assert wide.tolist() == [1, 0]
     answer = answer_of_spectrum(ds)

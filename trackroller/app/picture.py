@@ -33,7 +33,7 @@ from trackroller.roller.duty import EXAMPLE, years
 from trackroller.roller.find import find
 from trackroller.roller.regime_limits import Limits
 from trackroller.roller.requirement import YEARS
-from trackroller.roller.settings import checked_case, with_beside
+from trackroller.roller.settings import BESIDE, checked_case, with_beside
 from trackroller.roller.solver import solve
 from trackroller.roller.stored_inputs import given_inputs, solve_command
 from trackroller.study.outputs import every_name, outputs
@@ -287,9 +287,10 @@ def texts(values: Values) -> dict[str, str]:
     further = "".join(f", {name}={value!r}" for name, value in options.items())
     # a sheet of `ds` takes both from its attributes
     attributes = "".join(f"ds.attrs[{name!r}] = {json.dumps(value)!r}\n" for name, value in beside.items())
+    entries = {name: value for name, value in beside.items() if name in BESIDE}  # the duty is in hours
     return {
-        "YAML": write_yaml(given | options | beside),
-        "command": solve_command(given | options | beside),
+        "YAML": write_yaml(given | options | entries),
+        "command": solve_command(given | options | entries),
         "Python": f"import trackroller as tr\n\nds = tr.solve(tr.Case({fields}){further})\n{attributes}",
     }
 

@@ -63,7 +63,7 @@ class Refused(tornado.web.HTTPError):
 
 
 # the thread of the solver answers
-SOLVING = dict.fromkeys(("picture", "curve", "found", "texts", "sheet", "file_of_roller"), "picture")
+SOLVING = dict.fromkeys(("picture", "curve", "find_range", "texts", "sheet", "file_of_roller"), "picture")
 SOLVING |= {"carriage_lives": "carriage", "spectrum": "spectrum"}
 STUDIES = (
     *("checked", "listing", "text_of", "start", "resume", "pause", "delete", "headlines"),

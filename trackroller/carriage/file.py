@@ -31,7 +31,7 @@ from trackroller.numerics.units import split_quantity
 from trackroller.parameters import MATERIAL_FIELDS
 from trackroller.roller.aliases import ALIASES
 from trackroller.roller.case import Case
-from trackroller.roller.duty import STROKES, checked_duty, in_hours, is_of_strokes, refuse_overrollings
+from trackroller.roller.duty import STROKES, checked_duty, in_hours, is_of_strokes, refuse_overrollings, strokes_in
 from trackroller.roller.requirement import Requirement, checked_requirement
 from trackroller.roller.settings import LOADS, checked_case
 from trackroller.yaml_file import errors_by_line, parse_mapping
@@ -204,8 +204,8 @@ class Carriage:
         Travel per shift [m].
     duty : mapping, optional
         Hours a day and days a year of travel.
-    stroke : float
-        Length of a stroke, one way [m], if the duty is given in strokes; otherwise NaN.
+    strokes : mapping, optional
+        The strokes that the duty was given in, from which its hours follow.
     """
 
     name: str
@@ -218,7 +218,12 @@ class Carriage:
     preloads: tuple[Preload, ...] = ()
     distance: float = 1000.0
     duty: Mapping[str, float] | None = None
-    stroke: float = math.nan
+    strokes: Mapping[str, float] | None = None
+
+    @property
+    def stroke(self) -> float:
+        """Return the length of a stroke, one way [m]; NaN for a duty in hours."""
+        return math.nan if self.strokes is None else self.strokes["stroke"]
 
 
 def load_carriage(source: Path | str | Mapping[str, Any]) -> Carriage:
@@ -341,7 +346,7 @@ def carriage_of(values: Mapping[str, Any]) -> Carriage:
 def _by_strokes(
     duty: Mapping[str, float], cases: Sequence[LoadCase], rollers: Sequence[MountedRoller]
 ) -> dict[str, Any]:
-    """Return the duty of a carriage in hours, and the length of its stroke."""
+    """Return the duty of a carriage in hours, and its strokes."""
     if STROKES[2] in duty:
         wrong = "is not known of a carriage: it follows from the places of its rollers"
         raise InputError(f"duty.{STROKES[2]}", duty[STROKES[2]], "strokes_per_day and stroke", "Remove it.", wrong)
@@ -356,7 +361,7 @@ def _by_strokes(
             allowed = "the speed of each load case, which turns strokes into hours"
             raise InputError(f"case '{case.name}'.speed", None, allowed, "Add speed: 1 m/s.")
     hours_per_km = sum(case.share / (3.6 * case.speed) for case in cases if case.speed is not None)
-    return {"duty": in_hours(duty, hours_per_km), "stroke": duty["stroke"]}
+    return {"duty": in_hours(duty, hours_per_km), "strokes": strokes_in(duty)}
 
 
 def _check_payloads(entries: Sequence[Mapping[str, Any]], fields: Mapping[str, Any]) -> None:

@@ -124,8 +124,8 @@ def study_of(whole: Carriage, ds: xr.Dataset, table: str) -> tuple[dict[str, Any
     for (i, j), case in sorted(cases_of(whole, ds).items()):
         fields = [getattr(case, name) for name in (*of_travel, *varying)]
         shown = [_cell(value) for value in fields]
-        names = [inert_cell(name) for name in (whole.cases[i].name, whole.rollers[j].name)]
-        rows.append([*names, f"{whole.cases[i].share:.10g}", *shown])
+        names = (whole.cases[i].name, whole.rollers[j].name)
+        rows.append([inert_cell(cell) for cell in (*names, f"{whole.cases[i].share:.10g}", *shown)])
     out = io.StringIO()
     csv.writer(out, lineterminator="\n").writerows(rows)
     lifted = ds["radial_force"].size - (len(rows) - 1)

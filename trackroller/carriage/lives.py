@@ -16,6 +16,7 @@ from trackroller.damage.miner import block_damage, repetitions_to_failure
 from trackroller.damage.pair import first_failure
 from trackroller.parameters import BODIES
 from trackroller.roller.output_names import declared
+from trackroller.roller.run_in import with_run_in
 
 
 def hours_per_km(share: np.ndarray, speed: np.ndarray, velocity: np.ndarray) -> np.ndarray:
@@ -53,6 +54,8 @@ class Lives:
     ----------
     first : numpy.ndarray of int
         First case of each roller; rollers come in the order of their numbers.
+    solved : xarray.Dataset
+        The results, whose flag `worn` holds for all load cases of a roller together.
     summed : dict of str to numpy.ndarray
         Lives with the damage of all load cases, largest utilisations and worst states of limits, by roller.
     ruling : numpy.ndarray of int
@@ -73,7 +76,17 @@ class Lives:
         self.hours = hours[self.first]
         self.time = share / speed
         self.summed = self._summed()
+        self.solved = self._with_run_in()
         self.ruling, self.rank = self._judged()
+
+    def _with_run_in(self) -> xr.Dataset:
+        """Return the cases with the flag `worn` of each roller over all its load cases."""
+        if "life_to_first_limit_hours" not in self.summed:
+            return self.solved
+        roller = np.empty(len(self.order), dtype=int)
+        roller[self.order] = np.repeat(np.arange(len(self.first)), self.counts)
+        km = self.summed["life_to_first_limit_hours"] / self.hours[:, None]
+        return with_run_in(self.solved, roller, self.share, km)
 
     def of(self, values: np.ndarray, reduce: Callable[..., np.ndarray] = np.add) -> np.ndarray:
         """Return the sum, or another reduction, over the cases of each roller."""

@@ -42,6 +42,7 @@ from trackroller.roller.doubts import doubts, ratings
 from trackroller.roller.duty import OVERROLLINGS, overrollings_per_hour, with_duty, years
 from trackroller.roller.geometry import contact_geometry
 from trackroller.roller.requirement import LIVES_OF_PAIR
+from trackroller.roller.run_in import groups_for_run_in
 from trackroller.roller.settings import LOADS
 from trackroller.roller.stored_inputs import DOUBTS, MATERIALS, NOT_GIVEN, material_values, plain_inputs
 
@@ -174,7 +175,7 @@ def _solution(whole: Carriage, springs: Springs, loads: list[Loads], swings: np.
         "conventions": "; ".join(CONVENTIONS),
         "with_play": ", ".join(name for one in whole.preloads if one.play > 0 for name in one.pair),
     }
-    return with_duty(xr.Dataset(variables, coords, attrs), whole.duty)
+    return with_duty(xr.Dataset(variables, coords, attrs), whole.duty, whole.strokes)
 
 
 def springs_of(whole: Carriage, unknown: Sequence[float] = ()) -> Springs:
@@ -486,12 +487,17 @@ def _unused_loads(roller: MountedRoller) -> Iterator[str]:
 
 
 def _flags(solved: xr.Dataset) -> np.ndarray:
-    """Return the validity flags of rollers, shape (n,): `deep_life` of the body alone that ends the life."""
+    """Return the validity flags of rollers, shape (n,).
+
+    `deep_life` is that of the body alone that ends the life, and `worn` that of the roller alone.
+    """
+    worn = validity_bit("worn")
     deep = validity_bit("deep_life")
     lives = solved["life_to_first_limit_hours"].transpose(..., "body").values
     own = solved["validity_body"].transpose(..., "body").values
     ends = np.where(lives[..., BODIES.index("guide")] < lives[..., BODIES.index("roller")], own[..., 1], own[..., 0])
-    return np.asarray((solved["validity"].values & ~deep) | (ends & deep))
+    of_roller = own[..., BODIES.index("roller")]
+    return np.asarray((solved["validity"].values & ~deep & ~worn) | (ends & deep) | (of_roller & worn))
 
 
 def _first_ends(lives: Lives, solved: xr.Dataset) -> np.ndarray:
@@ -543,9 +549,9 @@ def with_lives(ds: xr.Dataset, whole: Carriage, solve: Callable[..., xr.Dataset]
         groups.setdefault(repr(whole.rollers[place[1]].options), []).append(place)
     for places in groups.values():
         options = {key: value for key, value in whole.rollers[places[0][1]].options.items() if key != "outputs"}
-        solved = solve_cases(
-            [cases[place] for place in places], outputs=("forces", "peak_stress", "life", "limits"), **options
-        )
+        of_group = [cases[place] for place in places]
+        outputs = ("forces", "peak_stress", "life", "limits", *groups_for_run_in(of_group))
+        solved = solve_cases(of_group, outputs=outputs, **options)
         flags = solved["regime"].attrs
         i, j = np.array(places).T
         speed = np.array([0.06 * float(cases[place].velocity) for place in places])  # km/h
@@ -556,7 +562,7 @@ def with_lives(ds: xr.Dataset, whole: Carriage, solve: Callable[..., xr.Dataset]
         checks.add(j[lives.first], lives, solved)
         case_hours[i, j] = solved[LIFE].values
         regime[i, j] = solved["regime"].values
-        flagged[i, j] = _flags(solved)
+        flagged[i, j] = _flags(lives.solved)
         damage[i, j] = block_damage(lives.time, solved[LIFE].values)  # of a km of travel
     meanings = {**flags, "flag_values": np.append(np.int8(-1), np.asarray(flags.get("flag_values", []), dtype=np.int8))}
     meanings["flag_meanings"] = f"lifted {flags.get('flag_meanings', '')}".strip()

@@ -243,6 +243,21 @@ def size(  # noqa: PLR0913 - one argument for each option of the command
     """Find the least roller of a shelf that is enough for a life, failures and overload; 1 if none is."""
 
 
+@command("trackroller.cli.patch", "run_patch")
+def patch(
+    file: Annotated[
+        Path, typer.Argument(help="one contact: load, shape, materials, friction (YAML)", show_default=False)
+    ],
+    creepage: Annotated[
+        str | None, typer.Option("--creepage", help="longitudinal creepages from:to in per cent, such as 0:2%")
+    ] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="print JSON")] = False,
+    out: Annotated[Path | None, typer.Option("-o", "--out", help="write netCDF (.nc)")] = None,
+    report: Annotated[Path | None, typer.Option("--report", help="write the page (.html or .pdf) too")] = None,
+) -> None:
+    """Print forces, friction power and adhesion of one ellipse, or of two discs, at given creepages."""
+
+
 @command("trackroller.cli.case", "run_wear")
 def wear(
     case: Annotated[Path | None, typer.Argument(help=CASE_HELP)] = None,

@@ -90,6 +90,38 @@ def constant() -> FrictionLaw:
     return FrictionLaw(np.zeros(1), np.ones(1), {"kind": "constant"})
 
 
+def steepness(law: FrictionLaw, bound, travel_speed, shear_modulus, film, element) -> np.ndarray:
+    """Return how fast friction falls with the slip against what the surfaces follow, (n,) [1].
+
+    Parameters
+    ----------
+    law : FrictionLaw
+        Friction as a function of the slip speed.
+    bound : ndarray, shape (n,)
+        mu p_max [MPa].
+    travel_speed : ndarray, shape (n,)
+        Travel speed [mm/s].
+    shear_modulus, film : ndarray, shape (n,)
+        Combined shear modulus G [MPa], and flexibility of a film h/G3 between the bodies [mm^3/N].
+    element : ndarray, shape (n,)
+        Length of an element in the rolling direction [mm].
+
+    Returns
+    -------
+    numpy.ndarray
+        mu p_max v max(-df/dv) (1/G + h/(G3 l)) with the length l of an element. Above 1 a patch has several states or
+        none.
+
+    Notes
+    -----
+    Under the traction tau an element slips by about tau/G of the distance travelled, and by h tau/(G3 l) through the
+    film. If this slip lowers the friction by more than the traction itself, the state of the element is not unique.
+    With a film the problem has no solution below the length v (h/G3) mu p_max max(-df/dv), however soft the law: the
+    elements must be longer. ASSUME: friction has no memory, which would replace the element as the smallest length.
+    """
+    return np.asarray(bound * law.steepest_fall * travel_speed * (1.0 / shear_modulus + film / element))
+
+
 def _refuse(part: str, value: object, allowed: str, remedy: str = "") -> NoReturn:
     raise InputError(f"friction_law.{part}" if part else "friction_law", value, allowed, remedy)
 

@@ -167,11 +167,53 @@ def _sharpened(u):
 
 
 @compiled
-def _functions(hx, hy, poisson, ny, nx, rolling, sharpened):
+def plane_displacements(hy, poisson, ny, below, above):
+    """Return the displacement differences of a unit traction on an element of two discs, for G = 1.
+
+    They are those of `displacements` for elements without end across the rolling direction, up to a constant that no
+    slip contains: lateral ones in antiplane shear, -2/pi int ln|y|, longitudinal ones in plane strain, 1 - nu times it.
+
+    Parameters
+    ----------
+    hy, poisson, ny, below, above
+        As in `displacements`.
+
+    Returns
+    -------
+    numpy.ndarray, shape (3, 2 ny - 1 + below + above, 1)
+        Components xx, yy, xy.
+    """
+    rows, zero = 2 * ny - 1 + below + above, ny + below
+    out = np.zeros((3, rows, 1))
+    for j in range(rows):
+        low = (j - zero + 0.5) * hy
+        high = low + hy
+        integral = high * math.log(abs(high)) - low * math.log(abs(low)) - hy
+        out[0, j, 0] = -2.0 / math.pi * integral
+        out[1, j, 0] = (1.0 - poisson) * out[0, j, 0]
+    return out
+
+
+@compiled
+def _functions(hx, hy, poisson, ny, nx, rolling, sharpened, film):
     """Return the fields of `Influence`, of the slips in `rolling` or of the displacements."""
     more = int(sharpened)
     u = displacements(hx, hy, poisson, ny + more, nx + more, 1, 2)
     u = _sharpened(u) if sharpened else u
+    return _influence_of(u, hy, ny, nx, rolling, film)
+
+
+@compiled
+def _plane_functions(hy, poisson, ny, film):
+    """Return the fields of `Influence` of the slips of two discs."""
+    return _influence_of(plane_displacements(hy, poisson, ny, 1, 2), hy, ny, 1, True, film)
+
+
+@compiled
+def _influence_of(u, hy, ny, nx, rolling, film):
+    """Return the fields of `Influence` of displacements `u`, to which a `film` adds under an element itself."""
+    for c in range(2):
+        u[c, ny, nx - 1] += film
     kernel = u[:, 1 : 2 * ny].copy()
     if rolling:
         for c in range(3):
@@ -212,8 +254,10 @@ class Influence(NamedTuple):
 
 
 @lru_cache(maxsize=64)
-def _influence(hx: float, hy: float, poisson: float, ny: int, nx: int, rolling: bool, sharpened: bool) -> Influence:
-    return Influence(*_functions(hx, hy, poisson, ny, nx, rolling, sharpened))
+def _influence(
+    hx: float, hy: float, poisson: float, ny: int, nx: int, rolling: bool, sharpened: bool, film: float
+) -> Influence:
+    return Influence(*_functions(hx, hy, poisson, ny, nx, rolling, sharpened, film))
 
 
 def rounded(*values: float) -> tuple[float, ...]:
@@ -222,15 +266,32 @@ def rounded(*values: float) -> tuple[float, ...]:
 
 
 def influence(
-    hx: float, hy: float, poisson: float, ny: int, nx: int, rolling: bool = True, sharpened: bool = False
+    hx: float,
+    hy: float,
+    poisson: float,
+    ny: int,
+    nx: int,
+    rolling: bool = True,
+    sharpened: bool = False,
+    film: float = 0.0,
 ) -> Influence:
     """Return the influence functions of ny x nx elements of size hy x hx for G = 1; the last ones used are kept.
 
     `sharpened` influence functions place the trailing end of the adhesion area without an error of first order, see
-    `SHARPER`.
+    `SHARPER`. A `film` between the bodies moves each element by this length under a unit traction of its own.
     """
-    hx, hy, poisson = rounded(hx, hy, poisson)
-    return _influence(hx, hy, poisson, ny, nx, rolling, sharpened)
+    hx, hy, poisson, film = rounded(hx, hy, poisson, film)
+    return _influence(hx, hy, poisson, ny, nx, rolling, sharpened, film)
+
+
+def plane_influence(hy: float, poisson: float, ny: int, film: float = 0.0) -> Influence:
+    """Return the influence functions of two discs with ny elements of length hy, for G = 1, see `influence`."""
+    return _plane_influence(*rounded(hy, poisson, film), ny)
+
+
+@lru_cache(maxsize=64)
+def _plane_influence(hy: float, poisson: float, film: float, ny: int) -> Influence:
+    return Influence(*_plane_functions(hy, poisson, ny, film))
 
 
 def coupling_slip(pressure: np.ndarray, hx: float, hy: float) -> np.ndarray:

@@ -27,6 +27,7 @@ class ContactModel:
 
     declaration: ModelDeclaration  # name, options, cost and promised accuracy
     on_solved_patches: ClassVar[type[ContactModel] | None] = None  # the model on solved patches
+    elements = 0  # along each axis of a patch; 0 if the model has none
     elastic = True  # the surfaces move elastically along the patch, so that parts of it can adhere
     full_sliding = False  # the shear follows from an ellipse and a slip field in closed form; it needs no grid
     knows_tractions = True  # forces and `surface` come from one solution

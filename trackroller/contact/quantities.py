@@ -182,12 +182,21 @@ class Elastic(Rows):
     """Combined elastic constants of pairs of bodies (Kalker 1990, eq. 1.44), arrays (n,).
 
     1/G = (1/G1 + 1/G2)/2, nu/G = (nu1/G1 + nu2/G2)/2, K/G = ((1-2 nu1)/G1 - (1-2 nu2)/G2)/4,
-    body 1 is the roller. `shear_modulus` G [MPa], `poisson_ratio` nu [1], `coupling` K [1].
+    body 1 is the roller. `shear_modulus` G [MPa], `poisson_ratio` nu [1], `coupling` K [1]. `layer_flexibility`
+    h/G3 [mm^3/N] is that of a film of thickness h and shear modulus G3 between the bodies; None stands for no film.
     """
 
     shear_modulus: np.ndarray
     poisson_ratio: np.ndarray
     coupling: np.ndarray
+    layer_flexibility: np.ndarray | None = None
+
+    @property
+    def film(self) -> np.ndarray:
+        """Return the flexibility of the film, (n,) [mm^3/N]; 0 stands for no film."""
+        if self.layer_flexibility is None:
+            return np.zeros(np.shape(self.shear_modulus))
+        return np.asarray(self.layer_flexibility, float)
 
     @classmethod
     def of_pair(cls, e_1, nu_1, e_2, nu_2) -> Elastic:

@@ -66,11 +66,17 @@ def _without_life(solved: SolvedRollers) -> np.ndarray:
     return np.asarray(_overloaded(solved) | solved.skids)
 
 
+def _error_of_life(exponent: np.ndarray, error: np.ndarray) -> np.ndarray:
+    """Return the error of a life as a factor less 1, for relative errors of the stress and exponents."""
+    return np.asarray(np.expm1(exponent * np.log1p(error)))
+
+
 def life(solved: SolvedRollers) -> Values:
     """Return overrollings and hours to failure at 50 % failure probability, and the relative error of the life.
 
-    The relative error of the life is the exponent of the S-N curve times the relative error of the stress. A body
-    that breaks at once or skids has no fatigue life: NaN, and so has its pair.
+    A stress that is larger by the factor 1 + e shortens the life by the factor (1 + e)^k with the exponent k of the
+    S-N curve, so that the relative error of the life is (1 + e)^k - 1. A body that breaks at once or skids has no
+    fatigue life: NaN, and so has its pair.
 
     Parameters
     ----------
@@ -105,7 +111,7 @@ def life(solved: SolvedRollers) -> Values:
     pair = np.where(lifeless.any(axis=1), np.nan, pair)
     results = {
         "life_cycles": cycles,
-        "life_error_estimate": np.where(np.isnan(cycles), np.nan, curve.slope(stress) * error),
+        "life_error_estimate": np.where(np.isnan(cycles), np.nan, _error_of_life(curve.slope(stress), error)),
         "life_hours": hours,
         "roller_life_hours": roller,
         "guide_life_hours": guide,
@@ -145,7 +151,7 @@ LIMIT = Limit(
             "life_error_estimate",
             ("contact", "body"),
             "1",
-            "k delta(sigma)/sigma",
+            "(1 + delta(sigma)/sigma)^k - 1",
             "estimated relative error of the life",
             ESTIMATE,
         ),

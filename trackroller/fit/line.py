@@ -545,10 +545,10 @@ class Line:
         Where ln L stays below `goal`, Newton's method starts from other likely values as well.
         """
         limits = np.delete(self.limits, place, axis=0)
-        further = np.empty((0, len(limits)))
+        points = [np.array(self.maxima)]
         if self.knee:
-            points = [np.array(self.maxima), self._points_by_limit.reshape(-1, len(self.free))]
-            further = np.clip(np.delete(np.concatenate(points), place, axis=1), *limits.T)
+            points.append(self._points_by_limit.reshape(-1, len(self.free)))
+        further = np.clip(np.delete(np.concatenate(points), place, axis=1), *limits.T)
 
         def profile(value: float, start: np.ndarray) -> tuple[float, np.ndarray]:
             def loss(others: np.ndarray) -> np.ndarray:

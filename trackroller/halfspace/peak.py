@@ -54,6 +54,15 @@ MOST_ON_RIDGE, OF_GRID = 128, 84  # points on the line where sliding begins, for
 STICKS = 1.0 - 1e-4  # square of the traction over its bound below which an element sticks
 NEAR_RIM = 0.98  # distance from the centre up to which the ridge is followed
 SEED_WORTH = 0.85  # least stress of a seed over the largest
+# The highest stress of the other kind, at the surface or below it, may lie this many times as far behind. Coarse rules
+# and few elements lower a ridge at the surface by some per cent, and hardly a summit below it.
+RIVAL_LAG = 1.5
+# The rule of the summit decides between both kinds, because the rule of the polish errs otherwise at the surface than
+# below it. A climb below this share of the highest one is too low for that error.
+CLOSE_RIVAL = 0.97
+
+# Relative change on coarser elements at the place of a peak above which the top of its hill is sought there, in sweeps.
+FALLEN, TOP_SWEEPS = 0.03, 3
 
 SPLIT = (0.02, 0.06)  # distances from the pole over the semi-axis at which a spike begins to count, and counts in full
 
@@ -177,6 +186,20 @@ def along_turn(patch, u, out):
 
 
 @compiled
+def best_rival(depth, values, leader):
+    """Return the index of the largest of `values` (m,) among the points of another kind than the leader; -1 if none.
+
+    The kinds are points at the surface, with `depth` (m,) zero, and points below it. The highest stress at the surface
+    and the highest below it are separate hills. `leader` is the index of a point.
+    """
+    shallow, best = depth[leader] == 0.0, -1
+    for k in range(values.size):
+        if (depth[k] == 0.0) != shallow and (best < 0 or values[k] > values[best]):
+            best = k
+    return best
+
+
+@compiled
 def best_seeds(points, values, count, apart):
     """Return the indices of up to `count` scan points (m, 3) with the largest `values` (m,).
 
@@ -269,6 +292,8 @@ class Climbs(NamedTuple):
         Steps along radius, circumference and depth.
     along : numpy.ndarray, shape (m, 2)
         Direction of the first axis.
+    spared : numpy.ndarray of bool, shape (m,)
+        Climbs that stand as the best of their kind only. They make no other climb be given up, see `standing`.
     """
 
     u: np.ndarray
@@ -276,6 +301,7 @@ class Climbs(NamedTuple):
     gained: np.ndarray
     step: np.ndarray
     along: np.ndarray
+    spared: np.ndarray
 
 
 def lengths(rows: np.ndarray) -> np.ndarray:
@@ -434,7 +460,8 @@ def no_climbs(count, step):
     """Return climbs that are still given up, `count` in each body, with a first step."""
     steps, along = step * PROPORTIONS * np.ones((2 * count, 3)), np.zeros((2 * count, 2))
     along[:, 1] = 1.0
-    return Climbs(np.zeros((2 * count, 3)), np.full(2 * count, -1.0), np.zeros(2 * count), steps, along)
+    spared = np.zeros(2 * count, np.bool_)
+    return Climbs(np.zeros((2 * count, 3)), np.full(2 * count, -1.0), np.zeros(2 * count), steps, along, spared)
 
 
 @compiled
@@ -445,30 +472,52 @@ def polish(target, climbs, k, rules, smallest, sweeps):
             break
 
 
+@woven
+def _give_up(climbs, stand):
+    """Give up the climbs that do not stand, (m,)."""
+    for k in range(climbs.f.size):
+        if not stand[k]:
+            climbs.f[k] = -1.0
+            climbs.spared[k] = False
+
+
 @compiled
 def standing(climbs, share, gap, most):
-    """Return which climbs stand, (m,): up to `most` of each body; the others are given up.
+    """Return which climbs stand, (m,): up to `most` of each body and a spared one; the others are given up.
 
-    The highest climb and those above its `share` stand. Of points closer than `gap` only the highest stands.
+    The highest climb and those above its `share` stand. Of points closer than `gap` only the highest stands. If all of
+    them are of one kind, the best of the other kind is spared, see `best_rival`: it may lie RIVAL_LAG times as far
+    behind. A spared climb makes no other climb be given up, because rough rules may raise a point at the surface beside
+    the spin pole far above its stress.
     """
     count = climbs.f.size // 2
     stand = np.zeros(climbs.f.size, np.bool_)
     for body in range(2):
         first = body * count
-        left = climbs.f[first : first + count].copy()
-        enough = share * left.max()
+        heights = climbs.f[first : first + count]
+        depth = climbs.u[first : first + count, 2]
+        left = heights.copy()
+        for k in range(count):
+            if climbs.spared[first + k]:
+                left[k] = -1.0
+        leader, alone = left.argmax(), True
+        highest = left[leader]
         for _ in range(min(most, count)):
             best = left.argmax()
-            if not left[best] >= enough:
+            if not left[best] >= share * highest:
                 break
             stand[first + best] = True
             left[best] = -1.0
+            alone = alone and (depth[best] == 0.0) == (depth[leader] == 0.0)
             for other in range(count):
                 if ((climbs.u[first + other] - climbs.u[first + best]) ** 2).sum() < gap * gap:
                     left[other] = -1.0
-    for k in range(climbs.f.size):
-        if not stand[k]:
-            climbs.f[k] = -1.0
+        rival = best_rival(depth, heights, leader)
+        lowest = max((1.0 - RIVAL_LAG * (1.0 - share)) * highest, 0.0)
+        if alone and rival >= 0 and heights[rival] > lowest:
+            stand[first + rival] = True
+            climbs.spared[first + rival] = True
+    _give_up(climbs, stand)
     return stand
 
 
@@ -536,7 +585,7 @@ class Peak(Rows):
     """Peak von Mises stress and its place; arrays (n, 2), second axis roller and guide.
 
     `stress` per unit p_max (in MPa below solved patches), `x`, `y`, `z` [mm], `error` the estimated relative error, and
-    `change` its part by the elements: the relative change of the stress with tractions on a coarser grid.
+    `change` the relative change of the stress at this place with tractions on a coarser grid.
     """
 
     stress: np.ndarray
@@ -571,7 +620,25 @@ def _search_rows(first, last, patches, rules, effort, room, out):
             for body in range(2):
                 other = stress_at(coarse, body, out[i, body, 1:4], rules.summit)
                 out[i, body, 5] = abs(other / out[i, body, 0] - 1.0)
-                out[i, body, 4] += out[i, body, 5]
+                if out[i, body, 5] > FALLEN:
+                    other = _top_beside(coarse, body, out[i, body, 1:4], other, rules)
+                out[i, body, 4] += abs(other / out[i, body, 0] - 1.0)
+
+
+@woven
+def _top_beside(coarse, body, u, height, rules):
+    """Return the stress at the top of the hill of a coarse grid beside a point u (3,), where the stress is `height`.
+
+    A narrow hill lies elsewhere on coarse elements, and the stress at its place on finer ones says little of its top.
+    """
+    climbs = no_climbs(1, 0.1)
+    assign(climbs.u[body], u)
+    climbs.f[body] = height
+    along_turn(coarse.patch, u, climbs.along[body])
+    rule = rules.ridge if u[2] == 0.0 else rules.polish
+    for number in range(TOP_SWEEPS):
+        sweep(coarse, climbs, body, rule, 0.01, int(number > 0))
+    return climbs.f[body]
 
 
 @woven
@@ -591,7 +658,7 @@ def _climbed(fine, rough, points, rules, effort):
     set_steps(climbs, max(3.0 * effort.smallest, 0.01))
     for climb in np.flatnonzero(standing(climbs, 0.97, 0.1, effort.finalists)):
         rule = rules.ridge if climbs.u[climb, 2] == 0.0 else rules.polish
-        climbs.f[climb] = stress_at(fine, climb // effort.seeds, climbs.u[climb], rule)
+        climbs.f[climb] = stress_at(fine, 2 * climb // climbs.f.size, climbs.u[climb], rule)
         polish(fine, climbs, climb, rule, effort.smallest, 24 if effort.slender else 12)
     return climbs
 
@@ -601,8 +668,23 @@ def _write_highest(fine, climbs, rule, out):
     """Write the highest climb of each body, in normalised coordinates, into `out` (2, 6)."""
     count = climbs.f.size // 2
     for body in range(2):
-        best = body * count + climbs.f[body * count : (body + 1) * count].argmax()
+        first = body * count
+        heights = climbs.f[first : first + count].copy()
+        rival = -1
+        for k in range(count):
+            if climbs.spared[first + k]:
+                rival = k
+                heights[k] = -1.0
+        leader = heights.argmax()
+        if rival < 0:
+            rival = best_rival(climbs.u[first : first + count, 2], heights, leader)
+        best = first + leader
         summit = stress_at(fine, body, climbs.u[best], rule)
+        if rival >= 0 and climbs.f[first + rival] > CLOSE_RIVAL * climbs.f[best]:
+            height = stress_at(fine, body, climbs.u[first + rival], rule)
+            if height > summit:
+                best = first + rival
+                summit = height
         out[body, 0] = summit
         assign(out[body, 1:4], climbs.u[best])
         out[body, 4] = 4.0 * (abs(summit - climbs.f[best]) + climbs.gained[best]) / summit
@@ -615,18 +697,33 @@ def _seeded(fine, rough, points, rules, effort):
     if effort.adhesion and has_ridges(fine, points, values):
         line = ridge_points(fine.patch, fine.field)
         points, values = np.concatenate((points, line)), np.concatenate((values, scan(fine, line, rules.scan)), axis=1)
-    climbs = no_climbs(count, 0.12)
-    u, f = climbs.u, climbs.f
+    climbs = no_climbs(count + 1, 0.12)
     for body in range(2):
-        k = body * count
-        for best in best_seeds(points, values[body], count, effort.apart):
-            assign(u[k], points[best])
-            f[k] = values[body, best]
-            if not effort.gridded:  # the first sweep of the others takes the rule of the scan, see `_climbed`
-                f[k] = stress_at(rough, body, u[k], rules.climb)
-            along_turn(fine.patch, u[k], climbs.along[k])
+        k = body * (count + 1)
+        seeds = best_seeds(points, values[body], count, effort.apart)
+        for best in seeds:
+            _start(fine, rough, climbs, k, points[best], values[body, best], rules, effort)
             k += 1
+        rival = best_rival(points[:, 2], values[body], seeds[0])
+        if rival < 0 or not values[body, rival] > SEED_WORTH * values[body].max():
+            continue
+        alone = True
+        for best in seeds:
+            alone = alone and (points[best, 2] == 0.0) == (points[seeds[0], 2] == 0.0)
+        if alone:
+            _start(fine, rough, climbs, k, points[rival], values[body, rival], rules, effort)
+            climbs.spared[k] = True
     return climbs
+
+
+@woven
+def _start(fine, rough, climbs, k, u, height, rules, effort):
+    """Let climb k start at a point u (3,) of a scan, where the stress is `height`."""
+    assign(climbs.u[k], u)
+    climbs.f[k] = height
+    if not effort.gridded:  # the first sweep of the others takes the rule of the scan, see `_climbed`
+        climbs.f[k] = stress_at(rough, 2 * k // climbs.f.size, climbs.u[k], rules.climb)
+    along_turn(fine.patch, climbs.u[k], climbs.along[k])
 
 
 def _rough(fields: np.ndarray) -> np.ndarray:
@@ -682,7 +779,8 @@ def find_peaks(
     Notes
     -----
     Valid for any ellipticity and 0 <= nu <= 0.5. The estimated error contains the change from the quadrature of the
-    climb to that of the summit, the last gain of the climb, and with `fields` the change on elements of twice the size.
+    climb to that of the summit, the last gain of the climb, and with `fields` the change on elements of twice the size:
+    at the place of the peak, or from top to top of the hill where the stress at this place changes much.
     """
     patches = np.ascontiguousarray(patches)
     out = Peak.empty(len(patches))

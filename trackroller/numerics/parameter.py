@@ -67,6 +67,7 @@ class Parameter:
     def units(self) -> str:
         """Return the unit as the CF conventions write it."""
         written = {"deg": "degree", "-": "1", "m/min": "m min-1", "1/h": "h-1", "m/s": "m s-1", "m/s2": "m s-2"}
+        written |= {"1/mm": "mm-1", "mm3/N": "mm3 N-1"}
         return written.get(self.unit, self.unit)
 
     def allowed(self) -> str:

@@ -122,6 +122,8 @@ class ModelDeclaration:
         Words of the option `slip_terms` that the model takes.
     friction_laws : bool
         Whether friction may depend on the slip speed.
+    films : bool
+        Whether a film between the bodies, `layer_flexibility`, moves the surfaces of the model.
     remedy : str
         What to do where a word is refused.
     known_errors : bool
@@ -148,6 +150,7 @@ class ModelDeclaration:
     normals: tuple[str, ...] = ("hertz",)
     slip_terms: tuple[str, ...] = ()
     friction_laws: bool = False
+    films: bool = False
     remedy: str = "Take contact_model: kalker."
     known_errors: bool = False
     rough_peaks: bool = False
@@ -193,6 +196,7 @@ _BUILT_IN = (
         normals=("hertz", "halfspace"),
         slip_terms=("profile", "curve"),
         friction_laws=True,
+        films=True,
         known_errors=True,
         cheaper="kalker_table",
         cost=Cost.measured("kalker"),

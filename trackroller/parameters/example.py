@@ -27,6 +27,7 @@ LASTING: dict[str, Any] = {
     "roller_profile_radius": -6.4,
     **dict.fromkeys(("roller_material", "guide_material"), "1.7225-quenched-tempered"),
 }
+ABSENT = ("layer_flexibility",)  # a default that means "none of it" is no value that somebody has to be told
 _PAIR = ("material_pair", "roller_material", "guide_material")
 
 
@@ -70,7 +71,7 @@ def used_of(values: Mapping[str, Any], names: Iterable[str]) -> dict[str, Any]:
     replaced = ""
     if all(levels):
         replaced = "roller_profile_radius"
-    return {name: values[name] for name in names if name != replaced}
+    return {name: values[name] for name in names if name != replaced and name not in ABSENT}
 
 
 def with_unit(name: str, value: Any) -> str:

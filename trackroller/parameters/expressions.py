@@ -25,7 +25,15 @@ import numpy as np
 
 from trackroller.errors import InputError, unknown_name
 from trackroller.numerics.units import split_quantity
-from trackroller.parameters.syntax_checks import check_tree, not_allowed, syntax_remedy, unknown_function
+from trackroller.parameters.syntax_checks import (
+    NAMES,
+    check_tree,
+    name_with_blank,
+    not_allowed,
+    rename_remedy,
+    syntax_remedy,
+    unknown_function,
+)
 
 MAX_LENGTH = 500  # characters; a longer calculation belongs in a script
 
@@ -232,6 +240,10 @@ def _tree(text: str, field: str) -> ast.expr:
     except InputError:
         raise
     except SyntaxError as exc:
+        name = name_with_blank(text)
+        if name:
+            wrong = f"has a blank between the words '{name}'"
+            raise InputError(field, text, NAMES, rename_remedy(name), wrong) from None
         wrong = f"has a syntax error at character {max(exc.offset or 1, 1)}"
         raise InputError(field, text, "", syntax_remedy(text) or _REMEDY, wrong) from None
     except (RecursionError, MemoryError, ValueError):
@@ -393,7 +405,9 @@ class _Evaluation:
         compare = _COMPARE[type(op)][1]
         numbers, texts = _parted([one, other])
         if texts and (numbers or not isinstance(op, (ast.Eq, ast.NotEq))):
-            raise self.refused(node, "ordering a text, or comparing it with a number,")
+            name = next((one for one in texts if isinstance(one, str) and " " in one.strip()), "")
+            remedy = rename_remedy(name) if name else ""
+            raise self.refused(node, "ordering a text, or comparing it with a number,", remedy)
         if numbers:
             one, other = numbers
             known = ~np.isnan(one) & ~np.isnan(other)

@@ -73,6 +73,17 @@ _ALL = (
         **_USE,
     ),
     Parameter(
+        "layer_flexibility",
+        "h/G_3",
+        "mm3/N",
+        0.0,
+        "thickness over shear modulus of a film between the bodies, such as wear debris; 0 is no film",
+        0.0,
+        1e3,
+        label="flexibility of a film",
+        **_USE,
+    ),
+    Parameter(
         "velocity",
         "v",
         "m/min",

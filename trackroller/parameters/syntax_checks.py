@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import keyword
 import re
 from collections.abc import Collection
 
@@ -17,6 +18,7 @@ _COMMA = "Write decimals with a point, such as 0.5, and thousands without a comm
 _MULTIPLY = "Write * for a product."
 _POWER = "Write ** for a power, such as x ** 2."
 _SYNTAX = {  # what a person writes who expects another language -> what to write
+    r"\b(?:AND|And|OR|Or|NOT|Not)\b": "Write and, or, not in small letters.",
     r"\d,\d{3}(?!\d)": _COMMA,
     r"[²³]": _POWER,
     r"[×·⋅]|\d\s*[^\W\d]|\)\s*[\w(]": _MULTIPLY,
@@ -46,6 +48,36 @@ _NODES: dict[type[ast.AST], tuple[str, str]] = {
     ast.NotIn: ("the words not in", "Compare with each value, as in x != 1 and x != 2."),
 }
 _OTHER_NAMES = {"ln": "log", "pow": "**", "lg": "log10", "sqr": "** 2", "if": "where"}
+
+
+NAMES = "names of letters, digits and _"
+
+
+def name_with_blank(text: str) -> str:
+    """Return words with blanks between them that stand where one name can stand, '' if there are none.
+
+    Examples
+    --------
+    >>> name_with_blank("slip < 0.1 and load case == 'first run'"), name_with_blank("slip < 0.1 and not drawn")
+    ('load case', '')
+    """
+    without_texts = re.sub(r"'[^']*'|\"[^\"]*\"", "''", text)
+    for found in re.finditer(r"[^\W\d]\w*(?:[ \t]+[^\W\d]\w*)+", without_texts):
+        name: list[str] = []
+        for word in [*found[0].split(), "and"]:
+            if word.lower() not in keyword.kwlist:
+                name.append(word)
+            elif len(name) > 1:
+                return " ".join(name)
+            else:
+                name = []
+    return ""
+
+
+def rename_remedy(name: str) -> str:
+    """Return what to write for words that are no name of an expression; a column of a table is known by it, too."""
+    new = re.sub(r"\W+", "_", name).strip("_")
+    return f"Write {new}: a column is known by this name, too."
 
 
 def syntax_remedy(text: str) -> str:

@@ -30,9 +30,10 @@ class ValidityFlag(NamedTuple):
 VALIDITY: dict[str, ValidityFlag] = {
     "half_space": ValidityFlag(
         "the patch is too large for a half-space",
-        "a or b above 0.3 of the smallest radius of curvature: the bodies are not half-spaces",
-        "A semi-axis exceeds 0.3 of the smallest radius: take pressure and stress as estimates, or choose a less close "
-        "fit.",
+        "b above 0.3 of the smallest radius of curvature, or a above 0.3 of the radius in the rolling plane or above "
+        "0.65 of the lateral radius of a groove or its guide (0.3 of other rollers and of drawn profiles): the bodies "
+        "are not half-spaces",
+        "A semi-axis is too large for the radii: take pressure and stress as estimates, or choose a less close fit.",
         of_body=True,
     ),
     "yield": ValidityFlag(
@@ -78,8 +79,9 @@ VALIDITY: dict[str, ValidityFlag] = {
     ),
     "steep_friction": ValidityFlag(
         "friction falls faster with the slip speed than the surfaces follow",
-        "mu p_max v max(-df/dv)/G above 1 (kalker): friction falls faster with the slip speed "
-        "than elastic surfaces follow; a patch has several states or none, and the roller may not roll steadily",
+        "mu p_max v max(-df/dv) (1/G + h/(G_3 l)) above 1 (kalker), with a film h/G_3 and the length l of an element: "
+        "friction falls faster with the slip speed than the surfaces follow; a patch has several states or none, and "
+        "the roller may not roll steadily",
         "The roller may not roll steadily: use a friction law that falls less steeply.",
     ),
     "overheated": ValidityFlag(
@@ -91,7 +93,7 @@ VALIDITY: dict[str, ValidityFlag] = {
     "worn": ValidityFlag(
         "the groove wears away within the life",
         "the life of the body to its first limit, in km of travel, exceeds run_in_distance, beyond which the profiles "
-        "are no longer those given (group wear)",
+        "are no longer those given (group wear); of a spectrum or carriage, both over all load cases",
         "Take the life as an estimate: beyond the run-in distance the worn groove decides pressure, stress and life.",
         of_body=True,
     ),
@@ -112,5 +114,12 @@ VALIDITY: dict[str, ValidityFlag] = {
         "frictional work of an element above the last work_rate of wear_table, or below its first one (wear_law: "
         "energy): the loss of mass is extrapolated",
         "Take depth and life of wear as estimates, or extend wear_table by tests at this frictional work.",
+    ),
+    "close_fit": ValidityFlag(
+        "the fit is so close that Hertz's pressure is too low",
+        "a above 0.3 and at most 0.65 of the lateral radius of a groove and its guide: pressure_model_error, "
+        "peak_stress_model_error, semi_axis_model_error and friction_power_model_error say by how much Hertz's theory "
+        "errs",
+        "Add pressure_model_error to pressures and stresses, or choose a less close fit.",
     ),
 }

@@ -28,8 +28,8 @@ def write(result: xr.Dataset | Results | Fit, path: Path | str) -> Path:
     result : xarray.Dataset, Results or Fit
         Results of a study, its data set in `study.nc`, or what `trackroller.solve` returned for its design: the report.
         The data set of one case: its sheet. What `solve_spectrum`, `trackroller.carriage`, `trackroller.wear`,
-        `trackroller.fit_sn` or `trackroller.fit_bench` returned: the page of a load spectrum, of a carriage, of wear,
-        of a fit.
+        `trackroller.patch`, `trackroller.fit_sn` or `trackroller.fit_bench` returned: the page of a load spectrum, of
+        a carriage, of wear, of one contact, of a fit.
     path : Path or str
         The file to write, .html or .pdf. It stands alone and can be sent by mail. A browser prints the PDF: Chromium,
         Chrome or Edge.
@@ -69,12 +69,15 @@ def write(result: xr.Dataset | Results | Fit, path: Path | str) -> Path:
 
 
 def _write_without_study(ds: xr.Dataset, path: Path | str) -> Path:
-    """Write the sheet of one case, or the page of a load spectrum, of a carriage or of wear."""
+    """Write the sheet of one case, or the page of a load spectrum, of a carriage, of wear or of one contact."""
     from trackroller.report.pages.carriage import write_carriage  # heavy: jinja2
+    from trackroller.report.pages.patch import write_patch  # heavy: jinja2
     from trackroller.report.pages.sheet import write_sheet  # heavy: jinja2
     from trackroller.report.pages.spectrum import write_spectrum  # heavy: jinja2
     from trackroller.report.pages.wear import write_wear  # heavy: jinja2
 
+    if "patch" in ds.attrs:
+        return write_patch(ds, path)
     if "groove_depth" in ds:
         return write_wear(ds, path)
     if "payload_to_lift_off" in ds:

@@ -30,7 +30,8 @@ Keys of `Answer.headline`; a key that is missing, None, NaN or empty is left out
 `wanted`, `n`      share that is wanted [1]; drawn conditions
 =================  =====================================================================================================
 
-`how sure`: `share`, `share_low`, `share_high`, `wanted`, `n` of drawn conditions, or `meets`, `of` of listed loads; and
+`how sure`, by `Answer.kind` (`share`, `count`, `cannot_tell` with `why`):
+`share`, `share_low`, `share_high`, `wanted`, `n` of drawn conditions, or `meets`, `of` of listed loads; and
 `low`, `high`, `ends`, `ends_high`, `body`, `error`, `extrapolated`, `exceeded`, `second`, `not_held` as above.
 
 `what matters`: `factors`, a list of at most two dicts, the largest first: `title`, `units`, `index`, `index_low`,
@@ -46,7 +47,7 @@ of the curve), `at_from`, `at_to` [unit of the output]; `asked`: the same of a f
 `at` (`corner`, `knee` or ''), `goals` and `required` (lists of {words, units, value}; `required` holds outputs of
 requirements that are no goals; a goal with `is_choice` stands in the name), `stopped` (search stopped before this end);
 `binds` (requirement, limit or end of a range in words), `accuracy` (of these numbers), `extrapolated`,
-`exceeded`, `second`.
+`exceeded`, `second`, and of drawn conditions `share`, `share_low`, `share_high`, `wanted`, `n` as above.
 
 `roller`, `spectrum`, `wear`, `carriage`: see `roller_answer`, `spectrum_answer`, `wear_answer` and `carriage_answer`
 in `trackroller.results`.
@@ -190,6 +191,7 @@ def _cannot_tell(answer: Answer) -> str:
 
 
 CAUSES = {
+    "chance": "no material has a life at this failure probability",
     "model": "the model does not judge every condition of a candidate",
     "conditions": "candidates share no condition",
     "materials": "a material lacks the life that others have",
@@ -217,15 +219,21 @@ def _lasts(answer: Answer) -> list[str]:
     tenth = _tenth(answer)
     if tenth and answer.kind not in SILENT:
         clauses.append(f"{tenth} in nine of ten drawn conditions{_then(head)}")
-    elif _known(head, "low") and answer.kind not in SILENT:
+    elif _known(head, "low") and answer.kind not in SILENT and _has_leader(answer):
         whose = f"{_leader(answer)} " if answer.kind in ("a_or_b", "measure", "give") else ""
         place = "" if _one_condition(answer) else " at its worst condition"
         clauses.append(f"{whose}{_value_said(answer)}{place}{_then(head)}")
     clauses += _turn(head)
-    return [*clauses, *_other_rules(head), *_required(answer)]
+    others = [] if answer.kind == "cannot_tell" else _other_rules(head)
+    return [*clauses, *others, *_required(answer)]
 
 
 SILENT = ("none", "cannot_tell")  # kinds without a leader
+
+
+def _has_leader(answer: Answer) -> bool:
+    """Return whether a design can be spoken of: none can where a load is asked for and no design holds."""
+    return answer.kind != "give" or bool(answer.headline.get("names"))
 
 
 def _one_condition(answer: Answer) -> bool:
@@ -271,7 +279,7 @@ def _nearest(answer: Answer) -> list[str]:
     if answer.kind != "none" or not near:
         return []
     clauses = _reached(near) if answer.required else [f"holds {near['holds']} of {near['of']} conditions"]
-    if _known(near, "low") and near["low"] > 0:
+    if _known(near, "low") and near["low"] > 0 and near["holds"] == near["of"]:
         clauses[0] += f", {_output(answer, near['low'])} at the worst"
     fails = _short(near.get("fails"))
     return [*clauses, f"fails at {fails}"] if fails else clauses
@@ -294,6 +302,8 @@ def _turn(head: Mapping[str, Any]) -> list[str]:
 def how_sure(answer: Answer) -> Headline:
     """Say which share of the conditions, or how many of the listed loads, meet the requirement."""
     head = answer.headline
+    if answer.kind == "cannot_tell":
+        return Headline(_cannot_tell(answer), ".")
     if _known(head, "share"):
         lead = f"{_share(head)} of the {head['n']:,} drawn conditions {_reach(answer.required)}"
         wanted = [f"{percent(head['wanted'])} are wanted"] if _known(head, "wanted") else []
@@ -406,7 +416,11 @@ def best(answer: Answer) -> Headline:
     binds = _short(head.get("binds"))
     if binds:
         clauses.append(f"bound by {binds}")
-    return _joined(f"Build {_name(answer, first['name'])}", [*clauses, *_other_rules(head), *_required(answer)])
+    if _known(head, "share"):
+        clauses += _shares(answer)
+    else:
+        clauses += [*_other_rules(head), *_required(answer)]
+    return _joined(f"Build {_name(answer, first['name'])}", clauses)
 
 
 def _without_design(answer: Answer) -> Headline:

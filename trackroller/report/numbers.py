@@ -16,8 +16,19 @@ from trackroller.roller.duty import duty_of, years
 from trackroller.study.design.levels import NAMED, short
 
 UNITS = {"1": "–", "-": "–", "degree": "°", "deg": "°"}
-UNITS |= {"m min-1": "m/min", "h-1": "1/h", "J m-1": "J/m", "N mm": "N·mm", "mm km-1": "mm/km", "mm3 km-1": "mm³/km"}
+UNITS |= {
+    "m min-1": "m/min",
+    "m s-1": "m/s",
+    "m s-2": "m/s²",
+    "m/s2": "m/s²",
+    "h-1": "1/h",
+    "J m-1": "J/m",
+    "N mm": "N·mm",
+    "mm km-1": "mm/km",
+    "mm3 km-1": "mm³/km",
+}
 UNITS |= {"mm3/(N m)": "mm³/(N m)", "degC": "°C", "mm2": "mm²", "W/(m2 K)": "W/(m² K)"}
+UNITS |= {"mm-1": "1/mm", "mm3 N-1": "mm³/N", "mm3/N": "mm³/N"}
 SMALL_NUMBERS = {2: "two", 3: "three", 4: "four", 5: "five", 6: "six", 7: "seven", 8: "eight", 9: "nine"}
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 

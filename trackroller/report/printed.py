@@ -18,6 +18,12 @@ def print_answer(answer: Answer) -> None:
     """
     with on_duty(answer.facts.get("duty")):
         print_text(headline_of(answer).text)
+    print_below_headline(answer)
+
+
+def print_below_headline(answer: Answer) -> None:
+    """Print what `print_answer` prints below the headline."""
+    with on_duty(answer.facts.get("duty")):
         printed = MOST_ROWS if rows_before_fold(answer) < len(answer.table) else len(answer.table)
         _print_rows(rows_of(answer), most=printed)
         left = len(answer.table) - printed

@@ -31,7 +31,7 @@ from trackroller.results.roller_answer import answer_of_roller
 from trackroller.roller import stored_inputs as record
 from trackroller.roller.aliases import RADII
 from trackroller.roller.dataset import FLAGS
-from trackroller.roller.duty import duty_of
+from trackroller.roller.duty import OVERROLLINGS, duty_of, strokes_of
 from trackroller.roller.output_names import PARTS
 from trackroller.study.outputs import flat, parts_in
 from trackroller.study.store.put import put, put_text
@@ -204,8 +204,14 @@ def write_roller(ds: xr.Dataset, path: Path) -> Path:
     sources = dict.fromkeys(own, "given") | dict.fromkeys(example, "example")
     if record.friction_records(ds.attrs):  # left out, or a level of the database
         sources["friction_coefficient"] = "database"
+    strokes = strokes_of(ds) or {}
+    if strokes:
+        sources[OVERROLLINGS] = "strokes"
     rows = [[name, _plain(value), units.get(name, unit_of(name)), sources[name]] for name, value in own.items()]
-    rows += [[name, value, "-", "given"] for name, value in duty.items()]
+    by_strokes = {"hours_per_day": "strokes"} if strokes else {}
+    units_of_strokes = {"stroke": "m"}
+    for name, value in (duty | strokes).items():
+        rows.append([name, value, units_of_strokes.get(name, "-"), by_strokes.get(name, "given")])
     rows = [[name, long_name(name), *others] for name, *others in rows]
     sheets = [Table("inputs", "Inputs", ["input", "meaning", "value", "unit", "from"], rows)]
     known = parts_in(ds, (str(name) for name, v in ds.data_vars.items() if v.dtype.kind in "fiu"), ())

@@ -181,8 +181,8 @@ class Answer:
     not_given : values that nobody gave, with their units in words
     warnings : see `Caution`
     facts : title line: `name`, `description`, `date`, `cases`, `candidates`, `conditions`, `drawn`, `models`,
-        `accuracy`, `duty`, `counted` (what `cases` counts); of one roller `probability`, `regime`, `converged` and
-        `reason` as well
+        `accuracy`, `duty`, `strokes` (those that the duty was given in), `counted` (what `cases` counts); of one roller
+        `probability`, `regime`, `converged` and `reason` as well
     """
 
     question: str

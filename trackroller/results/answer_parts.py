@@ -11,6 +11,7 @@ import pandas as pd
 from trackroller.damage import LIMITS, limit_word
 from trackroller.parameters import BODIES
 from trackroller.parameters.carriage_fields import long_name_of
+from trackroller.parameters.example import ABSENT
 from trackroller.results.answer import Caution
 from trackroller.results.candidates import slip_margin
 from trackroller.results.case_ranges import CaseRanges
@@ -52,6 +53,7 @@ def facts_of(results: SolvedCases, own: Comparison | None = None) -> dict[str, A
         "models": [str(one) for one in models],
         "accuracy": str(results.config.accuracy),
         "duty": results.config.duty,
+        "strokes": None,
         "candidates": None,
         "conditions": None,
         "drawn": False,
@@ -131,7 +133,7 @@ def not_given_words(results: SolvedCases) -> dict[str, str]:
     """Return the values that nobody gave, with their units."""
     found = {}
     for name in names_not_given(results.data.attrs):
-        if name in results.factors or name in results.derived:
+        if name in results.factors or name in results.derived or name in ABSENT:
             continue
         value = results.base.get(name)
         if value is not None and not (isinstance(value, float) and np.isnan(value)):
@@ -175,7 +177,7 @@ def cautions(own: Comparison, shown: pd.DataFrame, named: int = 1) -> tuple[Caut
     ----------
     own : the comparison of a study
     shown : table of the answer, the leader first
-    named : number of the first rows that the headline names
+    named : number of the first rows that the headline names; 0 for none
     """
     found = [*case_cautions(own.results, own.ranges, own.own)]
     if "second_state" in shown and own.required:
@@ -183,9 +185,9 @@ def cautions(own: Comparison, shown: pd.DataFrame, named: int = 1) -> tuple[Caut
         if turned.iloc[1:].any():
             words = ", ".join(dict.fromkeys(shown["second"][turned]))
             found.append(Caution("second_model", int(turned.sum()), len(shown), words, "candidates"))
-    edges = [edge for edge in shown["edge"].iloc[: max(named, 1)] if edge]
+    edges = [edge for edge in shown["edge"].iloc[:named] if edge]
     if edges:
-        found.append(Caution("at_end", len(edges), max(named, 1), _edge_text(own, shown, edges[0]), "candidates"))
+        found.append(Caution("at_end", len(edges), named, _edge_text(own, shown, edges[0]), "candidates"))
     return (*found, *_unlike(own, shown))
 
 

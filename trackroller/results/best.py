@@ -41,7 +41,7 @@ from trackroller.results.judging import (
     shares_of,
     shortfall,
 )
-from trackroller.results.lives import OF_PAIR
+from trackroller.results.lives import OF_PAIR, lacks_a_body
 from trackroller.results.requirement import required_of
 from trackroller.results.solved_cases import SAME_ENDS, SolvedCases
 from trackroller.roller.output_names import is_life
@@ -257,6 +257,10 @@ def _headline(found: _Found, kind: str) -> dict[str, Any]:
     }
     if not settled:
         return head | {"nearest": _nearest(found, chosen)}
+    if found.wanted and _is_drawn(found):
+        own = _requirement(found, chosen)
+        head |= {key: own[key] for key in ("share", "share_low", "share_high")}
+        head |= {"wanted": max(one.wanted for one in found.shares), "n": found.results.design.meta["inner_samples"]}
     if kind != "front":
         binds = _binds(found, chosen)[:2]
         head["binds"] = listing(binds) if binds else ""
@@ -554,9 +558,12 @@ def _second_life(found: _Found, number: int) -> tuple[str, float, str] | None:
     valid = found.results.valid[rows]
     least, wanted = _required_life(found)
     shortest: tuple[str, float, str] | None = None
-    for place, limit in enumerate(data["limit"].values.tolist()):
+    limits = data["limit"].values.tolist()
+    for place, limit in enumerate(limits):
+        if limit not in LIMITS or not LIMITS[limit].beside or lacks_a_body(hours[valid], limits, limit).any():
+            continue
         own = np.fmin.reduce(hours[valid, place], axis=1)
-        if limit not in LIMITS or not LIMITS[limit].beside or not own.size or np.isnan(own).any():
+        if not own.size or np.isnan(own).any():
             continue
         verdict = ""
         if not np.isnan(least):

@@ -12,10 +12,10 @@ from trackroller.parameters import BODIES
 from trackroller.parameters.carriage_fields import long_name_of, parameter_of
 from trackroller.results.answer import STATES, Column
 from trackroller.results.comparison import Comparison, wilson
-from trackroller.results.lives import BESIDE, OF_PAIR
+from trackroller.results.lives import BESIDE, OF_PAIR, lacks_a_body
 from trackroller.results.places import case_text, places_of, places_text, plain
 from trackroller.roller.output_names import is_life
-from trackroller.study.outputs import flat
+from trackroller.study.outputs import flat, of_first_limit
 
 DESCRIBED = 500  # candidates whose misses are described by levels; of further ones they are counted
 
@@ -72,7 +72,9 @@ def _goods_columns(own: Comparison, table: pd.DataFrame) -> list[Column]:
 def candidate_columns(own: Comparison, table: pd.DataFrame) -> tuple[Column, ...]:
     """Return the columns of the table of candidates that a reader is shown, as far as the study has them."""
     name, words, units = own.ranges.output
-    chance = float(own.results.data.attrs.get("failure_probability", 0.5))
+    chance = 0.5
+    if of_first_limit(name):
+        chance = float(own.results.data.attrs.get("failure_probability", 0.5))
     life = f"{words}, at {100 * chance:g} % failure probability" if is_life(name) else words
     columns = []
     if own.required:
@@ -98,25 +100,7 @@ def candidate_columns(own: Comparison, table: pd.DataFrame) -> tuple[Column, ...
         *_ends_apart(table),
     ]
     columns += _count_columns(own)
-    if own.drawn:
-        share = "share of the drawn conditions that meet the requirement" if own.required else "share that is held"
-        columns += [
-            Column("share", "Share", "1", share, "share"),
-            Column("share_low", "95 %", "1", "Wilson's interval of the share", "share", until="share_high"),
-            Column(
-                "share_short",
-                "With error",
-                "1",
-                "share if all lives are shorter, or longer, by their told error",
-                "share",
-                until="share_long",
-            ),
-            Column("tenth", "Tenth part", units, "what nine of ten drawn conditions reach"),
-            Column(
-                "tenth_low", "Its 95 %", units, "interval of the tenth part by order statistics", until="tenth_high"
-            ),
-            Column("median_low", "95 % of the median", units, "interval by order statistics", until="median_high"),
-        ]
+    columns += _drawn_columns(own, units)
     if (table["second"] != "").any():
         columns += [
             Column("second", "Second model", "", "the second model of the same end with the shortest life", "text"),
@@ -136,15 +120,38 @@ def candidate_columns(own: Comparison, table: pd.DataFrame) -> tuple[Column, ...
             ),
             Column("longer", "Better in", "", better, "count"),
         ]
-    columns += [
-        Column("error", "Error", "1", "told 95 % error of the solution at the worst condition", "error"),
-        Column("extrapolated", "Extrapolated", "", "conditions whose life lies beyond the data of its rule", "count"),
-    ]
+    if table["error"].notna().any():
+        columns.append(Column("error", "Error", "1", "told 95 % error of the solution at the worst condition", "error"))
+    columns.append(
+        Column("extrapolated", "Extrapolated", "", "conditions whose life lies beyond the data of its rule", "count")
+    )
     if (table["edge"] != "").any():
         columns.append(
             Column("edge", "At the end of", "", "choices at the smallest or largest of their levels", "text")
         )
     return tuple(columns)
+
+
+def _drawn_columns(own: Comparison, units: str) -> list[Column]:
+    """Return the columns of drawn conditions: shares and order statistics with their intervals; [] for listed ones."""
+    if not own.drawn:
+        return []
+    share = "share of the drawn conditions that meet the requirement" if own.required else "share that is held"
+    return [
+        Column("share", "Share", "1", share, "share"),
+        Column("share_low", "95 %", "1", "Wilson's interval of the share", "share", until="share_high"),
+        Column(
+            "share_short",
+            "With error",
+            "1",
+            "share if all lives are shorter, or longer, by their told error",
+            "share",
+            until="share_long",
+        ),
+        Column("tenth", "Tenth part", units, "what nine of ten drawn conditions reach"),
+        Column("tenth_low", "Its 95 %", units, "interval of the tenth part by order statistics", until="tenth_high"),
+        Column("median_low", "95 % of the median", units, "interval by order statistics", until="median_high"),
+    ]
 
 
 def _count_columns(own: Comparison) -> list[Column]:
@@ -195,7 +202,7 @@ def _ends(own: Comparison) -> dict[str, Any]:
         "body": body,
         "ends_high": ends_high,
         "body_high": body_high,
-        "error": np.where(case < 0, 0.0, ranges.error[case]),
+        "error": np.where(case < 0, np.nan, ranges.told_error[case]),
         "extrapolated": _conditions_with(own, ranges.beyond & rows),
     }
 
@@ -355,45 +362,78 @@ MOST_FACTORS = 2  # whose levels describe where a candidate fails
 
 
 def _second_models(own: Comparison) -> dict[str, Any]:
-    """Return the life of each candidate by the second model that is shortest, with its name and its verdict."""
+    """Return the life of each candidate by the second model that is shortest, with its name and its verdict.
+
+    A second model that knows no life of a body whose fatigue is known says nothing of this candidate.
+    """
     nothing = {"second": "", "second_low": np.nan, "second_high": np.nan, "second_state": ""}
     value = own.hours_by_limit("")
     if value is None or not is_life(own.ranges.output[0]):
         return nothing
     names = [str(name) for name in own.results.data["limit"].values]
-    low, high = value, value
-    lower, upper = own.hours_by_limit("_low"), own.hours_by_limit("_high")
-    if lower is not None and upper is not None:
-        low = np.where(np.isnan(lower), value, lower)
-        high = np.where(np.isnan(upper), value, upper)
     rows = own.own & (own.ranges.held if own.drawn else own.reachable)
     shortest = np.full(own.count, np.inf)
     longest = np.full(own.count, np.inf)
     which = np.full(own.count, "", dtype=object)
-    for place, name in enumerate(names):
-        if name not in BESIDE or np.isnan(low[rows, place]).all():
+    lives = np.full((2, len(value)), np.nan)  # of the second model that counts for each case
+    for name in BESIDE:
+        ends = _ends_by(own, names, name)
+        if ends is None:
             continue
-        has_life = np.ones(len(low), dtype=bool)
-        ends = []
-        for values in (low, high):
-            of_pair = np.fmin.reduce(values[:, place], axis=1)
-            has_life &= ~np.isnan(of_pair)
-            ends.append(_least(own, of_pair, rows))
-        unknown = np.bincount(own.place[rows & ~has_life], minlength=own.count) > 0
-        shorter = ~unknown & ~np.isnan(ends[0]) & ((which == "") | (ends[0] < shortest))
-        which[shorter] = name
-        shortest = np.where(shorter, ends[0], shortest)
-        longest = np.where(shorter, ends[1], longest)
+        least = [_least(own, end, rows) for end in ends]
+        unknown = np.bincount(own.place[rows & np.isnan(ends[0])], minlength=own.count) > 0
+        shorter = ~unknown & ~np.isnan(least[0]) & ((which == "") | (least[0] < shortest))
+        which[shorter] = limit_word(name)
+        shortest = np.where(shorter, least[0], shortest)
+        longest = np.where(shorter, least[1], longest)
+        lives = np.where(own.own & shorter[own.place], ends, lives)
     known = which != ""
-    found = {
-        "second": [limit_word(str(name)) for name in which],
+    return {
+        "second": [str(name) for name in which],
         "second_low": np.where(known, shortest, np.nan),
         "second_high": np.where(known, longest, np.nan),
+        "second_state": [str(one) for one in np.where(known, _second_states(own, lives), "")],
     }
-    least = max((one.least for one in own.required if one.output in OF_PAIR), default=np.nan)
-    state = np.where(shortest >= least, "met", np.where(longest >= least, "open", "missed"))
-    found["second_state"] = [str(one) for one in np.where(known & np.isfinite(least), state, "")]
-    return found
+
+
+def _ends_by(own: Comparison, limits: list[str], name: str) -> np.ndarray | None:
+    """Return the shorter life of both bodies by a second model, at both ends of its range, shape (2, n) [h].
+
+    The life is NaN where the model lacks that of a body whose fatigue is known; None for a model that knows no life.
+    """
+    hours = [own.hours_by_limit(end) for end in ("", "_low", "_high")]
+    place = limits.index(name) if name in limits else -1
+    if hours[0] is None or place < 0:
+        return None
+    middle = hours[0][:, place]
+    if np.isnan(middle[own.own]).all():
+        return None
+    lacks = lacks_a_body(hours[0], limits, name)
+    found = []
+    for end in hours[1:]:
+        values = middle if end is None else np.where(np.isnan(end[:, place]), middle, end[:, place])
+        found.append(np.where(lacks, np.nan, np.fmin.reduce(values, axis=1)))
+    return np.stack(found)
+
+
+def _second_states(own: Comparison, lives: np.ndarray) -> np.ndarray:
+    """Return the state of each candidate if a second model gives its lives, shape (candidates,); '' if none is judged.
+
+    Parameters
+    ----------
+    own : the comparison
+    lives : shorter life of both bodies at both ends of its range, shape (2, n) [h]
+    """
+    if not any(one.output in OF_PAIR for one in own.required):
+        return np.full(own.count, "")
+    sure, may = own.met(lives=lives)
+    if not own.drawn:
+        surely, perhaps = _everywhere(own, sure), _everywhere(own, may)
+    elif np.isfinite(own.wanted_share):
+        surely, perhaps = (own.shares(rows) >= own.wanted_share for rows in (sure, may))
+    else:
+        return np.full(own.count, "")
+    return np.where(surely, "met", np.where(perhaps, "open", "missed"))
 
 
 def _exceeded(own: Comparison) -> dict[str, Any]:

@@ -32,6 +32,7 @@ from trackroller.results.placeholders import guess_cautions, placeholders_part
 from trackroller.results.roller_answer import CODES, checks_left_out, facts_of_data, rounded_text, state_of_life
 from trackroller.results.spectrum_answer import not_given_values
 from trackroller.roller.dataset import validity_bit
+from trackroller.roller.duty import strokes_words
 from trackroller.roller.stored_inputs import MATERIALS, doubts_of
 
 LOADS = {"payload": "payload", "loads": "all loads"}  # parts of the loads that a margin multiplies
@@ -358,7 +359,7 @@ def _parts(ds: xr.Dataset) -> Iterator[Part]:
     """Yield the further tables of a carriage: loads, load cases with their margins, masses, and places."""
     loads = pd.DataFrame(list(_loads(ds)), columns=[one.name for one in OF_LOADS])
     columns = tuple(one for one in OF_LOADS if not _is_empty(loads[one.name]) or one.role)
-    yield Part("loads", "Loads of the rollers", loads, columns)
+    yield Part("loads", "Loads of the rollers", loads, columns, strokes_words(ds))
     cases = pd.DataFrame(list(_cases(ds)), columns=[one.name for one in OF_CASES])
     shown = tuple(one for one in OF_CASES if "_to_" not in one.name or f"{one.name}" in ds)
     yield Part("cases", "Load cases and margins", cases, shown, OF_MARGINS)

@@ -107,6 +107,7 @@ class CaseRanges:
         masks = [
             ("value not known", np.isnan(self.value)),
             ("fatigue not known", results.without_fatigue & is_life(self.output[0])),
+            ("fatigue not known", np.isnan(self.value) & self._without_chance),
             *((f"limit {name}", rows) for name, rows in results.limits_in("exceeded").items()),
             ("yields", results.flagged("yield")),
             ("breaks", results.flagged("static")),
@@ -121,6 +122,11 @@ class CaseRanges:
         for word, rows in masks:  # the last one counts
             out[rows] = word
         return out
+
+    @property
+    def _without_chance(self) -> bool:
+        """Return whether the output is a life at a failure probability for which no material has scatter."""
+        return self.results.without_chance and of_first_limit(self.output[0])
 
     @cached_property
     def held(self) -> np.ndarray:
@@ -155,6 +161,26 @@ class CaseRanges:
         return np.zeros(len(self.value))
 
     @cached_property
+    def told_error(self) -> np.ndarray:
+        """Return the error that is stated, shape (n,) [1].
+
+        NaN where none is: a case that is not held, a life that another limit than fatigue ends, an output without one.
+        """
+        name = self.output[0]
+        results = self.results
+        stated = np.full(len(self.value), name.startswith("peak_stress"))
+        if is_life(name):
+            stated = self._by_fatigue & ("life_error_estimate" in results.data)
+        elif f"error_estimate_{body_of(name)}" not in results.table:
+            stated = np.zeros(len(stated), dtype=bool)
+        return np.asarray(np.where(self.held & stated, self.error, np.nan))
+
+    @cached_property
+    def _by_fatigue(self) -> np.ndarray:
+        """Return the cases that fatigue ends, or that no known limit ends, shape (n,)."""
+        return np.isin(self.first[0].astype(str), ("fatigue", ""))
+
+    @cached_property
     def _error_of_life(self) -> np.ndarray:
         """Return the error of the fatigue life that ends a case, shape (n,) [1]; 0 where another limit ends it."""
         results = self.results
@@ -165,8 +191,7 @@ class CaseRanges:
         lives = flat(data, "life_cycles", results.dims)
         place = np.argmin(np.where(np.isnan(lives), np.inf, lives), axis=1)[:, None, :]
         own = np.nan_to_num(np.take_along_axis(errors, place, axis=1)[:, 0, :])
-        by_fatigue = np.isin(self.first[0].astype(str), ("fatigue", ""))
-        return np.asarray(np.where(by_fatigue, np.where(self.first[1], own[:, 1], own[:, 0]), 0.0))
+        return np.asarray(np.where(self._by_fatigue, np.where(self.first[1], own[:, 1], own[:, 0]), 0.0))
 
     @cached_property
     def first(self) -> tuple[np.ndarray, np.ndarray]:

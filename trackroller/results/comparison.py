@@ -25,7 +25,9 @@ from trackroller.results.lives import FIRST_LIMIT, OF_PAIR
 from trackroller.results.requirement import required_of
 from trackroller.results.robustness import material_deviations
 from trackroller.results.solved_cases import SolvedCases
+from trackroller.roller.expected_errors import ratio_error
 from trackroller.roller.output_names import is_life
+from trackroller.roller.told_errors import ORDINARY_FRICTION
 from trackroller.study.design.levels import OF_MATERIALS
 from trackroller.study.outputs import flat
 
@@ -266,19 +268,33 @@ class Comparison:
         """Return the cases in conditions that no candidate holds, shape (n,); none if no condition is held at all."""
         return np.asarray(self.own & ~self.reachable)
 
+    @cached_property
+    def never_held(self) -> np.ndarray:
+        """Return the cases in conditions that no candidate holds, drawn ones included, shape (n,)."""
+        uses = np.unique(self.pairs[1][self.all_in_pair(self.ranges.held)])
+        return np.asarray(self.own & ~np.isin(self.use, uses))
+
+    @property
+    def why_unjudged(self) -> str:
+        """Return why cases are not judged: `chance` without a life at the failure probability asked for, or `model`."""
+        return "chance" if self.results.without_chance else "model"
+
     # what meets the requirement
 
-    def met(self, exact: bool = False) -> tuple[np.ndarray, np.ndarray]:
+    def met(self, exact: bool = False, lives: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray]:
         """Return the cases that surely meet all requirements, and those that may, shape (n,) each.
 
         Parameters
         ----------
         exact : whether the errors of the solution do not count
+        lives : lives of a second model that take the place of those of the pair, at both ends, shape (2, n) [h]
         """
         sure = self.ranges.held & ~self.ranges.open
         may = np.where(self.ranges.judged, self.ranges.held, True)
         for one, own in self.judges:
             certain, possible = own.meets(one, exact)
+            if lives is not None and one.output in OF_PAIR:
+                certain, possible = lives >= one.least
             sure = sure & certain
             may = may & possible
         return sure, may
@@ -435,10 +451,32 @@ class Comparison:
         return key, rows[first]
 
     def error_of_ratio(self, number: int, leader: int) -> float:
-        """Return the relative error of a ratio of the lives of two candidates [1]."""
+        """Return the error of a ratio of the outputs of two candidates, as a factor less 1 [1].
+
+        It was measured for lives by fatigue and peak stresses on the rungs. Elsewhere, also where fatigue ends one of
+        both only, the errors of both candidates count as independent; outputs without a stated error have none.
+        """
         rows = [self._of_condition(one)[1] for one in (number, leader)]
         errors = [float(np.median(self.ranges.error[own])) if len(own) else 0.0 for own in rows]
-        return float(np.hypot(errors[0], errors[1]))
+        if self._measured_error is None or not all(errors):
+            return float(np.hypot(errors[0], errors[1]))
+        return self._measured_error
+
+    @cached_property
+    def _measured_error(self) -> float | None:
+        """Return the measured error of a ratio at the rung of the study; None where it was not measured."""
+        name = self.ranges.output[0]
+        data = self.results.data
+        stated = data.get("life_cycles" if is_life(name) else "peak_stress")
+        if stated is None or "expected_relative_error" not in stated.attrs:
+            return None  # solved patches, falling friction, tolerances and settings of a user
+        if "contact_model" not in data.attrs:
+            return None  # the model is a choice of the study: errors of different models are not alike
+        friction = self.results.table.get("friction_coefficient", self.results.base.get("friction_coefficient", 0.0))
+        if np.max(friction) > ORDINARY_FRICTION:
+            return None
+        quantity = "life" if is_life(name) else "peak_stress"
+        return ratio_error(str(data.attrs["accuracy"]), str(data.attrs["contact_model"]), quantity)
 
     def hours_by_limit(self, end: str) -> np.ndarray | None:
         """Return the hours until each limit of each body, second models included, (n, limit, 2) [h]; None without."""

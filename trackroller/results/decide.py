@@ -43,7 +43,7 @@ class Decision:
     kind : see `trackroller.results.answer.Answer`
     order : all candidates, the best one first
     named : candidates that the headline names
-    why : of `cannot_tell`: `model`, `conditions` or `materials`
+    why : of `cannot_tell`: `model`, `chance`, `conditions` or `materials`
     measure : what to measure, see `Turning`
     """
 
@@ -154,7 +154,7 @@ class Decider:
         judged = self.table["judged"].to_numpy() == self.table["of"].to_numpy()
         known = [number for number in among if judged[number]]
         if not known:
-            return Decision("cannot_tell", order, [], "model")
+            return Decision("cannot_tell", order, [], self.own.why_unjudged)
         leader = known[0]
         order = [leader, *(n for n in order if n != leader)]
         if states_of(self.own, self.table, exact=True)[leader] != "open":
@@ -174,7 +174,9 @@ class Decider:
             pool = every[self.score > own.ranges.sign * own.ranges.worst_value]
         if not len(pool):
             unknown = (~judged & (table["holds"] == 0)).any() and (table["holds"] == 0).all()
-            return Decision("cannot_tell" if unknown else "none", order, [], "model" if unknown else "")
+            if unknown:
+                return Decision("cannot_tell", order, [], own.why_unjudged)
+            return Decision("none", order, [])
         if not own.rankable:
             return Decision("cannot_tell", order, [], "materials")
         if not own.matched and not own.drawn and own.conditions and own.count > 1:
@@ -244,7 +246,7 @@ def answer_decide(results: SolvedCases) -> Answer:
         not_checked=checks_left_out(results),
         not_used=given_for_nothing(results) | own.idle,
         not_given=not_given_words(results),
-        warnings=cautions(own, shown, len(found.named)),
+        warnings=cautions(own, shown, 1 if found.kind == "none" else len(found.named)),
         facts=facts_of(results, own),
     )
 
@@ -255,10 +257,23 @@ def _missing_input(own: Comparison, found: Decision) -> dict[str, Any]:
     None is asked for where no candidate meets the requirement in the conditions that are held.
     """
     name = lost_by_missing_input(own)
-    missed = found.kind == "none" and own.ranges.held.any() and bool(own.required)
-    if not name or missed or found.kind == "cannot_tell":
+    if not name or found.kind == "cannot_tell":
         return {}
-    return {"give": {"what": long_name_of(name)}}
+    lost = own.never_held
+    missed = found.kind == "none" and own.ranges.held.any() and bool(own.required)
+    if missed and not _meets_without(own, lost):
+        return {}
+    return {"give": {"what": long_name_of(name)}, **lost_conditions(own, lost)}
+
+
+def _meets_without(own: Comparison, lost: np.ndarray) -> bool:
+    """Return whether some candidate may meet the requirement in the drawn conditions without the lost ones."""
+    if not own.drawn:
+        return False  # the states of candidates leave out the conditions that none holds
+    rows = own.own & ~lost
+    total = np.bincount(own.place[rows], minlength=own.count)
+    hits = np.bincount(own.place[rows & own.met()[1]], minlength=own.count)
+    return bool((hits[total > 0] >= own.wanted_share * total[total > 0]).any())
 
 
 def with_ratios(own: Comparison, shown: pd.DataFrame) -> pd.DataFrame:
@@ -317,7 +332,11 @@ def leading(own: Comparison, one: pd.Series) -> dict[str, Any]:
 
 def not_held_by_any(own: Comparison) -> dict[str, Any]:
     """Return how many conditions no candidate holds, and where; {} if each is held by one."""
-    rows = own.unreachable
+    return lost_conditions(own, own.unreachable)
+
+
+def lost_conditions(own: Comparison, rows: np.ndarray) -> dict[str, Any]:
+    """Return the number of conditions of some cases, and where they are; {} without cases."""
     if not rows.any():
         return {}
     table = own.results.table
@@ -334,7 +353,7 @@ def not_held_by_any(own: Comparison) -> dict[str, Any]:
 def causes_text(own: Comparison, rows: np.ndarray) -> str:
     """Return the causes by which some cases are not held, the most frequent one first."""
     words = pd.Series(own.ranges.reason[rows]).map(lambda word: limit_word(str(word).removeprefix("limit ")))
-    return " or ".join(words.value_counts().index[:2])
+    return " or ".join(words.value_counts().index)
 
 
 def _level_reached(own: Comparison, table: pd.DataFrame) -> dict[str, Any]:

@@ -27,10 +27,11 @@ SPANNED = 2.0, 20.0  # a number that spans so many times its smallest size is fi
 PLACES = 24  # points of a fitted curve
 FLAT = 1.02  # height of a curve below which it counts as flat
 TURNS = 1.1  # change in the other direction from which on a curve is a hump or a dip
+HALF = 0.5  # of the height of a curve, above which a smaller change in the other direction makes it one
 CLIFF = 0.7  # share of the whole change that lies in one of at least three steps
 BAND = (0.1, 0.9)  # quantiles of the cases between which the band of a curve lies
 SPLIT = 1.25  # ratio between two groups of pairs from which on they are told apart
-FEWEST_PAIRS = 3  # like cases at all levels from which on a curve is drawn by them
+FEWEST_PAIRS = 3  # like cases at all levels, or cases of a class, from which on a curve is drawn by them
 
 
 @dataclass(frozen=True, eq=False)
@@ -129,13 +130,13 @@ class Effects:
         return self._curve(name, levels, curve, band, self._shape(name, curve, None), len(own), 0)
 
     def _by_classes(self, name: str) -> Curve | None:
-        """Return the median of the cases in each level, or in classes of equally many cases."""
+        """Return the median of the cases in each level, or in classes of equally many cases; None of single cases."""
         if self.rows.sum() < 2:
             return None
         parts = groups(self.results.table, name, self.rows, BINS)
         inside = [self.y[self.rows][parts.index == k] for k in range(len(parts))]
         kept = [k for k, own in enumerate(inside) if len(own)]
-        if len(kept) < 2:
+        if len(kept) < 2 or np.median([len(inside[k]) for k in kept]) < FEWEST_PAIRS:
             return None
         middle = np.array([np.median(inside[k]) for k in kept])
         ends = np.array([np.quantile(inside[k], BAND) for k in kept]).T
@@ -176,7 +177,7 @@ class Effects:
             return "flat"
         if not self.results.ordered(name):
             return "levels"
-        turn = max(np.log(TURNS) if self.by_ratio else 0.1 * span, 0.05 * span)
+        turn = max(min(np.log(TURNS), HALF * span) if self.by_ratio else 0.1 * span, 0.05 * span)
         top, bottom = int(middle.argmax()), int(middle.argmin())
         inner = len(middle) - 1
         if 0 < top < inner and min(middle[top] - middle[0], middle[top] - middle[-1]) > turn:

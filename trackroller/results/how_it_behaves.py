@@ -6,7 +6,7 @@ from typing import Any
 
 import pandas as pd
 
-from trackroller.results.answer import Answer
+from trackroller.results.answer import Answer, Column
 from trackroller.results.answer_parts import (
     case_cautions,
     checks_left_out,
@@ -54,13 +54,16 @@ def answer_how_it_behaves(results: SolvedCases) -> Answer:
 
 def _answer(results: SolvedCases, ranges: CaseRanges, table: pd.DataFrame, told: dict[str, Any]) -> Answer:
     known = bool(told)
+    columns: tuple[Column, ...] = COLUMNS if known else COLUMNS[:1]
+    if known and table["error"].isna().all():
+        columns = tuple(column for column in columns if column.name != "error")
     return Answer(
         question="how it behaves",
         kind="range" if known else "nothing",
         headline=told,
         output=ranges.output,
         table=table,
-        columns=COLUMNS if known else COLUMNS[:1],
+        columns=columns,
         required=required_of(results),
         curves=Effects.of(ranges).curves() if known else (),
         ends=ends_by_factor(results, ranges) if known else pd.DataFrame(),

@@ -32,8 +32,8 @@ def answer_how_sure(results: SolvedCases) -> Answer:
 
     Notes
     -----
-    `kind` is `share` for drawn conditions and `count` for listed ones. Of several candidates the one with the largest
-    share stands first.
+    `kind` is `share` for drawn conditions, `count` for listed ones, and `cannot_tell` where no case can be judged. Of
+    several candidates the one with the largest share stands first.
     """
     own = Comparison.of(results)
     assert own is not None
@@ -44,9 +44,13 @@ def answer_how_sure(results: SolvedCases) -> Answer:
     told: dict[str, Any] = {"names": names_of(own, order[:1]) if own.count > 1 else [], **leading(own, one)}
     if not own.drawn:
         told |= {"meets": int(one["meets"]), "of": int(one["of"])}
+    kind = "share" if own.drawn else "count"
+    if not own.ranges.judged[own.own].any():
+        kind = "cannot_tell"
+        told |= {"why": own.why_unjudged}
     return Answer(
         question="how sure",
-        kind="share" if own.drawn else "count",
+        kind=kind,
         headline=told | not_held_by_any(own),
         output=own.ranges.output,
         table=shown,

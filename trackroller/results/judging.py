@@ -18,6 +18,7 @@ from trackroller.results.by_tests import beyond_sn_data
 from trackroller.results.case_ranges import CaseRanges
 from trackroller.results.comparison import Comparison
 from trackroller.results.constraints import Column
+from trackroller.results.requirement import requirements_of
 from trackroller.results.solved_cases import OUTSIDE, SolvedCases, made_once
 from trackroller.roller.output_names import is_life
 from trackroller.roller.requirement import Requirement
@@ -190,7 +191,7 @@ def _to_meet(results: SolvedCases) -> dict[str, Requirement]:
     requirement says in how many.
     """
     chances = {judged_by(goal)[1] for goal in goals_of_search(results) if judged_by(goal)[0] == "probability"}
-    wanted = results.config.requirement
+    wanted = requirements_of(results)
     return {name: own for name, own in wanted.items() if own.in_shares or name not in chances}
 
 

@@ -29,6 +29,22 @@ def past_data(cycles: ArrayLike, knee: ArrayLike = np.inf) -> np.ndarray:
     return np.asarray(np.asarray(cycles) > np.minimum(knee, DATA_END))
 
 
+def lacks_a_body(hours: np.ndarray, limits: list[str], name: str) -> np.ndarray:
+    """Return the cases in which a second model lacks the life of a body whose fatigue is known, shape (n,) bool.
+
+    Parameters
+    ----------
+    hours : hours until each limit of each body, shape (n, limit, 2); NaN where it is not known
+    limits : names of the limits
+    name : the second model
+    """
+    if "fatigue" not in limits:
+        return np.zeros(len(hours), dtype=bool)
+    concerned = np.array([body in LIMITS[name].bodies for body in BODIES])
+    by_fatigue = ~np.isnan(hours[:, limits.index("fatigue")])
+    return np.asarray((by_fatigue & concerned & np.isnan(hours[:, limits.index(name)])).any(axis=1))
+
+
 def body_lives(goal: str) -> dict[str, str]:
     """Return the columns of the lives of roller and guide that belong to the life of a pair."""
     name = "life_to_first_limit_hours_{}" if goal == FIRST_LIMIT[0] else "{}_life_hours"

@@ -63,5 +63,11 @@ def _row(results: SolvedCases, ranges: CaseRanges) -> dict[str, Any]:
         "at_largest": case_text(results.table, names, most),
         "row_smallest": least,
         "row_largest": most,
-        "error": float(np.median(ranges.error[rows])),
+        "error": _median_error(ranges.told_error[rows]),
     }
+
+
+def _median_error(errors: np.ndarray) -> float:
+    """Return the median of the errors that are stated; NaN without one."""
+    stated = errors[~np.isnan(errors)]
+    return float(np.median(stated)) if stated.size else float("nan")

@@ -50,7 +50,12 @@ def places_of(table: pd.DataFrame, names: Sequence[str], hit: np.ndarray, among:
     if restricted and inside.sum() == hit.sum():
         return (_without_needless(table, restricted, hit, among),)
     products = confined(table, few, hit, among, MOST_PRODUCTS, whole=True)
-    return tuple(product.levels for product in products)
+    return tuple(_without_every_level(product.levels, table[among]) for product in products)
+
+
+def _without_every_level(product: Levels, table: pd.DataFrame) -> Levels:
+    """Return the levels of a place without those of a factor of which it holds every level."""
+    return {name: own for name, own in product.items() if len(own) < table[name].nunique()}
 
 
 def _without_needless(table: pd.DataFrame, restricted: Levels, hit: np.ndarray, among: np.ndarray) -> Levels:

@@ -38,7 +38,7 @@ from trackroller.results.places import level_text
 from trackroller.results.roller_lives import lives_part
 from trackroller.roller import stored_inputs as record
 from trackroller.roller.dataset import VARIABLES, shown, solved_by
-from trackroller.roller.duty import duty_of, years
+from trackroller.roller.duty import duty_of, strokes_of, years
 from trackroller.roller.limit_notes import given_in_vain, lacks_of, notes_of
 from trackroller.roller.output_names import PARTS
 from trackroller.roller.regime_limits import Limits, limits
@@ -159,6 +159,7 @@ def facts_of_data(ds: xr.Dataset, **own: Any) -> dict[str, Any]:
         "models": [str(ds.attrs.get("contact_model", ""))],
         "accuracy": str(ds.attrs.get("accuracy", "")),
         "duty": duty_of(ds),
+        "strokes": strokes_of(ds),
     } | own
 
 

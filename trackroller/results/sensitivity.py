@@ -107,7 +107,7 @@ def analyse(results: SolvedCases) -> xr.Dataset:
     judged = results.judged_targets
     scatter = {n: np.where(results.ended_by_fatigue(), own.get("roller", 0.0), 0.0) for n in judged}
     aims, wanted = xr.Dataset(), results.config.requirement
-    if wanted:
+    if wanted and design.method.weighted:
         aims = targets(ds, design, wanted, own | scatter, results.held, judged)
     if given.material_scatter == "fitted":
         aims = aims.merge(bands(results, own), join="left", combine_attrs="override")

@@ -333,6 +333,7 @@ def _without_unknown_lives(table: pd.DataFrame, results: Results) -> pd.DataFram
         return table
     by_median = of_fatigue(answer.output[0])
     lacking = np.array(_by_roller(results, results.without_fatigue.astype(float))) > 0
+    lacking |= table["ends"].str.endswith("not known").to_numpy()
     unknown = (lacking & (table["verdict"] != VERDICTS[2]).to_numpy()) | by_median
     used = dict.fromkeys(name for body in BODIES for name in np.unique(results.material(body)).tolist())
     known = [results.study.materials.material(name) for name in used]

@@ -261,10 +261,21 @@ class SolvedCases:
         It is the life to the first limit if the study asks for limits. Otherwise it is the life of the pair where the
         hours of the guide are known in a case, and that of the roller where they are not.
         """
+        if self.without_chance:
+            return None
         for column, words, unit in (FIRST_LIMIT, *self.fatigue_lives):
             if column in self.table and (self.table[column] > 0).any():
                 return column, words, unit
         return None
+
+    @cached_property
+    def without_chance(self) -> bool:
+        """Return whether no case has a life at the failure probability that the study asks for.
+
+        The lives by the S-N curve hold at 50 % and do not take its place.
+        """
+        asked = float(self.data.attrs.get("failure_probability", 0.5)) != 0.5
+        return asked and FIRST_LIMIT[0] in self.table and not self.knows(FIRST_LIMIT[0])
 
     @property
     def fatigue_lives(self) -> tuple[tuple[str, str, str], ...]:
@@ -401,7 +412,7 @@ class SolvedCases:
         another limit comes first. Other targets are judged by the result that they name, and so are all of a study
         without the life to the first limit.
         """
-        if self.life != FIRST_LIMIT:
+        if self.life != FIRST_LIMIT and not self.without_chance:
             return {}
         named = [n for n, ends in self.config.requirement.items() if n in OF_PAIR and ends.only_least]
         return dict.fromkeys(named, self.sure_life)

@@ -22,7 +22,7 @@ from trackroller.damage import LIMITS
 from trackroller.damage.verdict import STATES
 from trackroller.parameters import BODIES, PARAMETERS, REGIME_LABELS, REGIMES
 from trackroller.parameters.carriage_fields import long_name_of
-from trackroller.parameters.example import drive_question
+from trackroller.parameters.example import ABSENT, drive_question
 from trackroller.results.answer import Answer, Caution, Column, Part
 from trackroller.results.flags import flags_of, not_judged
 from trackroller.results.lives import FIRST_LIMIT, past_data
@@ -31,6 +31,7 @@ from trackroller.results.placeholders import guess_cautions, placeholders_part
 from trackroller.results.places import level_text
 from trackroller.results.roller_answer import CODES, checks_left_out, facts_of_data, material_name
 from trackroller.roller.dataset import validity_bit
+from trackroller.roller.duty import strokes_words
 from trackroller.roller.limit_notes import notes_of
 from trackroller.roller.stored_inputs import NOT_GIVEN, doubts_of
 from trackroller.roller.temperature import HEAD as OF_TEMPERATURE
@@ -369,7 +370,8 @@ def _parts(ds: xr.Dataset, lives: pd.DataFrame) -> Iterable[Part]:
 
 def _blocks(ds: xr.Dataset) -> Part:
     """Return the blocks with their loads, the regime, and stress and damage of both bodies, and their sum."""
-    loads = [name for name in LOAD_FIELDS if np.isfinite(ds[name].values).any()]
+    known = [name for name in LOAD_FIELDS if np.isfinite(ds[name].values).any()]
+    loads = [name for name in known if name not in ABSENT or ds[name].values.any()]
     columns = [
         Column("block", "Block", "", "name of the block", "text", role="name"),
         Column("distance", "Distance", "m", "travel of the block", "whole"),
@@ -398,7 +400,8 @@ def _blocks(ds: xr.Dataset) -> Part:
         notes.append(f"{body}: contact {contact}, damage sum {least}{whole:.4g}")
     sums = f"{float(ds['distance'].sum()):,.6g} m and {float(ds['duration'].sum()):.4g} h"
     title = "Blocks of an hour of travel" if _by_share(ds) else "Blocks of a shift"
-    return Part("blocks", title, table, tuple(columns), f"Together {sums}; {'; '.join(notes)}.")
+    note = f"Together {sums}; {'; '.join(notes)}. {strokes_words(ds)}".strip()
+    return Part("blocks", title, table, tuple(columns), note)
 
 
 def _not_checked(ds: xr.Dataset) -> Mapping[str, tuple[str, ...]]:

@@ -164,11 +164,13 @@ class Turning:
         """
         rows = self.own.rows[number]
         results = self.own.results
+        hours = self.own.hours_by_limit("")
         for limit, hit in self.own.ranges.open_limits.items():
             own = rows[hit[rows] & self.own.reachable[rows]]
-            if not len(own):
-                continue
             place = results.data["limit"].values.tolist().index(limit)
+            has_hours = hours is not None and not np.isnan(hours[own, place]).all()
+            if not len(own) or has_hours:
+                continue
             use = flat(results.data, "utilisation", results.dims)[own, place].astype(float)
             row, body = np.unravel_index(np.nanargmax(use), use.shape)
             material = str(self.materials[BODIES[body]][own[row]])

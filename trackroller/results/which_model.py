@@ -9,6 +9,7 @@ import numpy as np
 import pandas as pd
 
 from trackroller.parameters import EXACTNESS
+from trackroller.parameters.carriage_fields import long_name_of
 from trackroller.results.answer import Answer, Column
 from trackroller.results.answer_parts import (
     case_cautions,
@@ -25,7 +26,7 @@ from trackroller.results.comparison import Comparison, compared_output
 from trackroller.results.decide import Decider
 from trackroller.results.effect_curves import Effects
 from trackroller.results.first_ends import ends_by_factor
-from trackroller.results.places import plain
+from trackroller.results.places import level_text, plain
 from trackroller.results.requirement import required_of
 from trackroller.results.solved_cases import SolvedCases
 
@@ -125,7 +126,7 @@ def _of_model(results: SolvedCases, ranges: CaseRanges, model: str, base: str) -
     return {
         "model": model,
         "verdict": plain(leader["state"]) or decided.kind,
-        "leader": ", ".join(f"{key.replace('_', ' ')} {value}" for key, value in names.items()),
+        "leader": ", ".join(f"{long_name_of(name)} {level_text(name, level)}" for name, level in names.items()),
         "names": names,
         "leader_key": str(sorted(names.items())),
         "low": float(leader["low"]),

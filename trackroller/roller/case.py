@@ -77,6 +77,8 @@ class Case(_Numbers):
         Coulomb coefficient of both contacts at rest, 0 to 2 [1]. None or "typical" takes the typical value of the pair
         of materials from the friction database, "upper" and "lower" its bounds, "dry" and "lubricated" the values of
         tables. If it is not given, it is 0.3, or the first value of a `friction_law` given as a table.
+    layer_flexibility : float
+        h/G_3, thickness over shear modulus of a film between the bodies, >= 0 [mm^3/N], for contact model 'kalker'.
     velocity : float
         v, mean travel speed, > 0 [m/min]. It matters to friction power, to life in hours and to friction laws.
     guide_overrollings_per_hour : float or None

@@ -42,6 +42,7 @@ STROKES = ("strokes_per_day", "stroke", "rollers_on_rail")  # keys that a duty i
 OVERROLLINGS = "guide_overrollings_per_hour"
 EXAMPLE = "Write duty: {hours_per_day: 16, days_per_year: 250}."
 ATTRIBUTE = "duty"  # of the result of one case: JSON
+STROKES_ATTRIBUTE = "strokes"  # beside it, where the duty was given in strokes: JSON
 
 
 def checked_duty(value: Any) -> dict[str, float]:
@@ -71,6 +72,43 @@ def checked_duty(value: Any) -> dict[str, float]:
 def is_of_strokes(duty: Mapping[str, float] | None) -> bool:
     """Return whether a checked duty states strokes in place of hours."""
     return duty is not None and "stroke" in duty
+
+
+def strokes_in(duty: Mapping[str, float] | None) -> dict[str, float] | None:
+    """Return the strokes of a checked duty as they were given, None for a duty in hours."""
+    if duty is None or not is_of_strokes(duty):
+        return None
+    return {name: duty[name] for name in STROKES if name in duty}
+
+
+def duty_words(duty: Mapping[str, float], strokes: Mapping[str, float] | None = None) -> str:
+    """Return a duty as a text: as it was given, and what follows from strokes.
+
+    Parameters
+    ----------
+    duty : mapping
+        `hours_per_day` and `days_per_year` [1].
+    strokes : mapping, optional
+        `strokes_per_day`, `stroke` [m], and `rollers_on_rail` if it was given.
+
+    Examples
+    --------
+    >>> duty = {"hours_per_day": 0.1, "days_per_year": 300.0}
+    >>> duty_words(duty)
+    '0.1 h a day, 300 days a year'
+    >>> duty_words(duty, {"strokes_per_day": 400.0, "stroke": 0.9})
+    '400 strokes of 0.9 m a day, 300 days a year: 0.1 h and 0.36 km a day'
+    """
+    hours = f"{duty['hours_per_day']:.4g} h"
+    days = f"{duty['days_per_year']:.4g} days a year"
+    if not strokes:
+        return f"{hours} a day, {days}"
+    number = strokes["strokes_per_day"]
+    travel = number * strokes["stroke"] / 1000.0
+    given = f"{number:,.6g} strokes of {strokes['stroke']:.4g} m a day"
+    if "rollers_on_rail" in strokes:
+        given += f" with {strokes['rollers_on_rail']:g} on the rail"
+    return f"{given}, {days}: {hours} and {travel:.4g} km a day"
 
 
 def in_hours(duty: Mapping[str, float], hours_per_km: float) -> dict[str, float]:
@@ -174,11 +212,18 @@ def years(hours: Any, duty: Mapping[str, float]) -> Any:
     return hours / (duty["hours_per_day"] * duty["days_per_year"])
 
 
-def with_duty(ds: xr.Dataset, duty: Mapping[str, float] | None) -> xr.Dataset:
-    """Return the result of one case or spectrum with its duty as attribute; without a duty as it is."""
-    if duty is None:
-        return ds
-    return ds.assign_attrs({ATTRIBUTE: json.dumps(duty)})
+def with_duty(
+    ds: xr.Dataset, duty: Mapping[str, float] | None, strokes: Mapping[str, float] | None = None
+) -> xr.Dataset:
+    """Return the result of one case or spectrum with its duty as attributes; without a duty as it is.
+
+    `strokes` are those of the duty as they were given, None for a duty in hours.
+    """
+    if duty is not None:
+        ds = ds.assign_attrs({ATTRIBUTE: json.dumps(duty)})
+    if strokes is not None:
+        ds = ds.assign_attrs({STROKES_ATTRIBUTE: json.dumps(strokes)})
+    return ds
 
 
 def duty_of(ds: xr.Dataset) -> dict[str, float] | None:
@@ -186,3 +231,19 @@ def duty_of(ds: xr.Dataset) -> dict[str, float] | None:
     if ATTRIBUTE in ds.attrs:
         return json.loads(ds.attrs[ATTRIBUTE])
     return None
+
+
+def strokes_of(ds: xr.Dataset) -> dict[str, float] | None:
+    """Return the strokes that the duty of a result was given in, None for a duty in hours."""
+    if STROKES_ATTRIBUTE in ds.attrs:
+        return json.loads(ds.attrs[STROKES_ATTRIBUTE])
+    return None
+
+
+def strokes_words(ds: xr.Dataset) -> str:
+    """Return the duty of a result as a sentence if it was given in strokes, '' otherwise."""
+    duty = duty_of(ds)
+    strokes = strokes_of(ds)
+    if duty is None or strokes is None:
+        return ""
+    return f"Duty: {duty_words(duty, strokes)}."

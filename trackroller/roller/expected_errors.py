@@ -57,22 +57,76 @@ class Levels:
 
 @functools.cache
 def _measured() -> Any:
-    text = resources.files("trackroller.roller").joinpath(FILE).read_text(encoding="utf-8")
-    return json.loads(text)["models"]
+    return json.loads(resources.files("trackroller.roller").joinpath(FILE).read_text(encoding="utf-8"))
 
 
-def expected_errors(options: Options, contact_model: str, constant_friction: bool) -> dict[str, Levels]:
+def is_rung(options: Options) -> bool:
+    """Return whether the settings of the options are those of a rung."""
+    settings = options.settings
+    return settings.name in RUNGS and settings in (settings_of(settings.name, rough) for rough in (False, True))
+
+
+def told_weights(accuracy: str, contact_model: str) -> dict[str, float]:
+    """Return the factors on the estimated errors of a rung, see `told_errors`; nothing if they were not measured.
+
+    Parameters
+    ----------
+    accuracy : str
+        Name of a rung.
+    contact_model : str
+        Contact model.
+
+    Returns
+    -------
+    dict of str to float
+        By `friction_force`, `normal_force`, `friction_energy`, and for peaks `below_surface` and `at_surface` [1].
+    """
+    found: dict[str, float] = _measured()["told"].get(contact_model, {}).get(accuracy, {}).get("weights", {})
+    return found
+
+
+def ratio_error(accuracy: str, contact_model: str, quantity: str = "life") -> float | None:
+    """Return the error that 95 % of the ratios of two designs keep, as a factor less 1.
+
+    Parameters
+    ----------
+    accuracy : str
+        Name of a rung.
+    contact_model : str
+        Contact model.
+    quantity : str
+        `life` or `peak_stress`.
+
+    Returns
+    -------
+    float or None
+        The error [1]; None where it was not measured: other accuracies and contact models.
+
+    Notes
+    -----
+    Measured on pairs of ordinary designs that differ by the groove or by the contact angle, under the same load
+    (`validation.tradeoff.told`). Errors of such neighbours are alike, so that their ratio errs less than each of them.
+
+    Examples
+    --------
+    >>> ratio_error("reference", "kalker") < ratio_error("preview", "kalker")
+    True
+    """
+    found: float | None = _measured()["told"].get(contact_model, {}).get(accuracy, {}).get("ratio", {}).get(quantity)
+    return found
+
+
+def expected_errors(options: Options, contact_model: str, plain: bool) -> dict[str, Levels]:
     """Return the measured errors of discretisation by quantity; nothing where this combination was not measured.
 
-    The measurements hold for the rungs, ellipses, constant friction and the rigid slip that each model has by itself.
+    The measurements hold for the rungs, ellipses, `plain` surfaces, which have constant friction and no film, and the
+    rigid slip that each model has by itself.
     """
-    if options.normal != "hertz" or options.slip_terms or not constant_friction or options.tolerance is not None:
+    if options.normal != "hertz" or options.slip_terms or not plain or options.tolerance is not None:
         return {}
     errors = CLASSES[contact_model].errors()
-    settings = options.settings
-    is_rung = settings.name in RUNGS and settings in (settings_of(settings.name, rough) for rough in (False, True))
-    if not errors and is_rung:
-        errors = _measured().get(contact_model, {}).get(settings.name, {})
+    if not errors and is_rung(options):
+        errors = _measured()["models"].get(contact_model, {}).get(options.settings.name, {})
     published = options.life_criterion == OPTIONS["life_criterion"].default  # its life alone was measured
     return {name: Levels(*levels) for name, levels in errors.items() if published or name != "life"}
 
@@ -82,7 +136,8 @@ def least_errors(table: CaseTable, options: Options) -> tuple[np.ndarray, np.nda
 
     They are the constant parts of the estimated errors, which contact models from a table have.
     """
-    models = [CLASSES[model_in_use(options, text)] for text in table.friction_law.tolist()]
+    given = zip(table.friction_law.tolist(), table.layer_flexibility.tolist(), strict=True)
+    models = [CLASSES[model_in_use(options, text, film)] for text, film in given]
     forces = np.zeros(len(models))
     peaks = np.zeros(len(models))
     for i, model in enumerate(models):
@@ -110,10 +165,11 @@ def tell_errors(ds: xr.Dataset, table: CaseTable, options: Options) -> None:
     """Add as attributes the limit of the residual, and the errors of discretisation if they were measured."""
     ds.variables["residual"].attrs["converged_up_to"] = converged_up_to(options.contact_model, options.normal)
     constant = all(law_of(text).is_constant for text in set(table.friction_law.tolist()))
+    plain = constant and not np.any(table.layer_flexibility)
     cheaper = DECLARED[options.contact_model].cheaper
     model = options.contact_model
     if cheaper and np.any(solved_by(ds) == cheaper):
         model = cheaper
-    for name, errors in error_attributes(expected_errors(options, model, constant)).items():
+    for name, errors in error_attributes(expected_errors(options, model, plain)).items():
         if name in ds.variables:
             ds.variables[name].attrs.update(errors)

@@ -179,7 +179,7 @@ def check_spin_model(spin_models: Sequence[str], contact_models: Sequence[str]) 
         )
 
 
-def model_in_use(options: Options, friction_law: str) -> str:
+def model_in_use(options: Options, friction_law: str, film: float = 0.0) -> str:
     """Return the contact model that solves a case, which may differ from the wanted one.
 
     Parameters
@@ -188,6 +188,8 @@ def model_in_use(options: Options, friction_law: str) -> str:
         Options of the solution.
     friction_law : str
         The friction law of the case as canonical JSON, "" for constant friction.
+    film : float
+        Flexibility of the film of the case [mm^3/N]; 0 is no film.
 
     Returns
     -------
@@ -197,13 +199,14 @@ def model_in_use(options: Options, friction_law: str) -> str:
     Notes
     -----
     A cheaper model stands in (`kalker_table` for `kalker`) at accuracy preview, if it serves the normal problem, the
-    slip and the friction of the case. The result names it in `contact_model_used`.
+    slip, the friction and the film of the case. The result names it in `contact_model_used`.
     """
     own = DECLARED[options.contact_model]
     if not own.cheaper or options.settings.name != "preview":
         return own.name
     other = DECLARED[own.cheaper]
     serves = options.normal in other.normals and set(options.slip_terms) <= set(other.slip_terms)
+    serves = serves and (other.films or film == 0.0)
     if serves and (other.friction_laws or law_of(friction_law).is_constant):
         return other.name
     return own.name

@@ -77,7 +77,7 @@ def limits(case: Case, contact_model: str = "kalker", database: MaterialDatabase
     Equilibria are solved with `accuracy="preview"`, in batches, about 150 in all.
     ASSUME: drawn and worn profiles are replaced by their nominal circles, for the equilibrium hardly depends on the
     shape of the patch. ASSUME: friction that falls with the slip speed is searched with full sliding, which is a
-    thousand times cheaper and has the same complete friction.
+    thousand times cheaper and has the same complete friction. ASSUME: a film between the bodies is left out.
 
     Examples
     --------
@@ -85,7 +85,8 @@ def limits(case: Case, contact_model: str = "kalker", database: MaterialDatabase
     >>> round(high, 2)  # F_rad tan(alpha)
     115.47
     """
-    nominal = replace(case, **{"guide_profile": None, "roller_profile": None, "travel": 0.0})
+    bare = {"guide_profile": None, "roller_profile": None, "travel": 0.0, "layer_flexibility": 0.0}
+    nominal = replace(case, **bare)
     model = "sliding"
     if law_of(case.friction_law).is_constant:
         model = contact_model

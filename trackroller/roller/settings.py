@@ -12,7 +12,7 @@ from trackroller.materials import load_database
 from trackroller.parameters import MATERIAL_FIELDS, OPTIONS
 from trackroller.roller.aliases import ALIASES, OTHER_OPTIONS, RADII, renamed, with_options
 from trackroller.roller.case import FIELDS, Case
-from trackroller.roller.duty import checked_duty, is_of_strokes, of_roller
+from trackroller.roller.duty import STROKES_ATTRIBUTE, checked_duty, of_roller, strokes_in
 from trackroller.roller.fields import other_than_default
 from trackroller.roller.log_answers import checked_log
 from trackroller.roller.output_names import PARTS
@@ -56,7 +56,7 @@ def checked_sheet(value: Any) -> dict[str, str]:
 
 
 def with_beside(ds: xr.Dataset, beside: Mapping[str, Any]) -> xr.Dataset:
-    """Return the result of one case with the entries `BESIDE` as attributes; see `checked_case`."""
+    """Return the result of one case with what `checked_case` returned beside it as attributes."""
     return ds.assign_attrs({name: json.dumps(value) for name, value in beside.items()})
 
 
@@ -106,10 +106,8 @@ def _checked_beside(key: str, value: Any, duty: Mapping[str, float] | None) -> A
 
 
 def _by_strokes(values: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the duty of a roller in hours, and what follows from its strokes; {} for a duty in hours."""
+    """Return the duty of a roller in hours, and what follows from its strokes."""
     duty = checked_duty(values["duty"])
-    if not is_of_strokes(duty):
-        return {}
     case = Case.from_dict({key: value for key, value in values.items() if key in (*FIELDS, *ALIASES, *RADII)})
     if "velocity" in case.not_given:
         velocity = None
@@ -121,6 +119,8 @@ def _by_strokes(values: Mapping[str, Any]) -> dict[str, Any]:
 
 def checked_case(values: Mapping[str, Any]) -> tuple[Case, dict[str, Any], dict[str, Any]]:
     """Return the case, the options of `solve`, and the entries `BESIDE` of a case file that are given.
+
+    The duty is in hours; strokes stand beside it as `strokes`, as they were given.
 
     Parameters
     ----------
@@ -144,7 +144,10 @@ def checked_case(values: Mapping[str, Any]) -> tuple[Case, dict[str, Any], dict[
     options = {key: fields.pop(key) for key in OPTIONS if key in fields}
     if fields.get("duty") is not None:
         with wrong.part():
-            fields |= _by_strokes(fields)
+            strokes = strokes_in(checked_duty(fields["duty"]))
+            if strokes is not None:
+                fields |= _by_strokes(fields)
+                beside[STROKES_ATTRIBUTE] = strokes
     for key in (name for name in BESIDE if name in fields):
         with wrong.part():
             beside[key] = _checked_beside(key, fields.pop(key), beside.get("duty"))

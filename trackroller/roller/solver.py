@@ -32,6 +32,7 @@ from trackroller.roller.stages.balance import balance
 from trackroller.roller.stages.models import depends_on_smoothing, finer_across
 from trackroller.roller.stages.scene import StageResults
 from trackroller.roller.stored_inputs import with_coordinates, with_design, with_inputs
+from trackroller.roller.told_errors import calibrate
 from trackroller.roller.tolerance import meet
 from trackroller.roller.travel import with_travel
 
@@ -201,12 +202,17 @@ def _solve_table(table: CaseTable, options: Options, single: bool) -> xr.Dataset
 
 
 def _check_cases(table: CaseTable, options: Options) -> None:
-    """Refuse profiles and friction laws that the options cannot serve."""
+    """Refuse profiles, friction laws and films that the options cannot serve."""
     laws = table.friction_law[table.friction_law != ""]
     if laws.size and not DECLARED[options.contact_model].friction_laws:
         remedy = "Take contact_model: kalker, or leave friction_law out."
         allowed = f"constant friction with contact_model: {options.contact_model}"
         raise InputError("friction_law", laws[0], allowed, remedy)
+    film = table.layer_flexibility[table.layer_flexibility > 0.0]
+    if film.size and not DECLARED[options.contact_model].films:
+        remedy = "Take contact_model: kalker, or leave layer_flexibility out."
+        allowed = f"0 (no film) with contact_model: {options.contact_model}"
+        raise InputError("layer_flexibility", float(film[0]), allowed, remedy)
     for name in ("guide_profile", "roller_profile"):
         if options.normal != "halfspace" and np.any(getattr(table, name) != ""):
             remedy = f"Set normal to halfspace, or remove {name}."
@@ -236,6 +242,7 @@ def _solve_window(table: CaseTable, options: Options) -> Block:
         rows, number = distinct_contacts.distinct_mechanics(one_handed)
         distinct = one_handed.take(rows)
     at_temperature, block = temperature.settle(one_handed, solve_all(distinct).take(number), options, solve_all)
+    calibrate(at_temperature, block, options)
     stages_outcome.finish(at_temperature, block, options)
     reflect(block.values, mirrored)
     return block
@@ -254,17 +261,18 @@ def _solve_block(table: CaseTable, options: Options) -> Block:
 def _groups(table: CaseTable, options: Options) -> Iterator[tuple[str, int, np.ndarray]]:
     """Yield contact model, factor on the elements across, and rows of cases that can be solved in one batch.
 
-    Frictionless cases are a batch alone.
+    Frictionless cases and those with a film are batches alone.
     """
     bare = distinct_contacts.is_frictionless(table) & options.shortcuts
     across = finer_across(table, options)
-    columns = bare, *(getattr(table, name) for name in MECHANICAL_MAPPINGS), across
+    has_film = (table.layer_flexibility > 0.0).astype(float)
+    columns = bare, *(getattr(table, name) for name in MECHANICAL_MAPPINGS), has_film, across
     keys = list(zip(*(column.tolist() for column in columns), strict=True))
     rows: dict[tuple, list[int]] = {}
     for i, key in enumerate(keys):
         rows.setdefault(key, []).append(i)
     for key, own in rows.items():
-        yield model_in_use(options, key[1]), key[-1], np.array(own)
+        yield model_in_use(options, key[1], key[-2]), key[-1], np.array(own)
     if not keys:
         yield options.contact_model, 1, np.arange(0)
 

@@ -117,7 +117,9 @@ class Wearing:
 
     def __init__(self, table: CaseTable, options: Options) -> None:
         self.table = table
-        self.options = options.changed(contact_model=model_in_use(options, str(table.friction_law[0])))
+        self.options = options.changed(
+            contact_model=model_in_use(options, str(table.friction_law[0]), float(table.layer_flexibility[0]))
+        )
         self.alpha, self.radius, *_ = contact_geometry(vars(table))
         self.modulus = float(contact_modulus(*bodies(table))[0])
         hourly = np.array([roller_overrollings(table.velocity, self.radius)[0], table.guide_overrollings_per_hour[0]])

@@ -13,6 +13,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from trackroller.errors import InputError
+from trackroller.files import cell_as_meant
 from trackroller.numerics.table_cells import SEPARATORS, Refused, is_number, stated_separator
 
 BLANK = " "
@@ -114,8 +115,8 @@ def _cell(cell: str, separator: str) -> str:
     """Return a cell without blanks around it, `Refused` if it is no value."""
     cell = cell.strip()
     if cell.startswith("="):
-        return Refused(cell, "a value; this is a formula", "Write its value.")
+        return Refused(cell, "a value; this is a formula", "Write its value; if it is a name, write ' before it.")
     if "\n" in cell and separator in cell:
         allowed = "the text of one cell; this one goes over several lines"
         return Refused(cell, allowed, "Close its quotation marks.")
-    return cell
+    return cell_as_meant(cell)

@@ -73,3 +73,31 @@ def random_designs(n: int, seed: int) -> list[tr.Case]:
             )
         )
     return found
+
+
+def ordinary_designs(n: int, seed: int) -> list[tr.Case]:
+    """Return n random rollers as they are built: friction 0.05 to 0.4, contact angles 25 to 60 degrees, small offsets.
+
+    Loads follow the square of the size. Materials are those of the paper, metals for the guide.
+    """
+    rng = np.random.default_rng(seed)
+    found = []
+    for _ in range(n):
+        angle, contour, friction = rng.uniform(25.0, 60.0), rng.uniform(3.0, 10.0), rng.uniform(0.05, 0.4)
+        radial = -rng.uniform(30.0, 900.0) * (contour / 6.0) ** 2
+        found.append(
+            tr.Case(
+                axis_distance=rng.uniform(12.0, 40.0),
+                guide_profile_radius=contour,
+                roller_profile_radius=-contour * (1.0 + 10.0 ** rng.uniform(-1.6, -0.1)),
+                guide_curve_radius=float(rng.choice([math.inf, math.inf, 220.0, -300.0, 100.0])),
+                contact_angle=angle,
+                radial_force=radial,
+                axial_force=-radial * rng.uniform(0.0, 0.3) * math.tan(math.radians(angle)),
+                motor_force=float(rng.choice([0.0, rng.uniform(-0.3, 0.3) * friction * radial])),
+                friction_coefficient=friction,
+                roller_material=str(rng.choice(PUBLISHED)),
+                guide_material=str(rng.choice(PUBLISHED[:3])),
+            )
+        )
+    return found

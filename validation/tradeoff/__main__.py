@@ -1,6 +1,7 @@
 """Measure error and cost of the rungs of accuracy and of the contact models: python -m validation.tradeoff FOLDER.
 
 The folder receives `tradeoff.json` and `figures/`. With `--small`, two designs of each sample show that it runs.
+With `--told`, told errors alone are measured; all other numbers are the stored ones.
 """
 
 import json
@@ -13,10 +14,17 @@ os.environ.setdefault("NUMBA_NUM_THREADS", "1")  # processor times of one thread
 from trackroller.files import write_text
 from validation.benchmarks.command import plain
 from validation.tradeoff.figures import draw_all
-from validation.tradeoff.measure import measure
+from validation.tradeoff.measure import FINEST, measure
+from validation.tradeoff.told import measure_told
+
+STORED = Path(__file__).resolve().parents[2] / "docs" / "data" / "tradeoff.json"
 
 if __name__ == "__main__":
     folder = Path(sys.argv[1])
-    found = measure(few=2, repeats=1) if "--small" in sys.argv else measure()
+    few = 2 if "--small" in sys.argv else 0
+    if "--told" in sys.argv:
+        found = json.loads(STORED.read_text(encoding="utf-8")) | {"told": measure_told(few, FINEST)}
+    else:
+        found = measure(few, repeats=1 if few else 2)
     draw_all(found, folder / "figures")
     write_text(folder / "tradeoff.json", json.dumps(plain(found), indent=1, allow_nan=False) + "\n")

@@ -24,6 +24,7 @@ from trackroller.roller.dataset import validity_bit
 from validation.benchmarks import falling_friction
 from validation.tradeoff.errors import largest, percentiles, relative_errors, tolerance_bound
 from validation.tradeoff.sample import sample
+from validation.tradeoff.told import measure_told
 from validation.tradeoff.truth import FINEST_SEARCH, SAMPLES, Truth
 
 MODELS = ("sliding", "kalker_table", "kalker")
@@ -123,7 +124,7 @@ def rungs(truth: Truth, part: Truth, sliding: list[tr.Case]) -> list[dict[str, A
             errors = relative_errors(tr.solve(cases, COMPLETE, contact_model=model, accuracy=rung), best)
             if model == "kalker":  # elements miss peaks at small adhesion areas, whatever their number
                 errors |= {quantity: largest(values) for quantity, values in truth.errors(ds).items()}
-                exponent = float((ds.life_error_estimate / ds.error_estimate).max())
+                exponent = float((np.log1p(ds.life_error_estimate) / np.log1p(ds.error_estimate)).max())
                 errors["life"] = (1.0 - errors["peak_stress"]) ** -exponent - 1.0
             levels = {name: [*percentiles(e).tolist(), tolerance_bound(e)] for name, e in errors.items()}
             rows.append({"model": model, "accuracy": rung, "levels": levels, "exact": against_truth(truth, ds)})
@@ -185,5 +186,6 @@ def measure(few: int = 0, repeats: int = 2) -> dict[str, Any]:
         "falling": falling_costs(truth.few(min(few or 10, 10)), 1),
         "rungs": rungs(truth, part, sample(few or CHEAP)),
         "tolerances": tolerances(truth),
+        "told": measure_told(few, FINEST),
         "shares": walked,
     }

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 import xarray as xr
 
@@ -323,6 +325,27 @@ def test_a_line_below_the_units_is_named_before_the_table_counts_as_empty(tmp_pa
 
 def test_a_separator_behind_the_only_name_counts(tmp_path):
     assert cases('velocity\t\n"43,2"\t\n7,5\t\n', tmp_path) == {"velocity": [43.2, 7.5]}
+
+
+@pytest.mark.parametrize(
+    ("cells", "constraint", "allowed"),
+    [
+        ("abc", "load_case != 'b'", [True, False, True]),
+        ("124", "load_case < 3", [True, True, False]),
+        ("124", "load_case < 3 and axial_force > 0", [False, True, False]),
+    ],
+)
+def test_a_constraint_names_a_further_column(tmp_path, monkeypatch, cells, constraint, allowed):
+    """Texts are compared with texts, numbers with numbers; the column needs no expression that uses it."""
+    monkeypatch.chdir(tmp_path)
+    rows = [f"{cell},{force}" for cell, force in zip(cells, (0, 10, 20), strict=True)]
+    Path("t.csv").write_text("\n".join(["load_case,axial_force", *rows]) + "\n")
+    keys = {"name": "x", "design": "table", "table": "t.csv", "outputs": ["forces"], "contact_model": "sliding"}
+    study = {**keys, "accuracy": "preview", "constraints": [constraint]}
+    assert tr.run(tr.load_study(study)).allowed.tolist() == allowed
+    text = "'1'" if cells == "124" else "1"
+    with pytest.raises(tr.InputError, match="ordering a text, or comparing it with a number"):
+        tr.load_study(study | {"constraints": [f"load_case < {text}"]})
 
 
 def test_a_column_with_a_blank_in_its_name_is_a_coordinate_of_the_results(tmp_path, recwarn):

@@ -11,7 +11,13 @@ from typing import NamedTuple
 import numpy as np
 
 from trackroller.contact.friction_laws import FrictionLaw
-from trackroller.contact.influence import coupling_slip, hertz_coupling_slip, influence, rounded
+from trackroller.contact.influence import (
+    coupling_slip,
+    hertz_coupling_slip,
+    influence,
+    plane_influence,
+    rounded,
+)
 from trackroller.contact.kalker.loops import reals
 from trackroller.contact.kalker.newton import Problem, newton, room_for
 from trackroller.numerics.compiled import compiled
@@ -27,7 +33,8 @@ class Batch(NamedTuple):
     semi_axis_lateral, semi_axis_rolling [mm]; bound : mu p_max [MPa]; ratio : mu p_max / G; poisson_ratio;
     coupling : K / mu; along (n, nx) : rolling part of the rigid slip; lateral [-], spin [1/mm] : the lateral part is
     lateral - spin y; travel_speed [mm/s]; height, share (n, ny, nx), for ellipses (1, ny, nx) : mean pressure over the
-    largest and share inside the patch of each element; is_hertzian : the pressures are those of ellipses.
+    largest and share inside the patch of each element; is_hertzian : the pressures are those of ellipses, or of discs;
+    film : flexibility of a film between the bodies times G [mm]; is_plane : two discs, one column of elements.
     """
 
     semi_axis_lateral: np.ndarray
@@ -43,6 +50,8 @@ class Batch(NamedTuple):
     height: np.ndarray
     share: np.ndarray
     is_hertzian: bool
+    film: np.ndarray
+    is_plane: bool
 
     @property
     def solvable(self) -> np.ndarray:
@@ -243,12 +252,13 @@ def _write_report(report, i, sums, cell, bound, ratio):
 
 
 class _Piece(NamedTuple):
-    """Numbers of patches with the same elements, and half sides of a patch and Poisson's ratio, scaled and rounded."""
+    """Numbers of patches with the same elements; half sides, Poisson's ratio and film of one, scaled and rounded."""
 
     which: np.ndarray
     lateral: float
     rolling: float
     poisson_ratio: float
+    film: float
 
 
 def _pieces(batch: Batch) -> list[_Piece]:
@@ -257,24 +267,37 @@ def _pieces(batch: Batch) -> list[_Piece]:
     for i in np.flatnonzero(batch.solvable).tolist():
         a, b = batch.semi_axis_lateral[i], batch.semi_axis_rolling[i]
         c = math.sqrt(a * b)
-        key = rounded(a / c, b / c, batch.poisson_ratio[i])
+        key = rounded(a / c, b / c, batch.poisson_ratio[i], batch.film[i] / c)
         shapes.setdefault(key if batch.is_hertzian else (*key, i), []).append(i)
     return [
-        _Piece(np.array(rows[k : k + PIECE]), *key[:3])
+        _Piece(np.array(rows[k : k + PIECE]), *key[:4])
         for key, rows in shapes.items()
         for k in range(0, len(rows), PIECE)
     ]
 
 
+def _pressed_slip(batch: Batch, i: int, a: float, b: float) -> np.ndarray:
+    """Return the slip (ny, nx), x + iy, that the pressure of patch i causes on unlike bodies for K = G = 1."""
+    _, ny, nx = batch.height.shape
+    if batch.is_plane:
+        return 2j * batch.height[0]  # of each place alone: the strain along the surface of a half-plane under pressure
+    if batch.is_hertzian:
+        return np.asarray(hertz_coupling_slip(a, b, ny, nx))
+    return coupling_slip(batch.height[i], 2.0 * a / nx, 2.0 * b / ny)
+
+
 def _solve_piece(batch: Batch, law: FrictionLaw, control, out: Found, piece: _Piece) -> None:
     """Solve the patches of a piece."""
     _, ny, nx = batch.height.shape
-    which, a, b, poisson_ratio = piece
+    which, a, b, poisson_ratio, film = piece
     hx, hy = 2.0 * a / nx, 2.0 * b / ny
-    functions, pressed = influence(hx, hy, poisson_ratio, ny, nx), np.zeros((ny, nx), complex)
+    if batch.is_plane:
+        functions = plane_influence(hy, poisson_ratio, ny, film)
+    else:
+        functions = influence(hx, hy, poisson_ratio, ny, nx, film=film)
+    pressed = np.zeros((ny, nx), complex)
     if np.any(batch.coupling[which] != 0.0):
-        hertz = batch.is_hertzian
-        pressed = hertz_coupling_slip(a, b, ny, nx) if hertz else coupling_slip(batch.height[which[0]], hx, hy)
+        pressed = _pressed_slip(batch, which[0], a, b)
     limits = control.tolerance, control.steps, control.krylov
     _solve_patches(which, batch, functions, pressed, (law.speed, law.factor), limits, out)
 

@@ -31,7 +31,7 @@ class KalkerModel(ContactModel):
         self.elements = settings.elements if law.is_constant else max(settings.elements, LEAST_UNDER_LAW)
         discretisation = KalkerSettings(self.elements, tolerance=1e-8, law=law, profile_slip=given.profile_slip)
         self._law = KalkerLaw(elastic, discretisation, given.travel_speed)
-        if law.is_constant:  # the table behind the corrections holds constant friction only
+        if law.is_constant and not np.any(elastic.film):  # all that the table behind the corrections holds
             self.correction = Correction(elastic, discretisation, trusts_table)
 
     def law(self, ellipse, slip, friction, rows, fine):

@@ -53,7 +53,7 @@ class KalkerLaw:
         self, patch: Ellipse | GridPatch, slip: Slip, friction, rows: np.ndarray, fine: bool = True
     ) -> Resultants:
         """Return the resultants on the roller, (n,); if not `fine`, from the table or from half the elements."""
-        if fine or not patch.is_hertzian or self.settings.profile_slip or not self._constant:
+        if fine or not patch.is_hertzian or not self._in_table:
             return self.solve(patch, slip, friction, rows, fine).resultants
         creep = Creepage.of_slip(slip, self.settings.profile_slip)
         looked_up = table.solve_patch(patch, creep.longitudinal, creep.spin, friction, self.elastic.take(rows))
@@ -64,8 +64,10 @@ class KalkerLaw:
         return looked_up.resultants.replaced(rest, other)
 
     @property
-    def _constant(self) -> bool:
-        return self.settings.law_in_use.is_constant
+    def _in_table(self) -> bool:
+        """Return whether the table may hold the patches: constant friction, slip of the tangent, and no film."""
+        plain = self.settings.law_in_use.is_constant and not self.settings.profile_slip
+        return plain and not np.any(self.elastic.film)
 
     def solve(
         self, patch: Ellipse | GridPatch, slip: Slip, friction, rows: np.ndarray, fine: bool = True

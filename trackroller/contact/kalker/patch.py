@@ -55,6 +55,8 @@ def _level(
         height,
         share,
         ellipse.is_hertzian,
+        elastic.film * elastic.shear_modulus,
+        False,
     )
     solution = batch.Found.start(start, settings.law_in_use)
     batch.solve_batch(patches, settings.law_in_use, settings, solution)
@@ -78,6 +80,9 @@ def _first(ellipse: Ellipse | GridPatch, creep: Creepage, friction, elastic: Ela
         across = length * 4.0 * elastic.shear_modulus * c.c23 / (np.pi * b * np.sqrt(b / a))
         lateral = across[:, None] * (creep.lateral[:, None] - creep.spin[:, None] * b[:, None] * places)
         rolling = (length * 3.0 * elastic.shear_modulus * c.c11 / (8.0 * b))[:, None] * creep.along(a[:, None] * places)
+        # a film is softer in the same way: both displacements add up
+        softer = 1.0 + elastic.film * 3.0 * elastic.shear_modulus * c.c11 / (8.0 * b)
+        rolling, lateral = rolling / softer[:, None], lateral / softer[:, None]
         out, traction = np.empty((friction.size, 2, elements, elements)), np.zeros((2, friction.size, elements))
         for k in range(elements - 1, -1, -1):  # material enters at the leading edge
             traction[0] -= lateral[:, k, None]
@@ -146,7 +151,8 @@ def _solve_block(ellipse, creep, friction, elastic, travel, settings: KalkerSett
         other, stick_before = _integrals(ellipse, friction, coarse, settings)
         change, report = value - other, coarse.report
         weight, limit[:, :3] = extrapolation.extrapolated(ellipse, creep, friction, elastic, solution, value, change)
-        force_error = extrapolation.force_error(ellipse, friction, stick, change, elements)
+        softness = elastic.film * elastic.shear_modulus / ellipse.semi_axis_rolling
+        force_error = extrapolation.force_error(ellipse, friction, stick, change, elements, softness)
         limit[:, 3] = extrapolation.adhesion(stick, stick_before, weight, elements) - stick
         pressed = pressed + weight * (pressed - report.pressure_work)
         work = work + weight * (work - report.work - report.pressure_work)
@@ -190,7 +196,7 @@ def _prepared(ellipse: Ellipse | GridPatch, friction, elastic: Elastic) -> tuple
             *(_full(v, n) for v in (ellipse.semi_axis_lateral, ellipse.semi_axis_rolling, ellipse.max_pressure))
         )
     g, nu, k = (_full(v, n) for v in (elastic.shear_modulus, elastic.poisson_ratio, elastic.coupling))
-    return ellipse, _full(friction, n), Elastic(g, nu, k)
+    return ellipse, _full(friction, n), Elastic(g, nu, k, _full(elastic.film, n))
 
 
 def solve_patch(

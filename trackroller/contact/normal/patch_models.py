@@ -55,6 +55,11 @@ class GridModel(ContactModel):
         self._residual = np.zeros((len(given.travel_speed), 2))
         self._roughness = np.full((len(given.travel_speed), 2), np.nan)
 
+    @property
+    def elements(self) -> int:  # type: ignore[override]
+        """Return the number of elements along each axis of a patch."""
+        return self.patches.elements
+
     def patch(self, patch: Patch, slip: Slip, rows: np.ndarray, fine: bool = True) -> GridPatch:
         """Return the solved patches under the normal forces of `patch`; solved ones are returned as they are."""
         return self.patches.at(patch.normal_force, slip.sine, rows, fine) if patch.is_hertzian else patch  # type: ignore[return-value]

@@ -18,7 +18,7 @@ from markupsafe import Markup
 from trackroller.damage import judged
 from trackroller.files import inert_cell
 from trackroller.report.headlines import WARNING_HEADS, headline_of, warning_rows
-from trackroller.report.numbers import count, long_name, on_duty, plain, rounded, unit_text
+from trackroller.report.numbers import carried, count, long_name, on_duty, plain, unit_text
 from trackroller.report.pictures import curves
 from trackroller.report.pictures.bars import Bars
 from trackroller.report.pictures.first_screen import picture_of
@@ -140,7 +140,7 @@ def _outputs(answer: Answer) -> list[tuple[str, ...]]:
         return []
     rows = answer.outputs.to_dict("records")
     numbers = ("smallest", "median", "largest")
-    return [(row["output"], unit_text(row["units"]), *(rounded(row[name]) for name in numbers)) for row in rows]
+    return [(row["output"], unit_text(row["units"]), *(carried(row[name]) for name in numbers)) for row in rows]
 
 
 def transposed_names(answer: Answer) -> list[str]:

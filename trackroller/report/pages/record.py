@@ -108,7 +108,7 @@ def body_materials(materials: Mapping[str, Mapping[str, Any]]) -> list[tuple[str
 
 def command_of(ds: xr.Dataset, words: tuple[str, ...] = ("solve",)) -> str:
     """Return the command that solves the case of a result again, or that `words` name."""
-    left_out = record.not_given_of(ds)
+    left_out = record.names_not_given(ds.attrs)
     given = {name: value for name, value in record.inputs_of(ds).items() if name not in left_out}
     plain_values = {
         n: v if v is None or isinstance(v, Mapping) else str(v).removesuffix(".0") for n, v in given.items()

@@ -24,10 +24,9 @@ from trackroller.report.pages.record import (
     inputs_apart,
     options_text,
     pictures,
-    print_record,
     record_text,
 )
-from trackroller.report.printed import print_answer
+from trackroller.report.printed import print_answer, print_below_headline, print_part
 from trackroller.report.tables.inputs import Row, input_rows
 from trackroller.report.terminal import print_table, print_text
 from trackroller.report.words.assumptions import assumptions, friction_sentence, standards, strength_sentences
@@ -37,8 +36,7 @@ from trackroller.results.flags import flags_of
 from trackroller.results.roller_answer import answer_of_roller, materials_of_case
 from trackroller.roller import stored_inputs as record
 from trackroller.roller.dataset import solved_by
-from trackroller.roller.duty import FIELD as DUTY
-from trackroller.roller.duty import duty_of, years
+from trackroller.roller.duty import OVERROLLINGS, duty_of, duty_words, strokes_of, years
 from trackroller.roller.output_names import is_life
 from trackroller.roller.settings import SHEET_FIELDS, sheet_of
 from trackroller.roller.stored_inputs import doubts_of, friction_records, inputs_of, is_default, materials_of
@@ -120,10 +118,12 @@ def sheet_inputs(ds: xr.Dataset) -> list[Row]:
     rows = [Row(f"{plain(name)} of the roller", number(value), "mm") for name, value in record.radii_of(ds).items()]
     duty = duty_of(ds)
     if duty:
-        hours, days = (number(duty[one.name]) for one in DUTY.numbers)
-        rows.append(Row("duty", f"{hours} h a day, {days} days a year"))
+        rows.append(Row("duty", duty_words(duty, strokes_of(ds))))
+    inputs = inputs_of(ds)
+    if strokes_of(ds):
+        inputs.pop(OVERROLLINGS)  # the strokes give it; the table of lives shows it
     from_database = ["friction_coefficient"] if friction_records(ds.attrs) else []
-    return [*rows, *input_rows(inputs_of(ds), record.not_given_of(ds), from_database)]
+    return [*rows, *input_rows(inputs, record.not_given_of(ds), from_database)]
 
 
 def _less_stressed(ds: xr.Dataset) -> str:
@@ -156,7 +156,9 @@ def print_facts(ds: xr.Dataset) -> None:
     fields = [str(name) for name, variable in ds.data_vars.items() if variable.ndim > 2]
     if fields:
         print_text(f"{', '.join(fields)} (write them with -o)", "fields")
-    print_record(answer)
+    for part in answer.parts:
+        print_part(answer, part)
+    print_below_headline(answer)
 
 
 @lives_in_years

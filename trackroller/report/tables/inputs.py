@@ -12,6 +12,7 @@ from trackroller.materials.properties import ALTERNATIVES, PROPERTIES, REQUIRED
 from trackroller.methods.factor import ROWS
 from trackroller.parameters import MAPPING_FIELDS, MATERIAL_FIELDS, MECHANICAL_MAPPINGS, OF_LIMITS, PARAMETERS
 from trackroller.parameters.carriage_fields import parameter_of
+from trackroller.parameters.example import ABSENT
 from trackroller.report.numbers import capital, level_text, long_name, near, number, plain, rounded, row_unit, unit_text
 from trackroller.report.tables.table import Table
 from trackroller.roller.stored_inputs import friction_records, is_default
@@ -59,7 +60,8 @@ def input_rows(
     for name, value in inputs.items():
         drawn = name == "roller_profile_radius" and inputs.get("roller_profile") and is_default(name, value)
         optional = name in (*MAPPING_FIELDS, "guide_overrollings_per_hour") and value is None
-        if not (drawn or optional or (name in OF_LIMITS and is_default(name, value))):
+        absent = name in (*OF_LIMITS, *ABSENT) and is_default(name, value)
+        if not (drawn or optional or absent):
             row = input_row(name, value)
             if not_given is not None:
                 row = replace(row, default=name in not_given or name in database, database=name in database)

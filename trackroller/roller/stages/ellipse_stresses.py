@@ -166,7 +166,8 @@ class EllipseStresses(PatchStresses):
             doubt = (CHANGE_WEIGHT * peak.change).max(axis=1)
             size = PIECE
         else:
-            doubt = peak.error.max(axis=1)
+            # the change at the place of a peak, larger than that of its height, shows a narrow ridge
+            doubt = np.fmax(peak.error, peak.change).max(axis=1)
             size = FINER_PIECE
         goal = np.maximum(refined_above(elements), REFINED_SHARE * own * results.friction[flat])
         rough = np.flatnonzero((doubt > goal) & (results.slides_along[flat] == 0))

@@ -9,8 +9,9 @@ from dataclasses import replace
 
 import numpy as np
 
+from trackroller.contact import close_fit
 from trackroller.contact.drawn_profiles import inclined
-from trackroller.contact.friction_laws import law_of
+from trackroller.contact.friction_laws import law_of, steepness
 from trackroller.contact.hertz import contact_modulus, shape
 from trackroller.contact.normal.patches import Boxes
 from trackroller.contact.quantities import Elastic, error_of_work
@@ -66,7 +67,8 @@ def prepare(table: CaseTable, options: Options, across: int = 1, near: Boxes | N
     law = law_of(None)
     if len(table):
         law = law_of(table.friction_law[0])
-    model = model_of(table, options, r_a, law, table.velocity * MM_PER_S, across, near)
+    film = rounded(table.layer_flexibility / unit)
+    model = model_of(table, options, r_a, law, table.velocity * MM_PER_S, across, near, film)
     loads = eq.RollerLoads(
         rounded(table.radial_force / unit**2),
         rounded(table.axial_force / unit**2),
@@ -141,7 +143,8 @@ def force_error(results: StageResults, options: Options) -> None:
     error = scene.model.force_error(scene.n)
     twins = scene.mirror.symmetric
     error[twins] = np.fmax(error[twins, :1], error[twins, 1:])
-    measured = expected_errors(options, scene.model.name, not scene.loads.falling).get("friction_force")
+    plain = not scene.loads.falling and not np.any(scene.table.layer_flexibility)
+    measured = expected_errors(options, scene.model.name, plain).get("friction_force")
     if measured is not None:
         error = np.where(np.isnan(error), max(measured.bound, measured.p99), error)
     known = (results.regime == eq.FULL_SLIP) | (scene.loads.friction == 0.0)
@@ -178,6 +181,7 @@ def contact(results: StageResults, options: Options) -> None:
     v["patch_area"] = results.by_contact(patch.area)
     v["pressure_centre"] = results.by_contact(patch.pressure_centre)
     results.flag("conformal", np.logical_or.reduce(results.by_contact(patch.reaches_edge), axis=1))
+    _close_fit(results, options)
     pole_x, pole_y = _spin_pole(results, options)
     v["spin_pole_lateral"] = results.by_contact(pole_x)
     v["spin_pole_rolling"] = results.by_contact(pole_y)
@@ -189,6 +193,19 @@ def contact(results: StageResults, options: Options) -> None:
         if model.knows_tractions:
             v["max_shear"] = results.full(_largest_shear(results))
         v["stick_area_fraction"] = _stick_share(results)
+
+
+def _close_fit(results: StageResults, options: Options) -> None:
+    """Add a/R and the errors of Hertz's theory that follow from it; NaN for patches that are no ellipses."""
+    v = results.values
+    scene = results.scene
+    radii = scene.table.guide_profile_radius / scene.unit, scene.table.roller_profile_radius / scene.unit
+    ratio = close_fit.conformity(v["semi_axis_lateral"], *radii)
+    v["conformity"] = ratio
+    if options.normal != "hertz":
+        ratio = np.full_like(ratio, np.nan)
+    for name, law in close_fit.LAWS.items():
+        v[name] = close_fit.model_error(ratio, law)
 
 
 def _spin_pole(results: StageResults, options: Options) -> tuple[np.ndarray, np.ndarray]:
@@ -203,27 +220,31 @@ def _spin_pole(results: StageResults, options: Options) -> tuple[np.ndarray, np.
 
 
 def steep_friction(results: StageResults, options: Options) -> None:
-    """Flag cases with mu p_max v max(-df/dv)/G > 1: their friction law falls too steeply for a unique solution.
+    """Flag cases whose friction law falls too steeply for a unique solution, see `friction_laws.steepness`.
 
-    An element under the traction tau moves elastically by about tau/G of the distance travelled. If this motion lowers
-    the friction by more than the traction itself, the state of the element is not unique, and most rollers without a
-    balance fail for this reason. A failed roller has no pressure; its forces without friction give an estimate.
+    Most rollers without a balance fail for this reason. A failed roller has no patch; its forces without friction give
+    an estimate.
     """
     scene = results.scene
     table = scene.table
     loads = scene.loads
     if not loads.falling or not scene.model.elastic:
         return
-    shear_modulus = Elastic.of_pair(*bodies(table)).shear_modulus
-    fall = law_of(table.friction_law[0]).steepest_fall * table.velocity * MM_PER_S
     plain = 0.5 * (np.abs(loads.radial_force) / loads.cosine + np.abs(loads.axial_force) / loads.sine)
-    pressure = np.where(
-        results.regime == eq.FAILED,
-        loads.shape.pressure * np.cbrt(plain),
-        np.max(results.values["max_pressure"], axis=1),
+    failed = results.regime == eq.FAILED
+    root = np.cbrt(plain)
+    pressure = np.where(failed, loads.shape.pressure * root, np.max(results.values["max_pressure"], axis=1))
+    half = np.where(failed, loads.shape.rolling * root, np.min(results.values["semi_axis_rolling"], axis=1))
+    steep = steepness(
+        law_of(table.friction_law[0]),
+        loads.friction * pressure,
+        table.velocity * MM_PER_S,
+        Elastic.of_pair(*bodies(table)).shear_modulus,
+        table.layer_flexibility / scene.unit,
+        2.0 * half / max(scene.model.elements, 1),
     )
     with np.errstate(invalid="ignore"):
-        results.flag("steep_friction", loads.friction * pressure * fall / shear_modulus > 1.0)
+        results.flag("steep_friction", steep > 1.0)
 
 
 def _stick_share(results: StageResults) -> np.ndarray:

@@ -36,6 +36,7 @@ def model_of(
     travel_speed: np.ndarray,
     across: int = 1,
     near: Boxes | None = None,
+    film: np.ndarray | None = None,
 ) -> ContactModel:
     """Make the contact model that the options ask for.
 
@@ -48,8 +49,9 @@ def model_of(
     travel_speed : of the rollers, (n,) [mm/s]
     across : factor on the elements across solved patches, see `finer_across`
     near : boxes around similar patches of both contacts, from which the normal problem starts
+    film : flexibility of a film between the bodies, (n,) [mm^3/N]; None is no film
     """
-    elastic = Elastic.of_pair(*bodies(table))
+    elastic = replace(Elastic.of_pair(*bodies(table)), layer_flexibility=film)
     if options.normal == "hertz":
         patches = None
     else:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from trackroller.contact import close_fit
 from trackroller.contact.drawn_profiles import gap
 from trackroller.contact.slip import pole_split
 from trackroller.damage import LIMITS, computed, judged, verdict
@@ -225,9 +226,12 @@ def validity(table: CaseTable, block: Block, options: Options) -> None:
     alpha = np.deg2rad(table.contact_angle)
     r_a = rolling_radius(table.axis_distance, r_g, alpha)
     radii = [[table.roller_profile_radius, r_a / np.cos(alpha)], [r_g, table.guide_curve_radius / np.cos(alpha)]]
-    smallest = np.min(np.abs(radii), axis=1).T
     a = np.max(v["semi_axis_lateral"], axis=1)
-    size = np.maximum(a, np.max(v["semi_axis_rolling"], axis=1))
+    b = np.max(v["semi_axis_rolling"], axis=1)
+    lateral, rolling = np.abs(radii).transpose(1, 2, 0)  # of both bodies, (n, 2)
+    widest = np.full(len(table), close_fit.PLAIN)
+    if options.normal == "hertz":
+        widest = close_fit.widest(table.roller_profile_radius)
     strength = np.stack([table.roller.tensile_strength, table.guide.tensile_strength], axis=1)
     body = np.zeros((len(table), 2), dtype=np.int32)
 
@@ -238,7 +242,11 @@ def validity(table: CaseTable, block: Block, options: Options) -> None:
         body[:] |= np.where(condition, bit[name], 0).astype(np.int32)
 
     with np.errstate(invalid="ignore"):
-        warn("half_space", size[:, None] > 0.3 * smallest)
+        too_wide = (a[:, None] > widest[:, None] * lateral) | (a[:, None] > close_fit.PLAIN * rolling)
+        too_large = too_wide | (b[:, None] > close_fit.PLAIN * np.minimum(lateral, rolling))
+        warn("half_space", too_large)
+        close = a > close_fit.PLAIN * np.min(lateral, axis=1)
+        warn("close_fit", close & ~np.any(too_large, axis=1))
         # ASSUME: R_m stands for the yield strength, whose values in the database are guesses.
         warn("yield", np.max(v["max_pressure"], axis=1)[:, None] > 1.6 * strength)
         warn("conformal", a >= r_g * np.minimum(np.pi / 2 - alpha, alpha))

@@ -17,7 +17,7 @@ from trackroller.materials.database import FRICTION
 from trackroller.methods import METHODS, Design
 from trackroller.methods.factor import ROWS, parse, readable
 from trackroller.methods.method import study_keys
-from trackroller.parameters import FRICTION_LEVELS, MAPPING_FIELDS, MATERIAL_FIELDS, PARAMETERS
+from trackroller.parameters import FRICTION_LEVELS, MAPPING_FIELDS, MATERIAL_FIELDS, PARAMETERS, expressions
 from trackroller.parameters.carriage_fields import field_of, long_name_of
 from trackroller.parameters.example import EXAMPLE
 from trackroller.roller.fields import own_frictions
@@ -82,7 +82,8 @@ def draw(config: StudyFile, factors: Mapping[str, Any], table: Path, grown: tupl
         options["population"] = config.budget.generation
     base = {k: v for k, v in config.base.items() if isinstance(v, float)}
     samples = max(grown, default=config.samples)
-    design = sample(factors, config.design, samples, config.seed, base=base, **options)
+    used = {name for text in config.constraints for name in expressions.names(text, "constraints")}
+    design = sample(factors, config.design, samples, config.seed, base=base, used=used, **options)
     if design.size > MAX_CASES:
         raise InputError("design", f"{design.size} cases", f"at most {MAX_CASES} cases")
     return design

@@ -221,7 +221,7 @@ def of_worst_rollers(
     place = np.full(design.size, -1)
     place[row[worst]] = lives.ruling[worst]
     has_worst = place >= 0
-    shown = solved.isel(case=np.maximum(place, 0)).copy(deep=True)
+    shown = lives.solved.isel(case=np.maximum(place, 0)).copy(deep=True)
     for name, values in lives.summed.items():
         full = shown[name].values
         full[row[worst]] = values[worst]

@@ -19,7 +19,7 @@ from trackroller.numerics.units import PLAIN, in_unit
 from trackroller.parameters import PARAMETERS
 from trackroller.roller.aliases import AXIS_DISTANCE, RADII
 from trackroller.study.design.entries import FACTOR_NAMES, check_own_name, field_value
-from trackroller.study.file.user_columns import read_table
+from trackroller.study.file.user_columns import column_names, read_table
 from trackroller.tables.user_table import UserTable
 
 
@@ -40,6 +40,8 @@ def table(path: Any, used: Collection[str] = ()) -> dict[str, np.ndarray]:
     InputError : no such file, a line of another length, or a cell that is empty, not clear or of another kind
     """
     wrong = Collector()
+    if used:  # an expression writes a name without its blanks
+        used = {*used, *(name for name in column_names(Path(path), "table") if _without_blanks(name) in used)}
     cases = read_cases(Path(path), wrong, used)
     with wrong.part():
         _check_names(cases, used, path)

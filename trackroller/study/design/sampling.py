@@ -10,7 +10,7 @@ crossed with all other rows.
 from __future__ import annotations
 
 import graphlib
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from typing import Any
 
 import numpy as np
@@ -31,6 +31,7 @@ def sample(
     seed: int,
     *,
     base: Mapping[str, Any] | None = None,
+    used: Collection[str] = (),
     **options: Any,
 ) -> Design:
     """Draw a design.
@@ -44,6 +45,7 @@ def sample(
         methods have their own number
     seed : the same seed gives the same design
     base : values that expressions may use besides the factors
+    used : names that constraints use, which may be further columns of a table
     options : second_order (saltelli, default true), groups (saltelli: groups of factors whose columns are exchanged
         together; the design has n (2 g + 2) or n (g + 2) rows for g groups, single factors included), levels (morris,
         default 4), table (path of the CSV), inner (inner_outer: sobol, the default, or lhs), point_samples
@@ -64,8 +66,8 @@ def sample(
     settings = _settings(method, options)
     drawn_by = METHODS[method]
     if drawn_by.observed:
-        used = {name for spec in factors.values() for name in expressions.names(spec.get("expression", "0"))}
-        columns = table(settings["table"], used)
+        in_factors = {name for spec in factors.values() for name in expressions.names(spec.get("expression", "0"))}
+        columns = table(settings["table"], {*in_factors, *used})
         free, unit = of_columns(columns)
         meta: dict[str, Any] = {}
         parsed = {name: parse(name, spec) for name, spec in factors.items() if name not in columns}

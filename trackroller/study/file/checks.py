@@ -117,8 +117,10 @@ def cross_check(study: Study) -> None:
         check_own_name(name, f"factors.{name}")
     wrong = Collector()
     with wrong.part():
+        # a constraint may name a further column of the table, whose cells say whether it holds numbers
+        columns = study.drawn.columns if config.method.observed and config.constraints else {}
         named = study.parsed | study.columns_of_shelves
-        check(config, named)
+        check(config, named, columns)
         check_search(config, named)
         check_until(config)
     for checked in (_check_roles, _check_parts, _check_options, _check_correlations, _check_materials):

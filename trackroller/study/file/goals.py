@@ -16,6 +16,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping, Sequence
+from types import MappingProxyType
 from typing import Any, Literal
 
 import numpy as np
@@ -232,14 +233,19 @@ def check_scatter(config: Any, materials: Mapping[str, Iterable[Any]]) -> None:
             )
 
 
-def check(config: Any, factors: Mapping[str, Factor]) -> None:
-    """Check that the names in `analysis`, `pareto` and `constraints` exist; `InputError` gives the nearest one."""
+def check(config: Any, factors: Mapping[str, Factor], columns: Mapping[str, np.ndarray] = MappingProxyType({})) -> None:
+    """Check that the names in `analysis`, `pareto` and `constraints` exist; `InputError` gives the nearest one.
+
+    `columns` are those of the table of cases, of which a constraint may name any.
+    """
     check_own(config, factors)
     known = names_of_outputs(config)
     check_analysed(config, [name for name, factor in factors.items() if factor.discrete and factor.numeric])
-    if config.requirement and not config.method.weighted:
-        remedy = "Use inner_outer, lhs, sobol or saltelli. A grid or a table gives shares of its designs."
-        raise InputError("requirement", config.design, "a design whose rows have known weights", remedy)
+    if not config.method.weighted and any(own.in_shares for own in config.requirement.values()):
+        remedy = "Remove probability, or use inner_outer, lhs, sobol or saltelli."
+        raise InputError(
+            "requirement", config.design, "for probability: a design whose rows have known weights", remedy
+        )
     free = [*known, *factors, *PARAMETERS]
     _check_statistics(config, factors, known)
     if len(config.pareto) == 1 and not config.requirement:
@@ -249,7 +255,7 @@ def check(config: Any, factors: Mapping[str, Factor]) -> None:
             raise unknown_result("pareto", name, free, config.outputs)
         if name in factors and not factors[name].numeric:
             raise InputError("pareto", name, "a result or factor with one number a case", "Names have no order.")
-    _check_constraints(config, factors, free)
+    _check_constraints(config, factors, columns, free)
 
 
 def check_analysed(config: Any, goods: Iterable[str] = ()) -> None:
@@ -306,7 +312,10 @@ def statistic(name: str, kinds: tuple[str, ...] = STATISTICS) -> tuple[str, str]
     return "", name
 
 
-def _check_constraints(config: Any, factors: Mapping[str, Factor], free: list[str]) -> None:
+def _check_constraints(
+    config: Any, factors: Mapping[str, Factor], columns: Mapping[str, np.ndarray], free: list[str]
+) -> None:
+    free = list(dict.fromkeys([*free, *(name for name in columns if name not in MATERIAL_FIELDS)]))
     words = [*free, *MATERIAL_FIELDS, "material_pair", "regime"]
     for text in config.constraints:
         for name in names_in(text):
@@ -314,6 +323,7 @@ def _check_constraints(config: Any, factors: Mapping[str, Factor], free: list[st
                 raise unknown_result("constraints", name, [*words, *REGIMES], config.outputs)
         dummy: dict[str, Any] = dict.fromkeys(free, np.ones(2)) | {name: "" for name in words[len(free) :]}
         dummy |= {name: "" for name, factor in factors.items() if not factor.numeric} | {name: name for name in REGIMES}
+        dummy |= {name: "" for name, values in columns.items() if values.dtype.kind not in "fiu"}
         expressions.condition(text, dummy)
 
 

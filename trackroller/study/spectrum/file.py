@@ -45,6 +45,7 @@ from trackroller.roller.duty import (
     is_of_strokes,
     passes_per_km,
     refuse_overrollings,
+    strokes_in,
 )
 from trackroller.roller.geometry import rolling_radius
 from trackroller.roller.options import Options
@@ -117,6 +118,8 @@ class Spectrum:
         Options of the solver.
     duty : mapping, optional
         `hours_per_day` and `days_per_year` of travel, for lives in years.
+    strokes : mapping, optional
+        The strokes that the duty was given in, from which its hours follow.
     groups : tuple of str
         Groups of outputs of the limits that the key `limits` names; without it, all whose inputs are given are checked.
     by_share : bool
@@ -131,6 +134,7 @@ class Spectrum:
     failure_probabilities: tuple[float, ...] = PROBABILITIES
     options: Mapping[str, Any] = field(default_factory=dict)
     duty: Mapping[str, float] | None = None
+    strokes: Mapping[str, float] | None = None
     groups: tuple[str, ...] = ()
     by_share: bool = False
 
@@ -217,7 +221,8 @@ def _by_strokes(duty: Mapping[str, float], blocks: Sequence[Block]) -> dict[str,
         raise InputError("blocks", None, "a block with travel", "Give one of them a distance.", "have no travel")
     in_time = in_hours(duty, sum(block.hours for block in blocks) / travel)
     passes = passes_per_km(duty) / 1000.0
-    return {"duty": in_time, "blocks": tuple(replace(b, guide_overrollings=passes * b.distance) for b in blocks)}
+    given = {"duty": in_time, "strokes": strokes_in(duty)}
+    return given | {"blocks": tuple(replace(b, guide_overrollings=passes * b.distance) for b in blocks)}
 
 
 def load_spectrum(path: Path | str) -> Spectrum:

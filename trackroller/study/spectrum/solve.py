@@ -24,6 +24,7 @@ from trackroller.parameters import BODIES, PARAMETERS
 from trackroller.roller.case import Case, to_table
 from trackroller.roller.doubts import doubts
 from trackroller.roller.duty import OVERROLLINGS, with_duty
+from trackroller.roller.run_in import groups_for_run_in, with_run_in
 from trackroller.roller.stored_inputs import DOUBTS, NOT_GIVEN, material_values, plain_inputs
 from trackroller.roller.temperature import temperatures_of
 from trackroller.study.spectrum.file import LOAD_FIELDS, Spectrum, overrollings_per_shift
@@ -78,7 +79,8 @@ def solve_spectrum(
         database = load_database()
     overrollings = overrollings_per_shift(spectrum)
     cases = cases_of(spectrum, overrollings)
-    outputs = dict.fromkeys(("forces", "peak_stress", "life", verdict.GROUP, *spectrum.groups))
+    named = ("forces", "peak_stress", "life", verdict.GROUP, *spectrum.groups)
+    outputs = dict.fromkeys((*named, *groups_for_run_in(cases)))
     solved = solve_cases(cases, outputs=tuple(outputs), database=database, **spectrum.options)
     return _damage(spectrum, solved, database, overrollings)
 
@@ -170,8 +172,13 @@ def _damage(spectrum: Spectrum, solved: xr.Dataset, database: MaterialDatabase, 
         meta = _attrs("1", "shifts to failure at a failure probability", "L_S,p")
         known = {"probability": ("probability", list(levels), {"units": "1", "long_name": "failure probability"})}
         variables["life_shifts_at_probability"] = xr.DataArray(lives, known, ("probability", *_CB), attrs=meta)
+    if "life_to_first_limit_shifts" in variables:
+        shifts_to_first = variables["life_to_first_limit_shifts"][1]
+        travel = variables["distance"][1]
+        one_roller = np.zeros(len(travel), dtype=int)
+        solved = with_run_in(solved, one_roller, np.array(travel) / 1e3, shifts_to_first[None])
     labelled = _labelled(spectrum, variables, solved, rule).assign_attrs(_inputs(spectrum, database))
-    return with_duty(labelled, spectrum.duty)
+    return with_duty(labelled, spectrum.duty, spectrum.strokes)
 
 
 def _inputs(spectrum: Spectrum, database: MaterialDatabase) -> dict[str, str]:

@@ -50,6 +50,7 @@ ROOMS = (  # a room imports from the rooms before it only
     "materials",
     "contact",
     "roller",
+    "one_patch",
     "methods",
     "carriage",
     "study",

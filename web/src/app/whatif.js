@@ -175,9 +175,10 @@ export function whatIf(state, offered, { rows }) {
   async function findRange() {
     const typed = bound.value.trim().replace(",", ".");
     if (!/^[-+]?[\d.]+(e[-+]?\d+)?(\s*(a|yrs?|years?))?$/i.test(typed)) return (far.textContent = `Write a number that the result of the curve has to meet, such as 10500${inYears() ? " or 3 years" : ""}.`);
+    if (!result.field.value) return (far.textContent = "The curve is still being solved: its result is not there yet.");
     far.textContent = "Searching …";
     try {
-      far.textContent = (await ask("found", { values: state.values, over: over.field.value, condition: `${result.field.value} ${relation.field.value} ${typed}` })).text;
+      far.textContent = (await ask("find_range", { values: state.values, over: over.field.value, condition: `${result.field.value} ${relation.field.value} ${typed}` })).text;
     } catch (error) {
       far.textContent = error.message;
     }
