@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -12,6 +13,8 @@ import trackroller as tr
 from trackroller.cli.case import case_of
 from trackroller.parameters.expressions import evaluate
 from trackroller.roller.aliases import AXIS_DISTANCE, renamed
+from trackroller.roller.settings import checked_case
+from trackroller.study.file.load import parse_study
 
 
 def bottom_of_groove(axis, groove, guide, degrees):
@@ -149,3 +152,20 @@ def test_settings_that_contradict_each_other_are_refused(file, words, says, tmp_
     path.write_text(FILES[file])
     with pytest.raises(tr.InputError, match=says):
         case_of(path, words)
+
+
+def test_failures_is_another_name_of_the_failure_probability(tmp_path, monkeypatch):
+    """In a case, on the command line, which overrides the file, and in a study."""
+    monkeypatch.chdir(tmp_path)
+    assert checked_case({"failures": "5%"})[1] == {"failure_probability": "5%"}
+    Path("case.yaml").write_text("failure_probability: 0.2\n")
+    assert case_of(Path("case.yaml"), ["failures=5%"])[1]["failure_probability"] == "5%"
+    Path("case.yaml").write_text("failures: 105%\n")
+    with pytest.raises(tr.InputError, match=r"line 1: failure_probability .*1\.05"):
+        case_of(Path("case.yaml"), None)
+    study = {"name": "f", "factors": {"contact_angle": {"values": [30, 32]}}}
+    assert parse_study(study | {"failures": "5%"}).options["failure_probability"] == 0.05
+    with pytest.raises(tr.InputError, match=r"failures .*stands beside failure_probability"):
+        parse_study(study | {"failures": "5%", "failure_probability": 0.1})
+    with pytest.raises(tr.InputError, match=r"^failures = 1\.05"):
+        parse_study(study | {"failures": "105%"})

@@ -15,7 +15,7 @@ from trackroller.files import files_beside, read_text, write_text, write_whole
 from trackroller.materials import load_database
 from trackroller.parameters import REGIMES
 from trackroller.parameters.example import LASTING, with_unit
-from trackroller.roller.aliases import ALIASES, overridden
+from trackroller.roller.aliases import WRITTEN, overridden
 from trackroller.roller.case import Case
 from trackroller.roller.doubts import doubts_of_case
 from trackroller.roller.settings import checked_case, with_beside
@@ -97,8 +97,8 @@ def case_of(
         values = parse_mapping(text, "case file")
     else:
         values = {} if given else dict(LASTING)
-    named = {*given, *(ALIASES.get(name, name) for name in given)}
-    with errors_by_line(text, named, aliases=ALIASES), files_beside(path):
+    named = {*given, *(WRITTEN.get(name, name) for name in given)}
+    with errors_by_line(text, named, aliases=WRITTEN), files_beside(path):
         return checked_case(overridden(values, given))
 
 

@@ -8,14 +8,18 @@ uniform          ``[low, high]`` loguniform       ``[low, high]``, both of one s
 deviation before the cut) triangular       ``[low, most likely, high]`` lognormal        ``[median,
 standard deviation of the natural logarithm]`` weibull          ``[scale, shape]``; 63.2 % of the
 values lie between 0 and the scale values           a list of numbers or of categories (names, pairs
-of names, null), equally likely linspace         ``[first, last, how many]``, equally likely
-logspace         ``[first, last, how many]`` (the values themselves, not exponents), equally likely
-expression       arithmetic over other factors and base values, e.g. ``"-1.2 *
+of names, null), equally likely rows             a list of mappings, each with a name, which is the
+level, and with values of columns, equally likely linspace         ``[first, last, how many]``,
+equally likely logspace         ``[first, last, how many]`` (the values themselves, not exponents),
+equally likely expression       arithmetic over other factors and base values, e.g. ``"-1.2 *
 guide_profile_radius"``
 ================ =====================================================================
 
 Listed values are those that a person writes, 0.15 and not 0.15000000000000002; see
 `numerics.numbers.written`.
+
+`rows` gives each of its columns a value at each level; `units` may stand beside it, the units of
+columns by name.
 
 `weights` may stand beside a list: one positive number a value. A random sample draws the values in
 their proportion.
@@ -28,7 +32,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -49,7 +53,8 @@ DISTRIBUTIONS = {
     "weibull": 2,
 }
 UNBOUNDED = ("normal", "lognormal", "weibull")
-LISTS = ("values", "linspace", "logspace")
+ROWS = "rows"
+LISTS = ("values", "linspace", "logspace", ROWS)
 KINDS = (*DISTRIBUTIONS, *LISTS, "expression")
 MOST_SPREAD = 5.0  # beyond, the values of one sample span 26 powers of ten
 LEAST_SHAPE = 0.2  # below, they span 50
@@ -70,6 +75,8 @@ class Factor:
     text : the expression
     scatter : whether the factor belongs to the inner array of an inner/outer array design
     weights : probabilities of the listed values [1], empty if all are equally likely
+    beside : values of the columns of `rows` at each level, by name
+    units : units of these columns, as far as they are given
     """
 
     name: str
@@ -79,6 +86,8 @@ class Factor:
     text: str = ""
     scatter: bool = False
     weights: tuple[float, ...] = ()
+    beside: Mapping[str, tuple[Any, ...]] = field(default_factory=dict, hash=False)
+    units: Mapping[str, str] = field(default_factory=dict, hash=False)
 
     @property
     def discrete(self) -> bool:
@@ -114,6 +123,33 @@ class Factor:
         Values, shape (n,): float for numbers, object for categories.
         """
         return column([self.levels[i] for i in np.asarray(index, dtype=int)], self.numeric)
+
+    def columns_at(self, levels: np.ndarray) -> dict[str, np.ndarray]:
+        """Return the columns of `rows` at some levels.
+
+        Parameters
+        ----------
+        levels : levels of the factor, shape (n,)
+
+        Returns
+        -------
+        Values by name, shape (n,): float where all values of a column are numbers, NaN for a number
+        that is missing.
+        """
+        place = {level: i for i, level in enumerate(self.levels)}
+        index = [place[level] for level in levels.tolist()]
+        columns = {}
+        for name, values in self.beside.items():
+            numeric = self.column_is_numeric(name)
+            columns[name] = column([values[i] for i in index], numeric)
+        return columns
+
+    def column_is_numeric(self, name: str) -> bool:
+        """Return whether a column of `rows` holds numbers; some of them may be missing, but not
+        all.
+        """
+        given = [value for value in self.beside[name] if value is not None]
+        return bool(given) and all(_is_number(value) for value in given)
 
     def bin(self, unit: np.ndarray) -> np.ndarray:
         """Return the index of the listed value at the quantiles `unit`, shape (n,)."""
@@ -239,7 +275,7 @@ def parse(name: str, spec: Any) -> Factor:
     scatter = spec.get("scatter")
     if not (scatter is None or isinstance(scatter, bool)):
         raise InputError(f"{field}.scatter", scatter, "true or false")
-    check_names(f"{field} key", spec, (*KINDS, "scatter", "weights"))
+    check_names(f"{field} key", spec, (*KINDS, "scatter", "weights", "units"))
     keys = [key for key in spec if key in KINDS]
     if len(keys) != 1:
         raise InputError(field, dict(spec), f"exactly one of {', '.join(KINDS)}")
@@ -257,11 +293,58 @@ def parse(name: str, spec: Any) -> Factor:
         raise InputError(where, value, "a list that is not empty", how_to_write(value))
     if kind in DISTRIBUTIONS:
         return Factor(name, kind, _distribution(kind, value, where), scatter=scatter is not False)
-    levels = _levels(kind, list(value), where)
+    return _listed(name, kind, spec, field)
+
+
+def _listed(name: str, kind: str, spec: Mapping[str, Any], field: str) -> Factor:
+    """Return the factor of a list or of rows."""
+    value = list(spec[kind])
+    where = f"{field}.{kind}"
+    beside: dict[str, tuple[Any, ...]] = {}
+    if kind == ROWS:
+        levels, beside = _rows(name, value, where)
+    else:
+        levels = _levels(kind, value, where)
     weights: tuple[float, ...] = ()
     if "weights" in spec:
         weights = _weights(spec["weights"], levels, f"{field}.weights")
-    return Factor(name, kind, levels=levels, scatter=bool(scatter), weights=weights)
+    scatter = bool(spec.get("scatter"))
+    units = spec.get("units", {})
+    return Factor(
+        name, kind, levels=levels, scatter=scatter, weights=weights, beside=beside, units=units
+    )
+
+
+def _rows(
+    name: str, rows: list[Any], where: str
+) -> tuple[tuple[Any, ...], dict[str, tuple[Any, ...]]]:
+    """Return the levels of rows and their columns; a column with the name of the factor holds the
+    levels themselves.
+    """
+    if not all(isinstance(row, Mapping) and isinstance(row.get("name"), str) for row in rows):
+        raise InputError(
+            where, rows, "mappings, each with a name", "For example {name: A, contact_angle: 30}."
+        )
+    names = [row["name"] for row in rows]
+    for own in names:
+        if names.count(own) > 1:
+            raise InputError(
+                f"{where}.{own}.name", own, "a different name for each row", "Rename one of them."
+            )
+    columns = [key for key in rows[0] if key != "name"]
+    for row in rows:
+        others = {*row, "name"} ^ {*columns, "name"}
+        if others:
+            allowed = "the same columns in each row"
+            raise InputError(
+                f"{where}.{row['name']}.{min(others)}",
+                None,
+                allowed,
+                "Add the value, or write null.",
+            )
+    beside = {key: tuple(row[key] for row in rows) for key in columns}
+    levels = beside.pop(name, tuple(names))
+    return levels, beside
 
 
 def _weights(value: Any, levels: tuple[Any, ...], where: str) -> tuple[float, ...]:

@@ -159,9 +159,10 @@ def _factor_and_offset(unit: str, target: str, field: str) -> tuple[float, float
         ):
             spelt = "standard_gravity"  # of an acceleration; a mass keeps its gram
         zero, one = (_registry().Quantity(number, spelt) for number in (0.0, 1.0))
+        # a column of a user's own may have a unit nobody knows
+        unit_of_target = _registry().Unit(_spelt(target))
     except Exception:  # pint's parser raises a dozen kinds, also AssertionError
         raise InputError(field, unit, "a unit that is known", remedy) from None
-    unit_of_target = _registry().Unit(_spelt(target))
     # radians are no dimension to pint, but an angle is no friction coefficient and 600 rpm are not
     # 600/min
     if one.to_base_units().units != _registry().Quantity(1.0, unit_of_target).to_base_units().units:

@@ -38,7 +38,35 @@ def candidate_table(own: Comparison) -> pd.DataFrame:
     table["state"] = states_of(own, table)
     table["fails"] = _fails(own, table)
     table["edge"] = _edges(own)
-    return table
+    return table.assign(**_goods(own, table))
+
+
+def _goods(own: Comparison, table: pd.DataFrame) -> dict[str, Any]:
+    """Return the columns of the user's own of each candidate, such as its price, which `table` has not yet."""
+    first = [rows[0] for rows in own.rows]
+    return {_good(name, table): own.results.table[name].to_numpy()[first] for name in own.results.goods}
+
+
+def _good(name: str, table: pd.DataFrame) -> str:
+    """Return the name of a column of the user's own in a table that may have one of this name."""
+    if name in table:
+        return f"own_{name}"
+    return name
+
+
+def _goods_columns(own: Comparison, table: pd.DataFrame) -> list[Column]:
+    """Return the columns of the user's own as they are shown."""
+    columns = []
+    for name in own.results.goods:
+        kind = "text"
+        if own.results.table[name].dtype.kind == "f":
+            kind = "whole"
+        key = name
+        if f"own_{name}" in table:
+            key = f"own_{name}"
+        units = str(own.results.data[name].attrs.get("units", ""))
+        columns.append(Column(key, long_name_of(name), units, "column of the shelf", kind))
+    return columns
 
 
 def candidate_columns(own: Comparison, table: pd.DataFrame) -> tuple[Column, ...]:
@@ -60,6 +88,7 @@ def candidate_columns(own: Comparison, table: pd.DataFrame) -> tuple[Column, ...
         unit = "" if known is None else known.units.replace("1", "") if known.units == "1" else known.units
         meaning = long_name_of(choice) if known is None else known.meaning
         columns.append(Column(choice, long_name_of(choice), unit, meaning, "level", role="name"))
+    columns += _goods_columns(own, table)
     columns += [
         Column(
             "low", "Worst", units, f"{life}: worst condition, low to high end of its range", until="high", role="bar"

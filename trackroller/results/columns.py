@@ -10,8 +10,9 @@ import pandas as pd
 import xarray as xr
 
 from trackroller.methods import Design
-from trackroller.parameters import MATERIAL_FIELDS, PARAMETERS
+from trackroller.parameters import MAPPING_FIELDS, MATERIAL_FIELDS, PARAMETERS
 from trackroller.roller.dataset import shown
+from trackroller.study.design.build import OF_SHELF
 from trackroller.study.design.levels import OF_MATERIALS
 from trackroller.study.outputs import flat
 
@@ -46,6 +47,7 @@ def _columns(ds: xr.Dataset, dims: Sequence[str], names: Iterable[str]) -> dict[
 def input_columns(ds: xr.Dataset, dims: Sequence[str]) -> dict[str, np.ndarray]:
     """Flatten factors and other inputs that vary over `dims` in one common order."""
     own = [n for n, v in ds.variables.items() if v.dims == ("case",) and n not in ("case", "reason", *ds.data_vars)]
+    own += [n for n, v in ds.coords.items() if OF_SHELF in v.attrs and n not in MAPPING_FIELDS]
     words = [f"{n}_value" for n in PARAMETERS]  # numbers that belong to a friction coefficient given as a word
     return _columns(ds, dims, [*(d for d in dims if d != "case"), *map(str, own), *PARAMETERS, *words, *OF_MATERIALS])
 

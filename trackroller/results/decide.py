@@ -85,7 +85,10 @@ class Decider:
 
     @cached_property
     def goal(self) -> np.ndarray:
-        """Return the one goal of the study beside its requirement, more is better, shape (m,); 0 without one."""
+        """Return the one goal of the study beside its requirement, more is better, shape (m,); 0 without one.
+
+        A candidate of which the goal is not known, such as a roller without a price, is the worst one.
+        """
         goals = self.own.results.config.pareto
         if len(goals) != 1 or not self.own.required:
             return np.zeros(self.own.count)
@@ -97,7 +100,7 @@ class Decider:
         out = np.full(self.own.count, np.inf)
         rows = self.own.reachable & ~np.isnan(values.astype(float))
         np.minimum.at(out, self.own.place[rows], sign * values[rows].astype(float))
-        return out
+        return np.where(np.isposinf(out), -np.inf, out)
 
     def best_first(self, among: Iterable[int]) -> list[int]:
         """Return some candidates, the best one first: by the goal, the score, the median, then the number held."""

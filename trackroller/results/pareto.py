@@ -28,7 +28,15 @@ from trackroller.study.outputs import regimes
 
 def given_pareto(results: SolvedCases) -> xr.Dataset | None:
     """Return the Pareto set for the goals that a study or a search gives; None without goals of its own."""
-    return study_pareto(results) if results.config.pareto or results.config.method.proposes else None
+    return study_pareto(results) if goals_of_front(results) or results.config.method.proposes else None
+
+
+def goals_of_front(results: SolvedCases) -> dict[str, str]:
+    """Return the goals of the key `pareto`; {} for a single goal, which ranks what meets the requirement."""
+    given = dict(results.config.pareto)
+    if len(given) > 1:
+        return given
+    return {}
 
 
 @made_once
@@ -48,7 +56,8 @@ def study_pareto(results: SolvedCases) -> xr.Dataset | None:
         Otherwise see `pareto`; rows that differ in conditions have the attribute `kind` = `case`, and there is no set
         without the key, because the conditions cannot be chosen.
     """
-    config, given = results.config, results.config.pareto
+    config = results.config
+    given = goals_of_front(results)
     if config.method.proposes:
         return pareto_of_search(results)
     if config.method.points:

@@ -22,7 +22,7 @@ from trackroller.results.constraints import Column, meeting, quantity_of
 from trackroller.results.lives import BESIDE, FIRST_LIMIT, LIVES, OF_PAIR, body_lives
 from trackroller.results.own_outputs import with_own_outputs
 from trackroller.roller.output_names import body_of
-from trackroller.study.design.entries import OPTION_FACTORS
+from trackroller.study.design.entries import CASE_FIELDS, OPTION_FACTORS
 from trackroller.study.design.roles import roles_of
 from trackroller.study.file.config import StudyFile
 from trackroller.study.file.goals import names_in
@@ -125,6 +125,11 @@ class SolvedCases:
         return tuple(n for n in self.factors if n not in ROLE_OF and n not in OPTION_FACTORS and n not in used)
 
     @cached_property
+    def goods(self) -> tuple[str, ...]:
+        """Return the columns of the user's own in the shelves of the study, such as the price of a roller."""
+        return tuple(n for n in self.study.columns_of_shelves if n not in CASE_FIELDS and n in self.table)
+
+    @cached_property
     def grid(self) -> bool:
         """Return whether every combination of levels is there."""
         names, rows = self.factors, len(self.table)
@@ -166,10 +171,15 @@ class SolvedCases:
     def goals(self) -> dict[str, str]:
         """Return the goals of the key `pareto`, each `min` or `max`, otherwise the usual ones.
 
+        A single goal ranks what meets the requirement, see `trackroller.results.decide`; it has no front.
+
         The usual goals are the longest life of the pair, and the lowest friction power, friction energy or contact
         pressure. The mapping is empty if the study lacks one of the two.
         """
-        return dict(self.config.pareto) or _usual_goals(self.data)
+        given = dict(self.config.pareto)
+        if len(given) > 1:
+            return given
+        return _usual_goals(self.data)
 
     def quantity(self, name: str) -> Column:
         """Return values (n,), units and words of a factor, parameter or output; see `constraints.quantity_of`."""

@@ -23,6 +23,9 @@ from trackroller.parameters.example import EXAMPLE
 from trackroller.roller.geometry import rolling_radius
 
 ALIASES = {"mu": "friction_coefficient"}
+# names of options that people use, in case and study files
+OTHER_OPTIONS = {"failures": "failure_probability"}
+WRITTEN = ALIASES | OTHER_OPTIONS  # names that a file may have in place of those in messages
 RADII = ("outer_radius", "groove_depth")  # mm
 _ACROSS = "(abs(roller_profile_radius) - guide_profile_radius) * {}(radians(contact_angle))"
 AXIS_DISTANCE = (
@@ -51,6 +54,25 @@ def renamed(values: Mapping[Any, Any]) -> dict[Any, Any]:
     return out
 
 
+def with_options(values: Mapping[Any, Any]) -> dict[Any, Any]:
+    """Return the keys of a file with the name of each option in place of its other name.
+
+    Examples
+    --------
+    >>> with_options({"failures": "5%", "mu": 0.1})
+    {'failure_probability': '5%', 'mu': 0.1}
+    """
+    out = dict(values)
+    for other, name in OTHER_OPTIONS.items():
+        if other not in out:
+            continue
+        if name in out:
+            wrong = f"stands beside {name}, which is another name of it"
+            raise InputError(other, out[other], "one value", "Remove one of the two.", wrong)
+        out = {name if key == other else key: value for key, value in out.items()}
+    return out
+
+
 def overridden(values: Mapping[str, Any], given: Mapping[str, Any]) -> dict[str, Any]:
     """Return the values of a case file, overridden by those of the command line.
 
@@ -58,7 +80,8 @@ def overridden(values: Mapping[str, Any], given: Mapping[str, Any]) -> dict[str,
     distance overrides the radii of the roller (`RADII`), and a radius the axis distance; radii that
     are overridden are checked, too.
     """
-    given = renamed(given)
+    given = with_options(renamed(given))
+    values = with_options(values)
     for name in RADII if "axis_distance" in given else ():
         if name in values:
             radius(name, values[name])
@@ -155,6 +178,21 @@ def with_axis_distance(values: Mapping[str, Any], number: Any) -> dict[str, Any]
     }
 
 
+def _columns_of_rows(factors: Mapping[str, Any]) -> dict[str, Any]:
+    """Return a value of each column of the factors that are rows of a table."""
+    columns: dict[str, Any] = {}
+    for factor in factors.values():
+        if isinstance(factor, Mapping):
+            rows = factor.get("rows") or ()
+            columns |= {
+                name: value
+                for row in rows
+                if isinstance(row, Mapping)
+                for name, value in row.items()
+            }
+    return columns
+
+
 def study_with_radii(data: Mapping[str, Any], wrong: Collector) -> dict[str, Any]:
     """Return the keys of a study file with the axis distance as a factor that follows from outer
     radius and depth.
@@ -180,7 +218,7 @@ def study_with_radii(data: Mapping[str, Any], wrong: Collector) -> dict[str, Any
     }
     before = len(wrong.errors)
     with wrong.part():
-        if check_radii({**base, **of_user}):
+        if check_radii({**_columns_of_rows(of_user), **base, **of_user}):
             given = {
                 name: {"values": [radius(name, base[name], "base.")]}
                 for name in RADII

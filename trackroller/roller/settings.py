@@ -12,7 +12,7 @@ from trackroller.damage.own import check_fields
 from trackroller.errors import Collector, InputError, check_names, checked_text, unknown_name
 from trackroller.materials import load_database
 from trackroller.parameters import MATERIAL_FIELDS, OPTIONS
-from trackroller.roller.aliases import ALIASES, RADII, renamed
+from trackroller.roller.aliases import ALIASES, OTHER_OPTIONS, RADII, renamed, with_options
 from trackroller.roller.case import FIELDS, Case
 from trackroller.roller.duty import STROKES_ATTRIBUTE, checked_duty, of_roller, strokes_in
 from trackroller.roller.fields import other_than_default
@@ -156,7 +156,7 @@ def checked_case(values: Mapping[str, Any]) -> tuple[Case, dict[str, Any], dict[
     >>> case.axial_force, options, beside
     (70.0, {'contact_model': 'sliding'}, {'sheet': {'part': '7'}})
     """
-    fields = dict(values)
+    fields = with_options(values)
     wrong = Collector()
     beside: dict[str, Any] = {}
     options = {key: fields.pop(key) for key in OPTIONS if key in fields}
@@ -170,7 +170,7 @@ def checked_case(values: Mapping[str, Any]) -> tuple[Case, dict[str, Any], dict[
         with wrong.part():
             beside[key] = _checked_beside(key, fields.pop(key), beside.get("duty"))
     with wrong.part():
-        check_fields("case field", fields, (*FIELDS, *ALIASES, *RADII, *OPTIONS, *BESIDE))
+        check_fields("case field", fields, (*FIELDS, *ALIASES, *RADII, *OPTIONS, *OTHER_OPTIONS, *BESIDE))
     for key in options:
         if OPTIONS[key].kind == "words" and isinstance(options[key], str):
             options[key] = [part.strip() for part in options[key].split(",")]

@@ -74,6 +74,7 @@ def collect(results: Results) -> list[Column]:
     ds, dims = results.data, results.dims
     columns = [_setting(results, name, "factor") for name in results.factors]
     columns += [_setting(results, name, "input") for name in results.derived]
+    columns += [_good(results, name) for name in results.goods]
     columns += _results(ds, dims, results)
     columns += _beyond(results, columns)
     columns += _in_years(results, columns)
@@ -95,6 +96,14 @@ def _setting(results: Results, name: str, role: str) -> Column:
     return coded(
         name, label, role, values, [level_text(name, v, unit=name in NAMED) for v in results.levels(name)], unit
     )
+
+
+def _good(results: Results, name: str) -> Column:
+    """Return a column of the user's own of a shelf, such as the price of a roller."""
+    values = results.table[name].to_numpy()
+    if values.dtype.kind == "f":
+        return Column(name, capital(long_name(name)), str(results.data[name].attrs.get("units", "")), "input", values)
+    return coded(name, capital(long_name(name)), "input", values)
 
 
 def coded(

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from trackroller.materials import Material
 from trackroller.materials.properties import ALTERNATIVES, PROPERTIES, REQUIRED
+from trackroller.methods.factor import ROWS
 from trackroller.parameters import MAPPING_FIELDS, MATERIAL_FIELDS, MECHANICAL_MAPPINGS, OF_LIMITS, PARAMETERS
 from trackroller.parameters.carriage_fields import parameter_of
 from trackroller.parameters.example import ABSENT
@@ -128,6 +129,8 @@ def _spec(spec: Any) -> str:
     kind, value = next(iter(spec.items()))
     if kind == "expression":
         return f"= {value}"
+    if kind == ROWS:
+        return f"rows of a table with {', '.join(long_name(column) for column in value[0] if column != 'name')}"
     return "" if kind == "values" else f"{kind} {', '.join(f'{v:g}' for v in value)}"
 
 

@@ -15,7 +15,7 @@ import xarray as xr
 from trackroller.errors import InputError
 from trackroller.materials.database import FRICTION
 from trackroller.methods import METHODS, Design
-from trackroller.methods.factor import parse, readable
+from trackroller.methods.factor import ROWS, parse, readable
 from trackroller.methods.method import study_keys
 from trackroller.parameters import (
     FRICTION_LEVELS,
@@ -27,6 +27,7 @@ from trackroller.parameters import (
 from trackroller.parameters.carriage_fields import field_of, long_name_of
 from trackroller.parameters.example import EXAMPLE
 from trackroller.roller.fields import own_frictions
+from trackroller.study.design.entries import SHELVES, SIZES
 from trackroller.study.design.roles import scattered
 from trackroller.study.design.sampling import sample
 from trackroller.study.design.stored import stored
@@ -35,6 +36,7 @@ if TYPE_CHECKING:
     from trackroller.materials import MaterialDatabase
     from trackroller.study.file.config import StudyFile
 
+OF_SHELF = "shelf"  # attribute of a column of a shelf
 MAX_CASES = 10_000_000  # planned in about a minute; validation/benchmarks/million.py measures it
 
 
@@ -117,9 +119,25 @@ def build(config: StudyFile, design: Design, materials: MaterialDatabase) -> xr.
     columns, friction = columns_of(config.base, design.columns, n, materials)
     places, attrs = stored(design)
     pair = design.columns.get("material_pair")
-    return dataset_of(
+    cases = dataset_of(
         columns, pair, places, {"study_name": config.name, "seed": config.seed, **attrs, **friction}
     )
+    return marked(cases, config)
+
+
+def marked(cases: xr.Dataset, config: StudyFile) -> xr.Dataset:
+    """Return cases whose columns of shelves state the shelf as an attribute, and the unit where the
+    file has one.
+    """
+    for shelf in (name for name in SHELVES if ROWS in config.factors.get(name, {})):
+        factor = parse(shelf, config.factors[shelf])
+        for name in (name for name in factor.beside if name in cases.variables):
+            cases[name].attrs |= {OF_SHELF: shelf}
+            if name in SIZES:
+                cases[name].attrs |= {"units": "mm"}
+            elif name in factor.units:
+                cases[name].attrs |= {"units": factor.units[name]}
+    return cases
 
 
 def dataset_of(

@@ -27,7 +27,7 @@ from trackroller.parameters import MATERIAL_FIELDS, PARAMETERS, REGIMES
 from trackroller.parameters.carriage_fields import field_of
 from trackroller.roller.duty import OVERROLLINGS, overrollings_per_hour
 from trackroller.roller.settings import LOADS
-from trackroller.study.design.build import build, columns_of, dataset_of
+from trackroller.study.design.build import build, columns_of, dataset_of, marked
 from trackroller.study.design.entries import GEOMETRY
 
 if TYPE_CHECKING:
@@ -163,7 +163,7 @@ def expanded(
         ),
     }
     attrs = {"study_name": config.name, "seed": config.seed, REASONS: json.dumps(reasons)}
-    return cases.assign_coords(coords).assign_attrs(attrs)
+    return marked(cases.assign_coords(coords).assign_attrs(attrs), config)
 
 
 def _names(names: list[str], numbers: np.ndarray) -> np.ndarray:

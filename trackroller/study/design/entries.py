@@ -10,16 +10,17 @@ from typing import Any
 
 from trackroller.contact.friction_laws import at_rest
 from trackroller.damage.own import unknown_field
-from trackroller.errors import InputError, listing, unknown_name
-from trackroller.methods.factor import LISTS, parse
-from trackroller.numerics.numbers import number_or_nan
+from trackroller.errors import Collector, InputError, listing, unknown_name
+from trackroller.methods.factor import LISTS, ROWS, Factor, parse
+from trackroller.numerics.numbers import number_in, number_or_nan
 from trackroller.numerics.parameter import Parameter
 from trackroller.parameters import MAPPING_FIELDS, MATERIAL_FIELDS, OPTIONS, PARAMETERS, expressions
 from trackroller.parameters.carriage_fields import OF_LOAD_CASE, OF_WHOLE, PREFIX, field_of
-from trackroller.roller.aliases import ALIASES, RADII
+from trackroller.roller.aliases import ALIASES, RADII, radius
 from trackroller.roller.dataset import FLAGS, VARIABLES
-from trackroller.roller.fields import mapping_text
+from trackroller.roller.fields import LONGEST_NAME, NAME, mapping_text
 from trackroller.roller.output_names import PARTS
+from trackroller.roller.settings import LOADS
 from trackroller.study.design.levels import short
 
 CASE_FIELDS = (*PARAMETERS, *MATERIAL_FIELDS, *MAPPING_FIELDS)
@@ -53,6 +54,10 @@ _NAME = re.compile(r"[^\x00-/:-@\[-^`{-\x7f][^\x00-\x1f/\x7f\x85\u2028\u2029]*")
 MAX_NAME = 200  # bytes; netCDF allows 255
 MAX_LEVELS = 1_000_000
 FACTOR_NAMES = (*CASE_FIELDS, "material_pair", *OPTION_FACTORS)
+SHELVES = ("roller", "bearing", "guide")  # factors whose levels are rows of a table
+BEARING_DIAMETER = "bearing_outer_diameter"
+SIZES = (*RADII, BEARING_DIAMETER)  # columns of a shelf [mm] that are no parameters
+OF_LOAD = (*LOADS, "velocity", "guide_overrollings_per_hour")  # parameters that no row of a shelf sets
 
 
 def check_own_name(name: str, where: str) -> None:
@@ -229,9 +234,10 @@ def factor(
     if on_carriage and isinstance(key, str):
         field = field_of(key)
     parameter = PARAMETERS.get(key, field)
-    own = key not in FACTOR_NAMES and field is None
+    own = key not in (*FACTOR_NAMES, *SHELVES) and field is None
     if own and not (isinstance(key, str) and key.isidentifier() and _used(key, factors)):
         raise _unused(str(key), factors, on_carriage)
+    _check_kind(key, spec)
     if isinstance(spec, Mapping):
         spec = {
             kind: _entries(key, kind, value, f"{where}.{kind}", parameter)
@@ -240,12 +246,107 @@ def factor(
     checked = parse(key, spec)
     if checked.text and not own:
         refuse_results(checked.text, f"{where}.expression", factors)
-    if not own and parameter is None and checked.kind != "values":
+    if not own and parameter is None and checked.kind not in ("values", ROWS):
         raise InputError(where, checked.kind, "names as {values: [...]}")
     if parameter is not None:
         for level in (*checked.levels, *(checked.numbers if checked.kind == "uniform" else ())):
             _number(parameter, level, f"{where}.{checked.kind}")
     return dict(spec)
+
+
+def _check_kind(key: Any, spec: Any) -> None:
+    """Refuse rows of a factor that is no shelf, and a shelf of rollers or guides that is something else."""
+    where = f"factors.{key}"
+    has_rows = isinstance(spec, Mapping) and ROWS in spec
+    if has_rows and key not in SHELVES:
+        raise InputError(where, ROWS, f"rows of {listing(SHELVES, 'or')}", "Write {values: [...]}.")
+    if key in SHELVES and key not in FACTOR_NAMES and not has_rows:
+        remedy = f"For example {key}: {{file: {key}s.csv}}."
+        raise InputError(where, spec, "rows of a table", remedy)
+
+
+def field_of_row(shelf: str, name: str) -> str:
+    """Return the name of a row of a shelf in messages."""
+    return f"factors.{shelf}.{ROWS}.{name}"
+
+
+def columns_of_shelves(factors: Mapping[str, Factor]) -> dict[str, Factor]:
+    """Return the columns of shelves as lists of values, beside the factors themselves.
+
+    Parameters
+    ----------
+    factors : all factors of a study
+
+    Returns
+    -------
+    Name -> factor: a column of numbers has numbers as levels, without those that are missing.
+    """
+    found = {}
+    for factor in factors.values():
+        for name, values in factor.beside.items():
+            levels = tuple(dict.fromkeys(value for value in values if value is not None))
+            found[name] = Factor(name, "values", levels=levels, scatter=factor.scatter)
+    return found
+
+
+def _rows(shelf: str, rows: list[Any], where: str) -> list[Any]:
+    """Return the rows of a shelf with their values in the types of their columns; raise all errors together."""
+    wrong = Collector()
+    checked = []
+    for row in rows:
+        if not isinstance(row, Mapping):
+            return rows  # `parse` refuses them
+        with wrong.part():
+            name = _row_name(row.get(NAME), where)
+            values: dict[str, Any] = {NAME: name}
+            for column, value in row.items():
+                if column != NAME:
+                    with wrong.part():
+                        values[column] = _value_in_row(shelf, name, column, value)
+            if shelf in MAPPING_FIELDS and not values.get(shelf):
+                allowed = f"the values of a {shelf}"
+                raise InputError(f"{field_of_row(shelf, name)}.{shelf}", None, allowed, "", "is missing")
+            checked.append(values)
+    wrong.check()
+    return checked
+
+
+def _row_name(name: Any, where: str) -> str:
+    """Return the name of a row of a shelf, which is the level of its factor."""
+    if isinstance(name, (int, float)) and not isinstance(name, bool):
+        name = str(name)
+    if not isinstance(name, str) or not name.strip() or len(name) > LONGEST_NAME:
+        remedy = "For example {name: V25, contact_angle: 30}."
+        raise InputError(f"{where}.{NAME}", name, f"a name of at most {LONGEST_NAME} signs in each row", remedy)
+    return name.strip()
+
+
+def _value_in_row(shelf: str, name: str, column: str, value: Any) -> Any:
+    """Return the value of a column in a row of a shelf in the type of the column."""
+    where = f"{field_of_row(shelf, name)}.{column}"
+    if column in OF_LOAD:
+        remedy = f"Write it under base. What a catalogue allows is catalogue_{column}."
+        if column not in LOADS:
+            remedy = "Write it under base."
+        raise InputError(where, value, "values of the goods, not of their use", remedy)
+    if column in RADII:
+        return radius(column, value, where.removesuffix(column))
+    if column == BEARING_DIAMETER:
+        return number_in(value, where, "a length > 0 in mm", math.nextafter(0.0, 1.0), unit="mm")
+    if column == shelf:
+        text = field_value(column, value, where)
+        return text and mapping_text(column, json.loads(text) | {NAME: name})
+    if column in CASE_FIELDS:
+        return field_value(column, value, where)
+    check_own_name(column, where)
+    if not column.isidentifier():
+        raise InputError(where, value, "columns whose names are letters, digits and '_'", "Rename the column.")
+    if value is None or isinstance(value, str):
+        return value
+    number = number_or_nan(value)
+    if not math.isfinite(number):
+        raise InputError(where, value, "a finite number or a text")
+    return number
 
 
 def _used(name: str, factors: Mapping[Any, Any]) -> bool:
@@ -309,6 +410,8 @@ def _entries(key: str, kind: Any, value: Any, where: str, parameter: Parameter |
     """Return the entries of a factor's list: numbers as floats, checked pairs, names as texts."""
     if not isinstance(value, list):
         return value
+    if kind == ROWS:
+        return _rows(key, value, where)
     if kind == "values":
         if parameter is not None:
             return [_number(parameter, entry, where) for entry in value]

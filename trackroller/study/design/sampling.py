@@ -104,6 +104,7 @@ def sample(
     for name, factor in parsed.items():
         if len(factor.levels) == 1:
             columns[name] = factor.take(np.zeros(rows, dtype=int))
+    columns |= columns_of_rows(parsed, columns)
     columns |= _derived(parsed, columns, dict(base or {}), rows)
     order = [*[k for k in columns if k not in parsed], *[k for k in parsed if k in columns]]
     columns = {name: columns[name] for name in order}
@@ -111,6 +112,21 @@ def sample(
     if settings.get("replicates", 1) > 1:
         meta["replicates"] = settings["replicates"]
     return Design(columns, free, drawn_by, unit, meta | {"seed": int(seed)})
+
+
+def columns_of_rows(parsed: Mapping[str, Factor], columns: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """Return the columns of all factors that are `rows`, shape (n,) each.
+
+    Parameters
+    ----------
+    parsed : all factors
+    columns : their levels, shape (n,)
+    """
+    out: dict[str, np.ndarray] = {}
+    for name, factor in parsed.items():
+        if factor.beside and name in columns:
+            out |= factor.columns_at(columns[name])
+    return out
 
 
 def _settings(method: str, options: Mapping[str, Any]) -> dict[str, Any]:

@@ -20,6 +20,7 @@ from trackroller.methods import METHODS, Design
 from trackroller.methods.factor import Factor
 from trackroller.methods.grid import cells
 from trackroller.methods.table import of_columns
+from trackroller.study.design.sampling import columns_of_rows
 from trackroller.study.outputs import flat
 
 PLACE = "design_place"
@@ -111,14 +112,15 @@ def restored(ds: xr.Dataset, parsed: Mapping[str, Factor], dims: tuple[str, ...]
     }
     _check_values(ds, free, levels, dims)
     columns = {}
-    for name in names:
+    for name in (name for name in names if name in parsed):
         if not parsed[name].discrete:
             columns[name] = _column(ds, name, dims)
         elif name in levels:
             columns[name] = levels[name]
         else:
             columns[name] = parsed[name].take(np.zeros(rows))
-    return Design(columns, free, method, unit, meta)
+    columns |= columns_of_rows(parsed, columns)
+    return Design({name: columns[name] for name in names}, free, method, unit, meta)
 
 
 def _check_values(

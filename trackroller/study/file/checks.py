@@ -13,14 +13,25 @@ from trackroller.damage import check_used
 from trackroller.errors import Collector, InputError, listing, raise_all, unknown_name
 from trackroller.methods import those_with
 from trackroller.methods.correlation import copula
-from trackroller.methods.factor import UNBOUNDED
+from trackroller.methods.factor import ROWS, UNBOUNDED
 from trackroller.numerics.numbers import number_or_nan
 from trackroller.parameters import BODIES, MATERIAL_FIELDS, PARAMETERS
 from trackroller.roller.fields import FIELDS, other_than_default
-from trackroller.roller.geometry import geometry_problem, geometry_problems
+from trackroller.roller.geometry import contact_geometry, geometry_problem, geometry_problems
 from trackroller.roller.options import check_accuracy, check_pairs, check_spin_model
 from trackroller.study.design.build import MAX_CASES
-from trackroller.study.design.entries import GEOMETRY, OPTION_FACTORS, check_own_name
+from trackroller.study.design.carriage_cases import ROW
+from trackroller.study.design.entries import (
+    BEARING_DIAMETER,
+    CASE_FIELDS,
+    GEOMETRY,
+    OPTION_FACTORS,
+    SHELVES,
+    SIZES,
+    check_own_name,
+    field_of_row,
+)
+from trackroller.study.design.levels import in_words
 from trackroller.study.design.read_table import read_cases, table_lines
 from trackroller.study.design.roles import check_roles
 from trackroller.study.file.correlations import check_design
@@ -31,6 +42,8 @@ from trackroller.study.file.until import check_first_look, check_until
 from trackroller.study.file.user_columns import column_names
 
 if TYPE_CHECKING:
+    import xarray as xr
+
     from trackroller.materials import Material, MaterialDatabase
     from trackroller.methods.factor import Factor
 
@@ -87,8 +100,9 @@ def cross_check(study: Study) -> None:
             raise InputError(
                 name, getattr(config, name), "", "Keep one.", wrong="stands among the factors too"
             )
+    _check_shelves(study)
     both = {*study.factors, *config.base} & {"material_pair"}
-    single = {*study.factors, *config.base} & set(MATERIAL_FIELDS)
+    single = {*study.factors, *config.base, *study.columns_of_shelves} & set(MATERIAL_FIELDS)
     if both and single:
         raise InputError(
             "material_pair", sorted(single), "the pair or the single materials, not both"
@@ -126,8 +140,9 @@ def cross_check(study: Study) -> None:
         # a constraint may name a further column of the table, whose cells say whether it holds
         # numbers
         columns = study.drawn.columns if config.method.observed and config.constraints else {}
-        check(config, study.parsed, columns)
-        check_search(config, study.parsed)
+        named = study.parsed | study.columns_of_shelves
+        check(config, named, columns)
+        check_search(config, named)
         check_until(config)
     for checked in (
         _check_roles,
@@ -140,6 +155,40 @@ def cross_check(study: Study) -> None:
             checked(study)
     wrong.check()
     check_first_look(study)
+
+
+def _check_shelves(study: Study) -> None:
+    """Refuse a column of a shelf whose values `base`, a factor or another shelf gives, too."""
+    wrong = Collector()
+    shelf_of: dict[str, str] = {}
+    for shelf, factor in study.parsed.items():
+        for name in factor.beside:
+            where = f"factors.{shelf}.{name}"
+            remedy = "Remove one of them."
+            if name in shelf_of:
+                if name not in (*CASE_FIELDS, *SIZES):
+                    remedy = f"Rename one of them, such as {shelf}_{name}."
+                beside = f"is a column of factors.{shelf_of[name]} too"
+                wrong.errors.append(
+                    InputError(where, None, "one column of this name", remedy, beside)
+                )
+            elif name in study.factors:
+                beside = f"stands beside a factor {name}"
+                wrong.errors.append(InputError(where, None, "one description", remedy, beside))
+            elif name in study.config.base:
+                beside = (
+                    f"has a value in each row, and stands in base too: {study.config.base[name]}"
+                )
+                wrong.errors.append(
+                    InputError(where, None, "one description", f"Remove base.{name}.", beside)
+                )
+            elif name in study.config.own:
+                beside = "is an output under own, too"
+                wrong.errors.append(
+                    InputError(where, None, "one description", "Rename one of them.", beside)
+                )
+            shelf_of.setdefault(name, shelf)
+    wrong.check()
 
 
 def _check_roles(study: Study) -> None:
@@ -267,6 +316,11 @@ def _names_of_materials(
     Entries of another form are left out: they are refused elsewhere.
     """
     roller, guide = MATERIAL_FIELDS
+    for shelf in (name for name in SHELVES if isinstance(factors.get(name), Mapping)):
+        for row in factors[shelf].get(ROWS) or ():
+            for body, field in zip(BODIES, MATERIAL_FIELDS, strict=True):
+                if isinstance(row, Mapping) and isinstance(row.get(field), str):
+                    yield f"{field_of_row(shelf, str(row.get('name')))}.{field}", body, row[field]
     for field, bodies in ((roller, BODIES[:1]), (guide, BODIES[1:]), ("material_pair", BODIES)):
         spec = factors.get(field)
         listed = None
@@ -335,11 +389,12 @@ def check_geometry(study: Study) -> None:
     """
     config = study.config
     needs_rows = config.method.observed or any(
-        factor.kind == "expression" for factor in study.parsed.values()
+        factor.kind in ("expression", ROWS) for factor in study.parsed.values()
     )
     if needs_rows or config.carriage is not None:
         design = study.design()
         problems = list(geometry_problems({name: design[name].values for name in GEOMETRY}))
+        _check_rows(study, design, problems)
         if problems and config.method.observed:
             lines = table_lines(study.table_path)
             raise_all(problem.at(study.table_path, lines[row]) for row, problem in problems)
@@ -355,6 +410,69 @@ def check_geometry(study: Study) -> None:
         if problem.field in study.factors:
             where = "factors"
         raise problem.named(f"{where}.{problem.field}")
+
+
+def _check_rows(study: Study, design: xr.Dataset, problems: list[tuple[int, InputError]]) -> None:
+    """Refuse rows of shelves that do not fit the rail, and bearings that are larger than their
+    roller.
+
+    Parameters
+    ----------
+    study : the study
+    design : its cases
+    problems : numbers of the cases whose geometry contradicts itself, each with the error
+    """
+    shelves = {
+        name: factor
+        for name, factor in study.parsed.items()
+        if factor.beside and name in study.drawn.columns
+    }
+    rows = np.arange(design.sizes["case"])
+    if ROW in design.coords:
+        rows = design[ROW].values
+    errors = []
+    for case, problem in problems:
+        given = [problem.field, *GEOMETRY]
+        of_shelf = (
+            (shelf, name)
+            for name in given
+            for shelf, factor in shelves.items()
+            if name in factor.beside
+        )
+        shelf, name = next(of_shelf, ("", ""))
+        if not shelf:
+            continue
+        value = float(design[name].values[case])
+        level = in_words(shelf, study.drawn.columns[shelf][rows[case]])
+        errors.append(
+            InputError(
+                f"{field_of_row(shelf, level)}.{name}", value, problem.allowed, problem.remedy
+            )
+        )
+    errors += _large_bearings(study, design, rows)
+    raise_all(errors)
+
+
+def _large_bearings(study: Study, design: xr.Dataset, rows: np.ndarray) -> list[InputError]:
+    """Return an error for each bearing of a shelf that reaches the contact of its roller with the
+    rail.
+    """
+    if BEARING_DIAMETER not in study.drawn.columns:
+        return []
+    shelf = next(name for name, factor in study.parsed.items() if BEARING_DIAMETER in factor.beside)
+    diameter = study.drawn.columns[BEARING_DIAMETER][rows]
+    radius = contact_geometry({name: design[name].values for name in GEOMETRY}).rolling_radius
+    errors = []
+    for case in np.flatnonzero(diameter >= 2 * radius).tolist():
+        level = in_words(shelf, study.drawn.columns[shelf][rows[case]])
+        where = f"{field_of_row(shelf, level)}.{BEARING_DIAMETER}"
+        allowed = f"less than the rolling diameter of its roller, {2 * radius[case]:.5g} mm"
+        errors.append(
+            InputError(
+                where, diameter[case], allowed, "Take a smaller bearing, or correct the row."
+            )
+        )
+    return errors
 
 
 def _ends(study: Study, name: str) -> list[float]:

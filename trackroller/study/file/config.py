@@ -60,7 +60,7 @@ def check_name(name: Any) -> str:
 Name = Annotated[str, BeforeValidator(check_name)]
 Correlations = Annotated[tuple[tuple[str, str, float], ...], BeforeValidator(check_entries)]
 Roles = Annotated[dict[str, str], BeforeValidator(check_words)]
-Goals = Annotated[dict[str, str], BeforeValidator(directions)]
+Goals = Annotated[dict[str, str], BeforeValidator(partial(directions, least=1))]
 DUTY_MEANING = (
     "hours_per_day and days_per_year of travel: lives in years beside hours; or "
     "strokes_per_day, stroke [m] (one way), "

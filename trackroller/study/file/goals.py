@@ -130,9 +130,11 @@ class Analysis(BaseModel):
 def directions(value: Any, key: str = "pareto", least: int = 2) -> Any:
     """Check the key `pareto` or `goals`: at least so many outputs or factors, each with `max` or
     `min`.
+
+    A single goal under `pareto` ranks what meets the requirement of the study.
     """
     if isinstance(value, Mapping) and 0 < len(value) < least:
-        allowed = "two or more outputs or factors, each with max or min"
+        allowed = "two or more outputs or factors, each with max or min; one beside a requirement"
         raise InputError(
             key, value, allowed, "For example {pair_life_hours: max, friction_power: min}."
         )
@@ -292,7 +294,9 @@ def check(
     """
     check_own(config, factors)
     known = names_of_outputs(config)
-    check_analysed(config)
+    check_analysed(
+        config, [name for name, factor in factors.items() if factor.discrete and factor.numeric]
+    )
     if not config.method.weighted and any(own.in_shares for own in config.requirement.values()):
         remedy = "Remove probability, or use inner_outer, lhs, sobol or saltelli."
         raise InputError(
@@ -303,6 +307,8 @@ def check(
         )
     free = [*known, *factors, *PARAMETERS]
     _check_statistics(config, factors, known)
+    if len(config.pareto) == 1 and not config.requirement:
+        directions(config.pareto)
     for name in config.pareto if not config.method.points else ():
         if name not in free:
             raise unknown_result("pareto", name, free, config.outputs)
@@ -313,18 +319,21 @@ def check(
     _check_constraints(config, factors, columns, free)
 
 
-def check_analysed(config: Any) -> None:
+def check_analysed(config: Any, goods: Iterable[str] = ()) -> None:
     """Check that the outputs under `analysis` and `requirement` are results of the study; raise all
     errors together.
+
+    A requirement may name a column of a shelf, too, which `goods` lists.
     """
     known = names_of_outputs(config)
+    wanted = [name for name in config.requirement if name not in goods]
     scale = config.analysis.scale
     outputs = [*(config.analysis.outputs or ())]
     if isinstance(scale, dict):
         outputs += scale
     raise_all(
         unknown_result(where, name, known, config.outputs)
-        for where, names in (("analysis.outputs", outputs), (KEY, config.requirement))
+        for where, names in (("analysis.outputs", outputs), (KEY, wanted))
         for name in names
         if name.replace(" ", "") not in known
     )

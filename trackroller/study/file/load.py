@@ -15,20 +15,21 @@ from trackroller.carriage.fields import check_fields
 from trackroller.contact.friction_laws import at_rest
 from trackroller.damage.own import digests
 from trackroller.errors import Collector, InputError, nearest, raise_all, unknown_name
-from trackroller.files import files_beside, find_beside, noted_reads, read_text
+from trackroller.files import Reads, files_beside, find_beside, noted_reads, read_text
 from trackroller.materials import load_database
 from trackroller.numerics.numbers import number_in
 from trackroller.numerics.plain import mapping_of
 from trackroller.parameters import MATERIAL_FIELDS
 from trackroller.parameters.carriage_fields import field_of
 from trackroller.parameters.example import not_given
-from trackroller.roller.aliases import ALIASES, study_with_radii
+from trackroller.roller.aliases import OTHER_OPTIONS, WRITTEN, study_with_radii, with_options
 from trackroller.roller.duty import OVERROLLINGS, checked_duty, is_of_strokes, of_roller
 from trackroller.study.design.carriage_cases import common_values, given_by
 from trackroller.study.file.checks import check_cells, check_geometry, cross_check, named_materials
 from trackroller.study.file.config import StudyFile
 from trackroller.study.file.goals import Analysis, check_analysed, to_first_limit
 from trackroller.study.file.search import Budget
+from trackroller.study.file.shelf import names_of_columns, with_rows
 from trackroller.study.file.study import Study
 from trackroller.study.file.until import Until
 from trackroller.study.file.user_columns import column_names
@@ -98,13 +99,14 @@ def _translated(detail: Mapping[str, Any]) -> InputError:
 
 
 def with_present_keys(data: Mapping[str, Any]) -> dict[str, Any]:
-    """Return a study file with today's name of each key in `OTHER_NAMES`; refuse a key that is
-    given by both names.
+    """Return a study file with today's name of each key in `OTHER_NAMES` and `OTHER_OPTIONS`;
+    refuse a doubled key.
     """
     out = dict(data)
     if "design" in out:
         _refuse_both("design", "method", out)
         out = {{"design": "method"}.get(key, key): value for key, value in out.items()}
+    out = with_options(out)
     given = _mapping(out.get("analysis"))
     if "target" in given:
         _refuse_both("analysis.target", "requirement", out)
@@ -122,12 +124,15 @@ def _refuse_both(other: str, name: str, data: Mapping[str, Any]) -> None:
 
 @contextmanager
 def _as_written(data: Mapping[str, Any]) -> Iterator[None]:
-    """Name in errors the keys of `OTHER_NAMES` as the study file does."""
+    """Name in errors the keys of `OTHER_NAMES` and `OTHER_OPTIONS` as the study file does."""
     written = {}
     if "method" in data and "design" not in data:
         written["design"] = "method"
     if "design" in data and "method" not in data:
         written["method"] = "design"
+    for other, name in OTHER_OPTIONS.items():
+        if other in data:
+            written[name] = other
     if "target" in _mapping(data.get("analysis")) and "requirement" not in data:
         written["requirement"] = "analysis.target"
     try:
@@ -167,8 +172,9 @@ def checked_keys(data: Mapping[str, Any]) -> StudyFile:
         if not {one["loc"][0] for one in errors} & {*naming}:
             with wrong.part():
                 analysed = {key: data[key] for key in naming if key in data}
+                goods = names_of_columns(_mapping(data.get("factors")))
                 check_analysed(
-                    StudyFile.model_validate({"name": "without-the-other-keys"} | analysed)
+                    StudyFile.model_validate({"name": "without-the-other-keys"} | analysed), goods
                 )
         wrong.check()
         raise
@@ -223,7 +229,7 @@ def complete(study: Study) -> Study:
     study : the study as its file states it
     """
     config = study.config
-    names = {*config.base, *study.factors}
+    names = {*config.base, *study.factors, *study.columns_of_shelves}
     if config.method.observed and config.table is not None:
         names.update(column_names(study.table_path, "table"))
     if any(at_rest(law) is not None for law in study.friction_laws if law):
@@ -340,23 +346,32 @@ def parse_study(
     """
     with _as_written(data), noted_reads() as inputs:
         inputs |= {path: ("limit", digest) for path, digest in digests().items()}
-        wrong = Collector()
+        data, places = with_rows(data)
+        with places.in_files():
+            return _checked_study(data, path, database, planned, inputs)
+
+
+def _checked_study(
+    data: Mapping[str, Any], path: Path | None, database: Any, planned: bool, inputs: Reads
+) -> Study:
+    """Return the study of a mapping that holds the rows of its shelves; see `parse_study`."""
+    wrong = Collector()
+    with wrong.part():
+        config = checked_keys(data)
+    if wrong.errors:
         with wrong.part():
-            config = checked_keys(data)
-        if wrong.errors:
-            with wrong.part():
-                base, factors = (_mapping(data.get(key)) for key in ("base", "factors"))
-                named_materials(base, factors, database or load_database())
-            wrong.check()
-        study = complete(Study(config, path, database, inputs))
-        with wrong.part():
-            cross_check(study)
-        with wrong.part():
-            if study.config.method.observed and study.config.table and not planned:
-                check_cells(study)
+            base, factors = (_mapping(data.get(key)) for key in ("base", "factors"))
+            named_materials(base, factors, database or load_database())
         wrong.check()
-        if not planned:
-            check_geometry(study)
+    study = complete(Study(config, path, database, inputs))
+    with wrong.part():
+        cross_check(study)
+    with wrong.part():
+        if study.config.method.observed and study.config.table and not planned:
+            check_cells(study)
+    wrong.check()
+    if not planned:
+        check_geometry(study)
     return study
 
 
@@ -404,7 +419,7 @@ def load_study(
     with files_beside(path), noted_reads():
         text = read_text(path, "study file")
         data = parse_mapping(text, "study file")
-        with errors_by_line(text, aliases=ALIASES):
+        with errors_by_line(text, aliases=WRITTEN):
             if data.get("table") is not None:
                 find_beside(data["table"], "table")
             return parse_study(data, path, database, planned)

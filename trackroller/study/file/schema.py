@@ -9,10 +9,11 @@ from pathlib import Path
 from typing import Any
 
 from trackroller.methods import METHODS
-from trackroller.methods.factor import DISTRIBUTIONS
+from trackroller.methods.factor import DISTRIBUTIONS, ROWS
 from trackroller.parameters import MAPPING_FIELDS, MATERIAL_FIELDS, PARAMETERS, Option
 from trackroller.parameters.accuracy import QUANTITIES
-from trackroller.study.design.entries import OPTION_FACTORS
+from trackroller.roller.aliases import OTHER_OPTIONS
+from trackroller.study.design.entries import OPTION_FACTORS, SHELVES
 from trackroller.study.file.config import IN_STUDY, NAME, StudyFile
 from trackroller.study.file.questions import QUESTIONS
 
@@ -33,6 +34,17 @@ def _factor() -> dict[str, Any]:
         "additionalProperties": False,
         "oneOf": [{"required": [kind]} for kind in kinds],
     }
+
+
+def _shelf() -> dict[str, Any]:
+    """Return what the schema says about a factor whose levels are rows of a table."""
+    whole = _factor()
+    row = {"type": "object", "properties": {"name": {"type": "string"}}, "required": ["name"]}
+    kinds = {"file": {"type": "string"}, ROWS: {"type": "array", "items": row, "minItems": 1}}
+    units = {"type": "object", "additionalProperties": {"type": "string"}}
+    properties = {**whole["properties"], **kinds, "units": units}
+    one_of = [*whole["oneOf"], *({"required": [kind]} for kind in kinds)]
+    return {**whole, "description": "levels that are rows of a table", "properties": properties, "oneOf": one_of}
 
 
 def _option(option: Option) -> dict[str, Any]:
@@ -75,9 +87,12 @@ def schema() -> dict[str, Any]:
     named = {name: _factor() for name in (*base, *OPTION_FACTORS)}
     for name in named.keys() & PARAMETERS.keys():
         named[name] = named[name] | {"description": PARAMETERS[name].allowed()}
+    named |= {name: _shelf() for name in SHELVES}
     properties["factors"] |= {"properties": named, "additionalProperties": _factor()}
     properties["method"]["enum"] = list(METHODS)
     properties["question"]["enum"] = list(QUESTIONS)
+    for other, name in OTHER_OPTIONS.items():
+        properties[other] = {"description": f"another name of `{name}`, such as 5%", "type": ["number", "string"]}
     properties["design"] = {"description": "another name of `method`", "enum": list(METHODS)}
     target = {"description": "another name of `requirement`"} | properties["requirement"]
     whole["$defs"]["Analysis"]["properties"]["target"] = target

@@ -18,7 +18,7 @@ from trackroller.parameters import MATERIAL_FIELDS
 from trackroller.roller.doubts import doubts
 from trackroller.roller.stored_inputs import NOT_GIVEN
 from trackroller.study.design import build, carriage_cases
-from trackroller.study.design.entries import OPTION_FACTORS
+from trackroller.study.design.entries import OPTION_FACTORS, columns_of_shelves
 from trackroller.study.file.config import IN_STUDY, StudyFile
 from trackroller.yaml_file import write_yaml
 
@@ -88,6 +88,11 @@ class Study:
     def parsed(self) -> dict[str, Factor]:
         """Return all factors as `Factor`."""
         return {name: parse(name, spec) for name, spec in self.factors.items()}
+
+    @cached_property
+    def columns_of_shelves(self) -> dict[str, Factor]:
+        """Return the columns of the shelves of the study, each as a list of values."""
+        return columns_of_shelves(self.parsed)
 
     @cached_property
     def carriage(self) -> Carriage | None:

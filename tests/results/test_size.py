@@ -1,0 +1,163 @@
+"""The least roller of a shelf that is enough, against single sheets and by hand from their numbers."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+import trackroller as tr
+from trackroller.cli.main import app
+from trackroller.errors import InputError
+
+HEAD = "name;axis_distance;roller_profile_radius;roller_material;price [EUR]"
+ROWS = (
+    "soft;19;-6.5;1.7225-normalised;10.8",
+    "small;16;-6.4;1.7225-quenched-tempered;12.4",
+    "mid;21.75;-6.4;1.7225-quenched-tempered;18.3",
+    "same price;27;-6.7;1.7225-quenched-tempered;18.3",
+    "no price;34;-6.7;1.7225-quenched-tempered;",
+)
+CASE = {
+    "radial_force": -150,
+    "axial_force": 20,
+    "motor_force": 0,
+    "friction_coefficient": 0.15,
+    "guide_overrollings_per_hour": 200,
+    "guide_material": "1.7225-quenched-tempered",
+    "roller_profile_radius": -7,  # the shelf takes its place
+}
+QUICK = {"contact_model": "sliding", "accuracy": "preview"}
+DUTY = {"duty": {"hours_per_day": 8, "days_per_year": 250}}
+
+
+@pytest.fixture
+def shelf(tmp_path) -> Path:
+    """Return the file of a shelf."""
+    path = tmp_path / "rollers.csv"
+    path.write_text("\n".join([HEAD, *ROWS]) + "\n")
+    return path
+
+
+def alone(row, factor=1.0):
+    """Return the result of a row of the shelf as a single sheet, with all forces times a factor."""
+    _, axis, groove, material, _ = row.split(";")
+    case = CASE | {"axis_distance": axis, "roller_profile_radius": groove, "roller_material": material}
+    case |= {name: factor * case[name] for name in ("radial_force", "axial_force", "motor_force")}
+    return tr.solve(case, **QUICK)
+
+
+MATERIALS = """
+materials:
+  soft steel:
+    like: 1.7225-normalised
+    scatter_in_cycles: {value: 4, source: test}
+  hard steel:
+    like: 1.7225-quenched-tempered
+    scatter_in_cycles: {value: 4, source: test}
+"""
+
+
+def test_failures_need_the_scatter_of_the_material(shelf, tmp_path, monkeypatch):
+    """T_N is N_90/N_10, so that the life at 10 % failures is the median one over its root, if fatigue alone ends it."""
+    monkeypatch.chdir(tmp_path)
+    unknown = tr.size(CASE | QUICK, shelf, life=2000, failures="10%", least="price")
+    assert unknown.least == "" and set(unknown.table["verdict"]) == {"open"}
+    assert unknown.table["excluded_by"].str.contains("no scatter of .*1.7225-normalised").all()
+    (tmp_path / "config").mkdir()
+    (tmp_path / "config" / "materials.yaml").write_text(MATERIALS)  # the remedy
+    text = (
+        shelf.read_text().replace("1.7225-normalised", "soft steel").replace("1.7225-quenched-tempered", "hard steel")
+    )
+    shelf.write_text(text)
+    case = CASE | QUICK | {"guide_material": "hard steel"}
+    median = tr.size(case, shelf, life=2000).table.set_index("roller")
+    tenth = tr.size(case, shelf, life=2000, failures="10%", least="price")
+    lives = tenth.table.set_index("roller")["life_hours"]
+    assert (lives * 2.0).to_dict() == pytest.approx(median["life_hours"].to_dict(), rel=1e-9)
+    assert tenth.least != ""
+
+
+def test_lives_are_those_of_single_sheets_and_the_least_is_found_by_hand(shelf):
+    found = tr.size(CASE | QUICK | DUTY, shelf, life="2 years", least="price")
+    table = found.table.set_index("roller")
+    enough = {}
+    for row in ROWS:
+        name, *_, price = row.split(";")
+        life = alone(row)["pair_life_to_first_limit_hours"].item()
+        assert table.loc[name, "life_hours"] == life
+        assert table.loc[name, "life_ratio"] == life / 4000.0  # 8 h on 250 days
+        if life > 1.4 * 4000.0:  # beyond the told error
+            assert table.loc[name, "verdict"] == "enough"
+            enough[name] = (float(price or "inf"), -life)
+        if life < 4000.0 / 1.4:
+            assert table.loc[name, "verdict"] == "not enough" and "fatigue" in table.loc[name, "excluded_by"]
+    assert found.least == min(enough, key=enough.get)
+    assert found.unranked == ("no price",) and found.table["roller"].iloc[len(enough) - 1] == "no price"
+
+
+def test_equal_prices_rank_by_life_and_the_order_of_rows_changes_nothing(shelf):
+    first = tr.size(CASE | QUICK, shelf, life=6000, least="price")
+    lives = first.table.set_index("roller")["life_hours"]
+    assert first.table["roller"].tolist()[:2] == ["mid", "same price"] and lives["mid"] > lives["same price"]
+    shelf.write_text("\n".join([HEAD, *ROWS[::-1]]) + "\n")
+    second = tr.size(CASE | QUICK, shelf, life=6000, least="price")
+    assert second.table.equals(first.table)
+
+
+def test_no_limit_is_exceeded_at_the_forces_times_the_safety(shelf):
+    found = tr.size(CASE | QUICK, shelf, safety=30).table.set_index("roller")
+    for row in ROWS:
+        result = alone(row, factor=30.0)
+        most = result["utilisation"].drop_sel(limit="fatigue").max().item()  # fatigue ends a life, not at once
+        name = row.split(";")[0]
+        assert (found.loc[name, "overload"] == "held") == (most <= 1.0)
+        assert (found.loc[name, "verdict"] == "enough") == (most <= 1.0)
+
+
+def test_what_nothing_meets_is_said(shelf):
+    found = tr.size(CASE | QUICK, shelf, life=1e7, least="price")
+    assert found.least == "" and set(found.table["verdict"]) == {"not enough"}
+    assert (found.table["excluded_by"] != "").all()
+
+
+def test_a_shelf_of_one_roller_and_a_study_are_sized_too(shelf):
+    shelf.write_text(f"{HEAD}\n{ROWS[2]}\n")
+    single = tr.size(CASE | QUICK, shelf, life=500, safety=1.2)
+    assert single.least == "mid" and single.table["overload"].tolist() == ["held"]
+    base = {name: value for name, value in CASE.items() if name != "friction_coefficient"}
+    study = {"name": "two", "base": base, "factors": {"friction_coefficient": {"values": [0.15, 0.3]}}}
+    worst = tr.size(study | QUICK, shelf, life=500)
+    assert worst.table["life_hours"].item() < single.table["life_hours"].item()
+
+
+@pytest.mark.parametrize(
+    ("case", "how", "message"),
+    [
+        ({}, {}, "a required life, or a safety"),
+        ({}, {"safety": 0.5}, "safety .*a number >= 1"),
+        ({}, {"life": "3 years"}, "needs a duty"),
+        ({}, {"life": 100, "least": "prize"}, "prize.*Did you mean 'price'"),
+        ({}, {"safety": 2, "least": "prize"}, "prize.*Did you mean 'price'"),
+        ({}, {"life": 100, "failures": "105 %"}, "failure_probability"),
+        ({"name": "v", "factors": {"radial_force": {"values": [-1, -2]}}}, {"safety": 2}, "forces under base"),
+    ],
+)
+def test_requirements_that_make_no_sense_are_refused(case, how, message, shelf):
+    with pytest.raises(InputError, match=message):
+        tr.size(case or CASE | QUICK, shelf, **how)
+
+
+def test_the_command_writes_studies_that_are_kept(shelf, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    Path("case.yaml").write_text("\n".join(f"{name}: {value}" for name, value in (CASE | QUICK).items()))
+    words = ["size", "case.yaml", "--shelf", "rollers.csv", "--life", "2000", "--least", "price", "-q"]
+    done = CliRunner().invoke(app, words)
+    assert done.exit_code == 0 and "is the least of" in done.output and "no price: no price" in done.output
+    assert CliRunner().invoke(app, ["verify", "results/size-case-rollers"]).exit_code == 0
+    record = json.loads(CliRunner().invoke(app, [*words, "--json"]).stdout)
+    assert record["unranked"] == ["no price"] and len(record["rollers"]) == len(ROWS)
+    words[words.index("2000")] = "1e7"
+    assert CliRunner().invoke(app, words).exit_code == 1

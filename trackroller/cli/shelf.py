@@ -1,0 +1,141 @@
+"""The commands of shelves: show and check the rows of a table, and find the least roller that is enough."""
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from trackroller.cli.case import case_of
+from trackroller.cli.usage import print_doubts
+from trackroller.damage.bearing import FIELD as BEARING
+from trackroller.damage.catalogue import FIELD as CATALOGUE
+from trackroller.errors import InputError
+from trackroller.files import files_beside
+from trackroller.numerics.units import PLAIN
+from trackroller.parameters import PARAMETERS
+from trackroller.report.terminal import print_table, print_text
+from trackroller.study.design.entries import SHELVES, SIZES
+from trackroller.study.design.levels import entries, in_words
+from trackroller.study.file.load import parse_study
+from trackroller.study.file.shelf import with_rows, without_overridden
+from trackroller.study.file.study import Study
+from trackroller.study.store.crate import write_crate
+from trackroller.study.store.ledger import study_folder
+
+if TYPE_CHECKING:
+    from trackroller.results.size import Sizing
+
+SHELF = "roller"
+
+
+def print_shelf(file: Path, of: str, case: Path | None, settings: list[str] | None) -> None:
+    """Print the rows of a shelf after all checks of a study: `of` says of what, a case gives rail and empty cells."""
+    if of not in SHELVES:
+        raise InputError("--of", of, ", ".join(SHELVES), "Choose one of them.")
+    study = shelf_study(file, of, case, settings)
+    factor = study.parsed[of]
+    heads = ["name", *(_head(name, factor.units) for name in factor.beside)]
+    rows = []
+    for i, level in enumerate(factor.levels):
+        values = [_cell(name, column[i]) for name, column in factor.beside.items()]
+        rows.append([in_words(of, level), *values])
+    print_table(heads, rows)
+    print_text(f"rows: {len(rows)}. A study takes them as factors: {{{of}: {{file: {file.name}}}}}")
+    print_doubts(study.doubts())
+
+
+def print_size(  # noqa: PLR0913 - one argument for each option of the command
+    case: Path,
+    shelf: Path,
+    life: str | None,
+    failures: str | None,
+    safety: str | None,
+    least: str | None,
+    results: Path,
+    as_json: bool,
+    quiet: bool,
+) -> int:
+    """Print which rollers of a shelf are enough, and return the exit code: 0 if one is."""
+    from trackroller.results.size import size  # heavy: analysis
+
+    found = size(
+        case, shelf, life=life, failures=failures, safety=safety, least=least, results=results, progress=not quiet
+    )
+    solved = [own for own in (found.results, found.overload) if own is not None]
+    for own in solved:
+        write_crate(study_folder(own.study.name, results).root)
+    if as_json:
+        print(json.dumps(found.to_dict(), ensure_ascii=False, allow_nan=False))
+        return int(not found.least)
+    print_text(_first_sentence(found))
+    if found.open_and_less:
+        print_text(f"open, and less: {', '.join(found.open_and_less)}. A finer accuracy or better values decide")
+    if found.unranked:
+        print_text(f"{', '.join(found.unranked)}: no {found.least_of}, and so not ranked by it")
+    units = {**solved[0].study.parsed[SHELF].units, "life_hours": "h"}
+    heads = [_head(str(name), units) for name in found.table]
+    print_table(heads, [[_shown(value) for value in row] for row in found.table.itertuples(index=False)])
+    for own in solved:
+        print_text(f"study {own.study.name}: trackroller report {own.study.name} writes its page")
+    return int(not found.least)
+
+
+def _first_sentence(found: Sizing) -> str:
+    """Return which roller to take, in one sentence."""
+    if not found.least:
+        return "No roller of the shelf is surely enough."
+    row = found.table.set_index(SHELF).loc[found.least]
+    parts = []
+    if found.least_of:
+        parts.append(f"{found.least_of} {row[found.least_of]:g}")
+    if "life_ratio" in row:
+        parts.append(f"{row['life_ratio']:.3g} times the required life")
+    if "overload" in row:
+        parts.append("within all limits at the forces times the safety")
+    number = int((found.table["verdict"] == "enough").sum())
+    return f"{found.least} is the least of {number} that are enough: {', '.join(parts)}."
+
+
+def _shown(value: Any) -> str:
+    """Return a value of the table of rollers as text."""
+    if isinstance(value, float):
+        if math.isnan(value):
+            return "–"
+        return f"{value:.4g}"
+    return str(value) or "–"
+
+
+def shelf_study(file: Path, of: str, case: Path | None, settings: list[str] | None) -> Study:
+    """Return a study of the rows of a shelf beside the values of a case, which the shelf overrides."""
+    base: dict[str, Any] = {}
+    if case is not None or settings:
+        given, _, _ = case_of(case, settings)
+        base = {name: value for name, value in given.as_dict().items() if name not in given.not_given}
+        base = {name: value for name, value in base.items() if value not in (None, "")}
+    with files_beside(file):
+        keys, places = with_rows({"name": "shelf", "base": base, "factors": {of: {"file": file.name}}})
+    with places.in_files():
+        return parse_study(without_overridden(keys, of))
+
+
+def _head(name: str, units: Any) -> str:
+    """Return the head of a column with its unit."""
+    unit = units.get(name, "")
+    if name in PARAMETERS:
+        unit = PARAMETERS[name].unit
+    elif name in SIZES:
+        unit = "mm"
+    if unit in PLAIN:
+        return name
+    return f"{name} [{unit}]"
+
+
+def _cell(name: str, value: Any) -> str:
+    """Return a value of a row as text."""
+    if value is None or value == "" or (isinstance(value, float) and math.isnan(value)):
+        return "–"
+    if name in (BEARING.name, CATALOGUE.name):
+        return entries(json.loads(value))
+    return in_words(name, value)
