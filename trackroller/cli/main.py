@@ -309,27 +309,51 @@ def carriage(
 
 @command("trackroller.cli.shelf", "print_shelf")
 def shelf(
-    file: Annotated[Path, typer.Argument(help="table of rollers, bearings or guides (CSV, .xlsx)", show_default=False)],
-    of: Annotated[str, typer.Option("--of", help="what a row is: roller, bearing or guide")] = "roller",
-    case: Annotated[Path | None, typer.Option("--case", help="case whose rail and values the rows are put to")] = None,
+    file: Annotated[
+        Path,
+        typer.Argument(
+            help="table of rollers, bearings or guides (CSV, .xlsx)", show_default=False
+        ),
+    ],
+    of: Annotated[
+        str, typer.Option("--of", help="what a row is: roller, bearing or guide")
+    ] = "roller",
+    case: Annotated[
+        Path | None, typer.Option("--case", help="case whose rail and values the rows are put to")
+    ] = None,
     settings: Annotated[list[str] | None, typer.Option("--set", help=SET_HELP)] = None,
 ) -> None:
-    """Show the rows of a shelf and check them: names, units, values, and whether they fit the rail."""
+    """Show the rows of a shelf and check them: names, units, values, and whether they fit the
+    rail.
+    """
 
 
 @command("trackroller.cli.shelf", "print_size")
 def size(  # noqa: PLR0913 - one argument for each option of the command
-    case: Annotated[Path, typer.Argument(help="case or study file (YAML) with loads, rail, duty", show_default=False)],
+    case: Annotated[
+        Path,
+        typer.Argument(help="case or study file (YAML) with loads, rail, duty", show_default=False),
+    ],
     shelf: Annotated[Path, typer.Option("--shelf", help="table of rollers", show_default=False)],
-    life: Annotated[str | None, typer.Option("--life", help="required life: '3 years' beside a duty, or hours")] = None,
-    failures: Annotated[str | None, typer.Option("--failures", help="share that may fail by then, such as 5%")] = None,
-    safety: Annotated[str | None, typer.Option("--safety", help="factor on all forces within all limits")] = None,
-    least: Annotated[str | None, typer.Option("--least", help="column of the shelf, such as price")] = None,
+    life: Annotated[
+        str | None, typer.Option("--life", help="required life: '3 years' beside a duty, or hours")
+    ] = None,
+    failures: Annotated[
+        str | None, typer.Option("--failures", help="share that may fail by then, such as 5%")
+    ] = None,
+    safety: Annotated[
+        str | None, typer.Option("--safety", help="factor on all forces within all limits")
+    ] = None,
+    least: Annotated[
+        str | None, typer.Option("--least", help="column of the shelf, such as price")
+    ] = None,
     results: Results = Path("results"),
     as_json: Annotated[bool, typer.Option("--json", help="print JSON")] = False,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="no progress bar")] = False,
 ) -> None:
-    """Find the least roller of a shelf that is enough for a life, failures and overload; 1 if none is."""
+    """Find the least roller of a shelf that is enough for a life, failures and overload; 1 if none
+    is.
+    """
 
 
 @command("trackroller.cli.patch", "run_patch")

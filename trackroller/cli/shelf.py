@@ -1,4 +1,6 @@
-"""The commands of shelves: show and check the rows of a table, and find the least roller that is enough."""
+"""The commands of shelves: show and check the rows of a table, and find the least roller that is
+enough.
+"""
 
 from __future__ import annotations
 
@@ -31,7 +33,9 @@ SHELF = "roller"
 
 
 def print_shelf(file: Path, of: str, case: Path | None, settings: list[str] | None) -> None:
-    """Print the rows of a shelf after all checks of a study: `of` says of what, a case gives rail and empty cells."""
+    """Print the rows of a shelf after all checks of a study: `of` says of what, a case gives rail
+    and empty cells.
+    """
     if of not in SHELVES:
         raise InputError("--of", of, ", ".join(SHELVES), "Choose one of them.")
     study = shelf_study(file, of, case, settings)
@@ -60,42 +64,54 @@ def print_size(  # noqa: PLR0913 - one argument for each option of the command
     """Print which rollers of a shelf are enough, and return the exit code: 0 if one is."""
     from trackroller.results.size import size  # heavy: analysis
 
-    found = size(
-        case, shelf, life=life, failures=failures, safety=safety, least=least, results=results, progress=not quiet
+    sizing = size(
+        case,
+        shelf,
+        life=life,
+        failures=failures,
+        safety=safety,
+        least=least,
+        results=results,
+        progress=not quiet,
     )
-    solved = [own for own in (found.results, found.overload) if own is not None]
+    solved = [own for own in (sizing.results, sizing.overload) if own is not None]
     for own in solved:
         write_crate(study_folder(own.study.name, results).root)
     if as_json:
-        print(json.dumps(found.to_dict(), ensure_ascii=False, allow_nan=False))
-        return int(not found.least)
-    print_text(_first_sentence(found))
-    if found.open_and_less:
-        print_text(f"open, and less: {', '.join(found.open_and_less)}. A finer accuracy or better values decide")
-    if found.unranked:
-        print_text(f"{', '.join(found.unranked)}: no {found.least_of}, and so not ranked by it")
+        print(json.dumps(sizing.to_dict(), ensure_ascii=False, allow_nan=False))
+        return int(not sizing.least)
+    print_text(_first_sentence(sizing))
+    if sizing.open_and_less:
+        print_text(
+            f"open, and less: {', '.join(sizing.open_and_less)}. A finer accuracy or better values "
+            "decide"
+        )
+    if sizing.unranked:
+        print_text(f"{', '.join(sizing.unranked)}: no {sizing.least_of}, and so not ranked by it")
     units = {**solved[0].study.parsed[SHELF].units, "life_hours": "h"}
-    heads = [_head(str(name), units) for name in found.table]
-    print_table(heads, [[_shown(value) for value in row] for row in found.table.itertuples(index=False)])
+    heads = [_head(str(name), units) for name in sizing.table]
+    print_table(
+        heads, [[_shown(value) for value in row] for row in sizing.table.itertuples(index=False)]
+    )
     for own in solved:
         print_text(f"study {own.study.name}: trackroller report {own.study.name} writes its page")
-    return int(not found.least)
+    return int(not sizing.least)
 
 
-def _first_sentence(found: Sizing) -> str:
+def _first_sentence(sizing: Sizing) -> str:
     """Return which roller to take, in one sentence."""
-    if not found.least:
+    if not sizing.least:
         return "No roller of the shelf is surely enough."
-    row = found.table.set_index(SHELF).loc[found.least]
+    row = sizing.table.set_index(SHELF).loc[sizing.least]
     parts = []
-    if found.least_of:
-        parts.append(f"{found.least_of} {row[found.least_of]:g}")
+    if sizing.least_of:
+        parts.append(f"{sizing.least_of} {row[sizing.least_of]:g}")
     if "life_ratio" in row:
         parts.append(f"{row['life_ratio']:.3g} times the required life")
     if "overload" in row:
         parts.append("within all limits at the forces times the safety")
-    number = int((found.table["verdict"] == "enough").sum())
-    return f"{found.least} is the least of {number} that are enough: {', '.join(parts)}."
+    number = int((sizing.table["verdict"] == "enough").sum())
+    return f"{sizing.least} is the least of {number} that are enough: {', '.join(parts)}."
 
 
 def _shown(value: Any) -> str:
@@ -108,14 +124,20 @@ def _shown(value: Any) -> str:
 
 
 def shelf_study(file: Path, of: str, case: Path | None, settings: list[str] | None) -> Study:
-    """Return a study of the rows of a shelf beside the values of a case, which the shelf overrides."""
+    """Return a study of the rows of a shelf beside the values of a case, which the shelf
+    overrides.
+    """
     base: dict[str, Any] = {}
     if case is not None or settings:
         given, _, _ = case_of(case, settings)
-        base = {name: value for name, value in given.as_dict().items() if name not in given.not_given}
+        base = {
+            name: value for name, value in given.as_dict().items() if name not in given.not_given
+        }
         base = {name: value for name, value in base.items() if value not in (None, "")}
     with files_beside(file):
-        keys, places = with_rows({"name": "shelf", "base": base, "factors": {of: {"file": file.name}}})
+        keys, places = with_rows(
+            {"name": "shelf", "base": base, "factors": {of: {"file": file.name}}}
+        )
     with places.in_files():
         return parse_study(without_overridden(keys, of))
 

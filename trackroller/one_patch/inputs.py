@@ -126,7 +126,7 @@ def checked_patch(values: Mapping[str, Any]) -> PatchInputs:
     """
     given = {key: value for key, value in values.items() if value is not None}
     wrong = Collector()
-    made: dict[str, Any] = {}
+    fields: dict[str, Any] = {}
     columns: dict[str, np.ndarray] = {}
     with wrong.part():
         check_names("patch: key", given, FILE_FIELDS)
@@ -136,19 +136,19 @@ def checked_patch(values: Mapping[str, Any]) -> PatchInputs:
     with wrong.part():
         columns |= _semi_axes(given.get("semi_axes"))
     with wrong.part():
-        made["bodies"] = _bodies(given.get("materials"))
+        fields["bodies"] = _bodies(given.get("materials"))
     with wrong.part():
-        made["law"] = law_of(plain(given.get("friction_law"), "friction_law"))
+        fields["law"] = law_of(plain(given.get("friction_law"), "friction_law"))
     with wrong.part():
-        made["accuracy"] = _rung(given.get("accuracy", "standard"))
+        fields["accuracy"] = _rung(given.get("accuracy", "standard"))
     with wrong.part():
-        made["name"] = checked_text(str(given.get("name", "patch")), "name")
+        fields["name"] = checked_text(str(given.get("name", "patch")), "name")
     with wrong.part():
-        made["description"] = checked_text(
+        fields["description"] = checked_text(
             str(given.get("description", "")), "description", lines=True
         )
     wrong.check()
-    own_friction = at_rest(made["law"])
+    own_friction = at_rest(fields["law"])
     if own_friction is not None:
         columns.setdefault("friction_coefficient", np.array(own_friction))
     _check_needed(columns)
@@ -159,7 +159,7 @@ def checked_patch(values: Mapping[str, Any]) -> PatchInputs:
         for name, own in PATCH_FIELDS.items()
         if np.isfinite(own.default)
     }
-    return PatchInputs(_along_case(usual | columns), single=single, **made)
+    return PatchInputs(_along_case(usual | columns), single=single, **fields)
 
 
 def _column(name: str, value: Any) -> np.ndarray:

@@ -290,7 +290,7 @@ def _labelled(
     """Return results and inputs as a data set; without the dimension `case` if no value was a
     list.
     """
-    made: dict[str, Any] = {}
+    variables: dict[str, Any] = {}
     for name, column in inputs.columns.items():
         declared = PATCH_FIELDS[name]
         attrs = {
@@ -298,16 +298,16 @@ def _labelled(
             "symbol": declared.symbol,
             "long_name": declared.long_name,
         }
-        made[name] = ("case", column, attrs | {"comment": declared.meaning})
+        variables[name] = ("case", column, attrs | {"comment": declared.meaning})
     for name in RESULTS:
-        made[name] = ("case", values[name], _attributes(name))
+        variables[name] = ("case", values[name], _attributes(name))
     for name, words in FLAGS.items():
-        made[name] = ("case", flags[name].astype(np.int8), {"long_name": words, "units": "1"})
-    made["patch_x"] = (("case", "x"), surface.x, _attributes("patch_x"))
-    made["patch_y"] = (("case", "y"), surface.y, _attributes("patch_y"))
+        variables[name] = ("case", flags[name].astype(np.int8), {"long_name": words, "units": "1"})
+    variables["patch_x"] = (("case", "x"), surface.x, _attributes("patch_x"))
+    variables["patch_y"] = (("case", "y"), surface.y, _attributes("patch_y"))
     for name in FIELDS:
-        made[name] = (("case", "y", "x"), getattr(surface, name), _attributes(name))
-    made["stick"] = (
+        variables[name] = (("case", "y", "x"), getattr(surface, name), _attributes(name))
+    variables["stick"] = (
         ("case", "y", "x"),
         surface.stick.astype(np.int8),
         {"long_name": "adhesion", "units": "1"},
@@ -322,7 +322,7 @@ def _labelled(
         "kind": "discs" if inputs.is_discs else "ellipse",
         "conventions": CONVENTIONS,
     }
-    ds = xr.Dataset(made, attrs=attrs)
+    ds = xr.Dataset(variables, attrs=attrs)
     return ds.isel(case=0) if inputs.single else ds
 
 

@@ -62,13 +62,15 @@ def name_with_blank(text: str) -> str:
 
     Examples
     --------
-    >>> name_with_blank("slip < 0.1 and load case == 'first run'"), name_with_blank("slip < 0.1 and not drawn")
-    ('load case', '')
+    >>> name_with_blank("slip < 0.1 and load case == 'first run'")
+    'load case'
+    >>> name_with_blank("slip < 0.1 and not drawn")
+    ''
     """
     without_texts = re.sub(r"'[^']*'|\"[^\"]*\"", "''", text)
-    for found in re.finditer(r"[^\W\d]\w*(?:[ \t]+[^\W\d]\w*)+", without_texts):
+    for words in re.finditer(r"[^\W\d]\w*(?:[ \t]+[^\W\d]\w*)+", without_texts):
         name: list[str] = []
-        for word in [*found[0].split(), "and"]:
+        for word in [*words[0].split(), "and"]:
             if word.lower() not in keyword.kwlist:
                 name.append(word)
             elif len(name) > 1:

@@ -90,10 +90,10 @@ def told_weights(accuracy: str, contact_model: str) -> dict[str, float]:
         By `friction_force`, `normal_force`, `friction_energy`, and for peaks `below_surface` and
         `at_surface` [1].
     """
-    found: dict[str, float] = (
+    factors: dict[str, float] = (
         _measured()["told"].get(contact_model, {}).get(accuracy, {}).get("weights", {})
     )
-    return found
+    return factors
 
 
 def ratio_error(accuracy: str, contact_model: str, quantity: str = "life") -> float | None:
@@ -124,10 +124,10 @@ def ratio_error(accuracy: str, contact_model: str, quantity: str = "life") -> fl
     >>> ratio_error("reference", "kalker") < ratio_error("preview", "kalker")
     True
     """
-    found: float | None = (
+    error: float | None = (
         _measured()["told"].get(contact_model, {}).get(accuracy, {}).get("ratio", {}).get(quantity)
     )
-    return found
+    return error
 
 
 def expected_errors(options: Options, contact_model: str, plain: bool) -> dict[str, Levels]:

@@ -170,7 +170,9 @@ def checked_case(values: Mapping[str, Any]) -> tuple[Case, dict[str, Any], dict[
         with wrong.part():
             beside[key] = _checked_beside(key, fields.pop(key), beside.get("duty"))
     with wrong.part():
-        check_fields("case field", fields, (*FIELDS, *ALIASES, *RADII, *OPTIONS, *OTHER_OPTIONS, *BESIDE))
+        check_fields(
+            "case field", fields, (*FIELDS, *ALIASES, *RADII, *OPTIONS, *OTHER_OPTIONS, *BESIDE)
+        )
     for key in options:
         if OPTIONS[key].kind == "words" and isinstance(options[key], str):
             options[key] = [part.strip() for part in options[key].split(",")]

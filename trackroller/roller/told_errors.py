@@ -119,5 +119,5 @@ def raw_errors(ds: xr.Dataset, cases: Sequence[Case], model: str) -> dict[str, n
     friction = np.array([case.friction_coefficient for case in cases])
     own = ds.error_estimate.transpose("case", "contact", "body").values
     constant = CLASSES[model].peak_error * friction[:, None, None]
-    found = {quantity: ds[name].values for quantity, name in FORCES.items()}
-    return found | {"peak_stress": np.maximum(own - constant, 0.0)}
+    raw = {quantity: ds[name].values for quantity, name in FORCES.items()}
+    return raw | {"peak_stress": np.maximum(own - constant, 0.0)}

@@ -57,7 +57,8 @@ FACTOR_NAMES = (*CASE_FIELDS, "material_pair", *OPTION_FACTORS)
 SHELVES = ("roller", "bearing", "guide")  # factors whose levels are rows of a table
 BEARING_DIAMETER = "bearing_outer_diameter"
 SIZES = (*RADII, BEARING_DIAMETER)  # columns of a shelf [mm] that are no parameters
-OF_LOAD = (*LOADS, "velocity", "guide_overrollings_per_hour")  # parameters that no row of a shelf sets
+# parameters that no row of a shelf sets
+OF_LOAD = (*LOADS, "velocity", "guide_overrollings_per_hour")
 
 
 def check_own_name(name: str, where: str) -> None:
@@ -255,7 +256,9 @@ def factor(
 
 
 def _check_kind(key: Any, spec: Any) -> None:
-    """Refuse rows of a factor that is no shelf, and a shelf of rollers or guides that is something else."""
+    """Refuse rows of a factor that is no shelf, and a shelf of rollers or guides that is something
+    else.
+    """
     where = f"factors.{key}"
     has_rows = isinstance(spec, Mapping) and ROWS in spec
     if has_rows and key not in SHELVES:
@@ -281,16 +284,18 @@ def columns_of_shelves(factors: Mapping[str, Factor]) -> dict[str, Factor]:
     -------
     Name -> factor: a column of numbers has numbers as levels, without those that are missing.
     """
-    found = {}
+    columns = {}
     for factor in factors.values():
         for name, values in factor.beside.items():
             levels = tuple(dict.fromkeys(value for value in values if value is not None))
-            found[name] = Factor(name, "values", levels=levels, scatter=factor.scatter)
-    return found
+            columns[name] = Factor(name, "values", levels=levels, scatter=factor.scatter)
+    return columns
 
 
 def _rows(shelf: str, rows: list[Any], where: str) -> list[Any]:
-    """Return the rows of a shelf with their values in the types of their columns; raise all errors together."""
+    """Return the rows of a shelf with their values in the types of their columns; raise all errors
+    together.
+    """
     wrong = Collector()
     checked = []
     for row in rows:
@@ -305,7 +310,9 @@ def _rows(shelf: str, rows: list[Any], where: str) -> list[Any]:
                         values[column] = _value_in_row(shelf, name, column, value)
             if shelf in MAPPING_FIELDS and not values.get(shelf):
                 allowed = f"the values of a {shelf}"
-                raise InputError(f"{field_of_row(shelf, name)}.{shelf}", None, allowed, "", "is missing")
+                raise InputError(
+                    f"{field_of_row(shelf, name)}.{shelf}", None, allowed, "", "is missing"
+                )
             checked.append(values)
     wrong.check()
     return checked
@@ -317,7 +324,9 @@ def _row_name(name: Any, where: str) -> str:
         name = str(name)
     if not isinstance(name, str) or not name.strip() or len(name) > LONGEST_NAME:
         remedy = "For example {name: V25, contact_angle: 30}."
-        raise InputError(f"{where}.{NAME}", name, f"a name of at most {LONGEST_NAME} signs in each row", remedy)
+        raise InputError(
+            f"{where}.{NAME}", name, f"a name of at most {LONGEST_NAME} signs in each row", remedy
+        )
     return name.strip()
 
 
@@ -340,7 +349,9 @@ def _value_in_row(shelf: str, name: str, column: str, value: Any) -> Any:
         return field_value(column, value, where)
     check_own_name(column, where)
     if not column.isidentifier():
-        raise InputError(where, value, "columns whose names are letters, digits and '_'", "Rename the column.")
+        raise InputError(
+            where, value, "columns whose names are letters, digits and '_'", "Rename the column."
+        )
     if value is None or isinstance(value, str):
         return value
     number = number_or_nan(value)

@@ -114,7 +114,9 @@ def sample(
     return Design(columns, free, drawn_by, unit, meta | {"seed": int(seed)})
 
 
-def columns_of_rows(parsed: Mapping[str, Factor], columns: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
+def columns_of_rows(
+    parsed: Mapping[str, Factor], columns: Mapping[str, np.ndarray]
+) -> dict[str, np.ndarray]:
     """Return the columns of all factors that are `rows`, shape (n,) each.
 
     Parameters

@@ -326,14 +326,14 @@ def check_analysed(config: Any, goods: Iterable[str] = ()) -> None:
     A requirement may name a column of a shelf, too, which `goods` lists.
     """
     known = names_of_outputs(config)
-    wanted = [name for name in config.requirement if name not in goods]
+    of_results = [name for name in config.requirement if name not in goods]
     scale = config.analysis.scale
     outputs = [*(config.analysis.outputs or ())]
     if isinstance(scale, dict):
         outputs += scale
     raise_all(
         unknown_result(where, name, known, config.outputs)
-        for where, names in (("analysis.outputs", outputs), (KEY, wanted))
+        for where, names in (("analysis.outputs", outputs), (KEY, of_results))
         for name in names
         if name.replace(" ", "") not in known
     )

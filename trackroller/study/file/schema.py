@@ -44,7 +44,12 @@ def _shelf() -> dict[str, Any]:
     units = {"type": "object", "additionalProperties": {"type": "string"}}
     properties = {**whole["properties"], **kinds, "units": units}
     one_of = [*whole["oneOf"], *({"required": [kind]} for kind in kinds)]
-    return {**whole, "description": "levels that are rows of a table", "properties": properties, "oneOf": one_of}
+    return {
+        **whole,
+        "description": "levels that are rows of a table",
+        "properties": properties,
+        "oneOf": one_of,
+    }
 
 
 def _option(option: Option) -> dict[str, Any]:
@@ -92,7 +97,10 @@ def schema() -> dict[str, Any]:
     properties["method"]["enum"] = list(METHODS)
     properties["question"]["enum"] = list(QUESTIONS)
     for other, name in OTHER_OPTIONS.items():
-        properties[other] = {"description": f"another name of `{name}`, such as 5%", "type": ["number", "string"]}
+        properties[other] = {
+            "description": f"another name of `{name}`, such as 5%",
+            "type": ["number", "string"],
+        }
     properties["design"] = {"description": "another name of `method`", "enum": list(METHODS)}
     target = {"description": "another name of `requirement`"} | properties["requirement"]
     whole["$defs"]["Analysis"]["properties"]["target"] = target

@@ -3,9 +3,10 @@
 factors:
   roller: {file: rollers.csv}
 
-A row has a name, sets parameters of a case, and may have columns of the user's own, such as mass and price. A column is
-named as its parameter. A key of a bearing or of a catalogue stands behind its field: `catalogue_basic_life [km]`. In a
-shelf of bearings the keys stand alone. An empty cell of a parameter takes the value of `base`.
+A row has a name, sets parameters of a case, and may have columns of the user's own, such as mass
+and price. A column is named as its parameter. A key of a bearing or of a catalogue stands behind
+its field: `catalogue_basic_life [km]`. In a shelf of bearings the keys stand alone. An empty cell
+of a parameter takes the value of `base`.
 """
 
 from __future__ import annotations
@@ -28,7 +29,14 @@ from trackroller.numerics.table_cells import is_number, split_head
 from trackroller.numerics.units import PLAIN, split_quantity
 from trackroller.parameters import PARAMETERS
 from trackroller.roller.aliases import ALIASES, RADII
-from trackroller.study.design.entries import BEARING_DIAMETER, CASE_FIELDS, SHELVES, SIZES, check_own_name, field_of_row
+from trackroller.study.design.entries import (
+    BEARING_DIAMETER,
+    CASE_FIELDS,
+    SHELVES,
+    SIZES,
+    check_own_name,
+    field_of_row,
+)
 from trackroller.study.file.user_columns import column_names, read_table
 from trackroller.tables.column_heads import is_unit
 from trackroller.tables.user_table import UserTable
@@ -45,7 +53,9 @@ Place = tuple[Path, int]
 
 @dataclass
 class Places:
-    """Where the rows of shelves stand: the file and the number of the line, by shelf and name of the row."""
+    """Where the rows of shelves stand: the file and the number of the line, by shelf and name of
+    the row.
+    """
 
     lines: dict[tuple[str, str], Place] = field(default_factory=dict)
 
@@ -68,7 +78,8 @@ class Places:
 def with_rows(data: Mapping[str, Any]) -> tuple[dict[str, Any], Places]:
     """Return the keys of a study file with the rows of its shelves in place of their files.
 
-    A value of `base` that fills empty cells of a shelf moves into its rows. The study then needs none of the files.
+    A value of `base` that fills empty cells of a shelf moves into its rows. The study then needs
+    none of the files.
 
     Parameters
     ----------
@@ -98,7 +109,9 @@ def with_rows(data: Mapping[str, Any]) -> tuple[dict[str, Any], Places]:
         with wrong.part():
             if "file" in spec:
                 spec |= _read(shelf, spec.pop("file"), places)
-            if isinstance(spec.get(ROWS), list) and all(isinstance(row, Mapping) for row in spec[ROWS]):
+            if isinstance(spec.get(ROWS), list) and all(
+                isinstance(row, Mapping) for row in spec[ROWS]
+            ):
                 with places.in_files():
                     spec[ROWS] = _filled(shelf, spec[ROWS], left)
                     _check_ratings(shelf, spec[ROWS])
@@ -132,14 +145,20 @@ def without_overridden(keys: Mapping[str, Any], shelf: str) -> dict[str, Any]:
 
 
 def names_of_columns(factors: Mapping[str, Any]) -> set[str]:
-    """Return the names of all columns of shelves among the factors of a study file, which may be wrong otherwise."""
+    """Return the names of all columns of shelves among the factors of a study file, which may be
+    wrong otherwise.
+    """
     specs = [factors[name] for name in SHELVES if isinstance(factors.get(name), Mapping)]
     rows = [row for spec in specs if isinstance(spec.get(ROWS), list) for row in spec[ROWS]]
     return {str(name) for row in rows if isinstance(row, Mapping) for name in row}
 
 
-def _filled(shelf: str, rows: list[Mapping[str, Any]], base: dict[str, Any]) -> list[dict[str, Any]]:
-    """Return rows with the values of `base` where they have none, and remove these values from `base`."""
+def _filled(
+    shelf: str, rows: list[Mapping[str, Any]], base: dict[str, Any]
+) -> list[dict[str, Any]]:
+    """Return rows with the values of `base` where they have none, and remove these values from
+    `base`.
+    """
     names = list(dict.fromkeys(name for row in rows for name in row))
     wrong = Collector()
     used = set()
@@ -154,7 +173,9 @@ def _filled(shelf: str, rows: list[Mapping[str, Any]], base: dict[str, Any]) -> 
                 used.add(name)
             elif name in CASE_FIELDS or name in SIZES:
                 where = f"{field_of_row(shelf, str(row.get('name')))}.{name}"
-                remedy = f"Fill the cell, or write base: {{{name}: ...}} for all rows without a value."
+                remedy = (
+                    f"Fill the cell, or write base: {{{name}: ...}} for all rows without a value."
+                )
                 wrong.errors.append(InputError(where, None, "a value", remedy, "is missing"))
             else:
                 values[name] = None
@@ -166,7 +187,8 @@ def _filled(shelf: str, rows: list[Mapping[str, Any]], base: dict[str, Any]) -> 
 
 
 def _check_ratings(shelf: str, rows: list[dict[str, Any]]) -> None:
-    """Refuse a permissible axial force above the radial one where most rows of the shelf have them the other way.
+    """Refuse a permissible axial force above the radial one where most rows of the shelf have them
+    the other way.
 
     A single row does not tell: some rollers carry more axial than radial force.
     """
@@ -174,7 +196,9 @@ def _check_ratings(shelf: str, rows: list[dict[str, Any]]) -> None:
     for row in rows:
         catalogue = row.get(CATALOGUE.name)
         if isinstance(catalogue, Mapping):
-            radial, axial = (finite_number(catalogue.get(name), "N") for name in ("radial_force", "axial_force"))
+            radial, axial = (
+                finite_number(catalogue.get(name), "N") for name in ("radial_force", "axial_force")
+            )
             ratings[str(row.get("name"))] = (radial, axial)
     larger = [name for name, (radial, axial) in ratings.items() if axial > radial]
     if 2 * len(larger) >= len(ratings):
@@ -184,7 +208,8 @@ def _check_ratings(shelf: str, rows: list[dict[str, Any]]) -> None:
             f"{field_of_row(shelf, name)}.catalogue_axial_force",
             f"{ratings[name][1]:g} N",
             f"at most catalogue_radial_force, {ratings[name][0]:g} N, as in the other rows",
-            "Exchange the two cells; put a roller that carries more axial force into a shelf of its own.",
+            "Exchange the two cells; put a roller that carries more axial force into a shelf of "
+            "its own.",
             "is larger than the permissible radial force",
         )
         for name in larger
@@ -192,7 +217,9 @@ def _check_ratings(shelf: str, rows: list[dict[str, Any]]) -> None:
 
 
 def _read(shelf: str, file: Any, places: Places) -> dict[str, Any]:
-    """Return the rows of a file and the units of its further columns, and note where the rows stand."""
+    """Return the rows of a file and the units of its further columns, and note where the rows
+    stand.
+    """
     path = find_beside(file, f"factors.{shelf}.file")
     keys = _keys_of(shelf)
     heads = column_names(path, KIND)
@@ -210,7 +237,9 @@ def _read(shelf: str, file: Any, places: Places) -> dict[str, Any]:
     for place, (number, cells) in enumerate(table.lines.items()):
         row = dict(zip(table.names, cells, strict=True))
         with wrong.part():
-            rows.append(_row(row, shelf, keys) | {name: values[place] for name, values in columns.items()})
+            rows.append(
+                _row(row, shelf, keys) | {name: values[place] for name, values in columns.items()}
+            )
         for error in wrong.errors:
             if not error.line:
                 error.at(path, number)
@@ -234,12 +263,19 @@ def _keys_of(shelf: str) -> dict[str, tuple[MappingField, str]]:
 def _units_of(keys: Keys) -> dict[str, str]:
     """Return the units of the columns of numbers among the keys of mappings."""
     numbers = {(own.name, number.name): number.unit for own in FIELDS for number in own.numbers}
-    return {column: numbers[own.name, key] for column, (own, key) in keys.items() if (own.name, key) in numbers}
+    return {
+        column: numbers[own.name, key]
+        for column, (own, key) in keys.items()
+        if (own.name, key) in numbers
+    }
 
 
 def _is_of_case(name: str, keys: Keys) -> bool:
     """Return whether a column is the name of a row, a parameter, a key of a mapping, or a size."""
-    return name in ("name", OUTER_DIAMETER, *SIZES, *keys, *CASE_FIELDS) or ALIASES.get(name) in PARAMETERS
+    return (
+        name in ("name", OUTER_DIAMETER, *SIZES, *keys, *CASE_FIELDS)
+        or ALIASES.get(name) in PARAMETERS
+    )
 
 
 def _own_units(heads: Iterable[str], keys: Keys) -> dict[str, str]:
@@ -253,7 +289,9 @@ def _check_heads(table: UserTable, path: Path, keys: Keys) -> None:
     wrong = Collector()
     known = (*CASE_FIELDS, *SIZES, *keys)
     if "name" not in table.names:
-        wrong.errors.append(InputError(KIND, None, "a column name, which names each row", "Add it.", "has no names"))
+        wrong.errors.append(
+            InputError(KIND, None, "a column name, which names each row", "Add it.", "has no names")
+        )
     for head in table.names:
         with wrong.part():
             if head == "material_pair":
@@ -267,11 +305,15 @@ def _check_heads(table: UserTable, path: Path, keys: Keys) -> None:
 
 
 def _check_own_head(head: str, known: Iterable[str]) -> None:
-    """Refuse the name of a column that is nearly that of a parameter, or that results cannot have."""
+    """Refuse the name of a column that is nearly that of a parameter, or that results cannot
+    have.
+    """
     close = nearest(head, known)
     if close:
         remedy = f"Did you mean '{close}'? Rename the column if it is one of your own."
-        raise InputError("column", head, "parameters, and columns of your own", remedy, "is not known")
+        raise InputError(
+            "column", head, "parameters, and columns of your own", remedy, "is not known"
+        )
     name = _own_name(head)
     check_own_name(name, "column")
     if not name.isidentifier():
@@ -285,7 +327,9 @@ def _own_name(head: str) -> str:
 
 
 def _note_names(table: UserTable, shelf: str, path: Path, places: Places) -> None:
-    """Note the line of each row by its name; refuse rows without a name, and names that stand twice."""
+    """Note the line of each row by its name; refuse rows without a name, and names that stand
+    twice.
+    """
     wrong = Collector()
     column = table.names.index("name") if "name" in table.names else 0
     for number, cells in table.lines.items():
@@ -293,10 +337,14 @@ def _note_names(table: UserTable, shelf: str, path: Path, places: Places) -> Non
         before = places.lines.get((shelf, name))
         with wrong.part():
             if not name:
-                raise InputError("name", name, "a name in each row", "Name the row.").at(path, number)
+                raise InputError("name", name, "a name in each row", "Name the row.").at(
+                    path, number
+                )
             if before is not None:
                 stands = f"stands in line {before[1]} too"
-                error = InputError("name", name, "a different name for each row", "Rename one of them.", stands)
+                error = InputError(
+                    "name", name, "a different name for each row", "Rename one of them.", stands
+                )
                 raise error.at(path, number)
         places.lines.setdefault((shelf, name), (path, number))
     wrong.check()
@@ -313,8 +361,16 @@ def _row(cells: Mapping[str, str], shelf: str, keys: Keys) -> dict[str, Any]:
             row.setdefault(own.name, {})[key] = cell
         elif head == OUTER_DIAMETER:
             if shelf != BEARING.name:
-                remedy = f"Write outer_radius of the roller, or {BEARING_DIAMETER} of the bearing in it."
-                raise InputError(head, cell, "a size of one body", remedy, "may be that of the roller or of a bearing")
+                remedy = (
+                    f"Write outer_radius of the roller, or {BEARING_DIAMETER} of the bearing in it."
+                )
+                raise InputError(
+                    head,
+                    cell,
+                    "a size of one body",
+                    remedy,
+                    "may be that of the roller or of a bearing",
+                )
             row[BEARING_DIAMETER] = cell
         elif head in PROFILES and not cell.startswith("{"):
             row[head] = {"file": cell}
@@ -338,7 +394,9 @@ def _own_columns(
         unit = units.get(head, "") or _unit_in_cells(head, cells, path, wrong)
         if unit:
             shown[name] = unit
-            columns[name] = [_number(head, cell, unit, (path, number), wrong) for number, cell in cells.items()]
+            columns[name] = [
+                _number(head, cell, unit, (path, number), wrong) for number, cell in cells.items()
+            ]
         elif all(_is_plain_number(cell) for cell in cells.values() if cell):
             columns[name] = [float(cell) if cell else None for cell in cells.values()]
         else:
@@ -350,7 +408,11 @@ def _own_columns(
 def _is_plain_number(cell: str) -> bool:
     """Return whether a cell is a number and no label, such as the order number 00123."""
     digits = cell.lstrip("-")
-    return is_number(cell) and math.isfinite(finite_number(cell)) and not (digits[:1] == "0" and digits[1:2].isdigit())
+    return (
+        is_number(cell)
+        and math.isfinite(finite_number(cell))
+        and not (digits[:1] == "0" and digits[1:2].isdigit())
+    )
 
 
 def _number(head: str, cell: str, unit: str, place: Place, wrong: Collector) -> float | None:
@@ -363,29 +425,37 @@ def _number(head: str, cell: str, unit: str, place: Place, wrong: Collector) -> 
             if math.isnan(number):
                 number = finite_number(cell, unit, head)
             if math.isnan(number):
-                raise InputError(head, cell, f"a number in {unit}", "Correct the cell, or leave it empty.")
+                raise InputError(
+                    head, cell, f"a number in {unit}", "Correct the cell, or leave it empty."
+                )
         except InputError as error:
             raise error.at(*place) from None
     return number
 
 
 def _unit_in_cells(head: str, cells: Mapping[int, str], path: Path, wrong: Collector) -> str:
-    """Return the unit that all numbers of a column have behind them; '' for a column of words or plain numbers.
+    """Return the unit that all numbers of a column have behind them; '' for a column of words or
+    plain numbers.
 
     Cells with another unit than the first one are errors.
     """
     parts = {number: split_quantity(cell) for number, cell in cells.items() if cell}
-    units = [found[1] for found in parts.values() if found]
+    units = [part[1] for part in parts.values() if part]
     if not units or not _is_unit_of_goods(head, units[0]):
         return ""
-    for number, found in parts.items():
-        if found is None or found[1] != units[0]:
+    for number, part in parts.items():
+        if part is None or part[1] != units[0]:
             allowed = f"a number in {units[0]}, as in the first row"
-            remedy = f"Write all cells in one unit, and the unit at the head of the column: {head} [{units[0]}]."
+            remedy = (
+                "Write all cells in one unit, and the unit at the head of the column: "
+                f"{head} [{units[0]}]."
+            )
             wrong.errors.append(InputError(head, cells[number], allowed, remedy).at(path, number))
     return units[0]
 
 
 def _is_unit_of_goods(head: str, unit: str) -> bool:
-    """Return whether a text behind a number is a unit of goods, and no part of a name such as 608 ZZ."""
-    return unit in CURRENCIES or any(is_unit(head, unit, {head: wanted}) for wanted in MEASURED)
+    """Return whether a text behind a number is a unit of goods, and no part of a name such as 608
+    ZZ.
+    """
+    return unit in CURRENCIES or any(is_unit(head, unit, {head: measure}) for measure in MEASURED)
