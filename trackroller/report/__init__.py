@@ -1,6 +1,8 @@
-"""The pages of results, such as the sheet of a roller and the report of a study: `trackroller.report` writes them.
+"""The pages of results, such as the sheet of a roller and the report of a study:
+`trackroller.report` writes them.
 
-The module itself can be called: `trackroller.report` is both the room of the reports and the function that writes one.
+The module itself can be called: `trackroller.report` is both the room of the reports and the
+function that writes one.
 """
 
 from __future__ import annotations
@@ -26,13 +28,14 @@ def write(result: xr.Dataset | Results | Fit, path: Path | str) -> Path:
     Parameters
     ----------
     result : xarray.Dataset, Results or Fit
-        Results of a study, its data set in `study.nc`, or what `trackroller.solve` returned for its design: the report.
-        The data set of one case: its sheet. What `solve_spectrum`, `trackroller.carriage`, `trackroller.wear`,
-        `trackroller.patch`, `trackroller.fit_sn` or `trackroller.fit_bench` returned: the page of a load spectrum, of
-        a carriage, of wear, of one contact, of a fit.
+        Results of a study, its data set in `study.nc`, or what `trackroller.solve` returned for its
+        design: the report. The data set of one case: its sheet. What `solve_spectrum`,
+        `trackroller.carriage`, `trackroller.wear`, `trackroller.patch`, `trackroller.fit_sn` or
+        `trackroller.fit_bench` returned: the page of a load spectrum, of a carriage, of wear, of
+        one contact, of a fit.
     path : Path or str
-        The file to write, .html or .pdf. It stands alone and can be sent by mail. A browser prints the PDF: Chromium,
-        Chrome or Edge.
+        The file to write, .html or .pdf. It stands alone and can be sent by mail. A browser prints
+        the PDF: Chromium, Chrome or Edge.
 
     Returns
     -------
@@ -42,8 +45,8 @@ def write(result: xr.Dataset | Results | Fit, path: Path | str) -> Path:
     Raises
     ------
     InputError
-        If `result` is none of these, such as the data set of several cases that belong to no study, or if `path` is no
-        path.
+        If `result` is none of these, such as the data set of several cases that belong to no study,
+        or if `path` is no path.
 
     Examples
     --------
@@ -69,7 +72,9 @@ def write(result: xr.Dataset | Results | Fit, path: Path | str) -> Path:
 
 
 def _write_without_study(ds: xr.Dataset, path: Path | str) -> Path:
-    """Write the sheet of one case, or the page of a load spectrum, of a carriage, of wear or of one contact."""
+    """Write the sheet of one case, or the page of a load spectrum, of a carriage, of wear or of one
+    contact.
+    """
     from trackroller.report.pages.carriage import write_carriage  # heavy: jinja2
     from trackroller.report.pages.patch import write_patch  # heavy: jinja2
     from trackroller.report.pages.sheet import write_sheet  # heavy: jinja2

@@ -9,7 +9,8 @@ from trackroller.results.lives import FIRST_LIMIT, OF_PAIR
 def required_of_output(answer: Answer) -> list[Required]:
     """Return what is required of the output of an answer.
 
-    A required life of the pair or the roller is compared with the life to the first limit, as its verdict is.
+    A required life of the pair or the roller is compared with the life to the first limit, as its
+    verdict is.
     """
     name = answer.output[0]
     names = OF_PAIR if name == FIRST_LIMIT[0] else (name,)
@@ -17,5 +18,7 @@ def required_of_output(answer: Answer) -> list[Required]:
 
 
 def bounds_of_output(answer: Answer) -> list[float]:
-    """Return the smallest and the largest value that is enough, of each of these requirements; infinite without one."""
+    """Return the smallest and the largest value that is enough, of each of these requirements;
+    infinite without one.
+    """
     return [end for one in required_of_output(answer) for end in (one.least, one.most)]

@@ -11,7 +11,9 @@ import xarray as xr
 
 from trackroller.errors import InputError
 from trackroller.files import interrupts_wait_for_files
-from trackroller.report.pages.study import report_text as report_text  # public: reports without a folder
+
+# public: reports without a folder
+from trackroller.report.pages.study import report_text as report_text
 from trackroller.report.pages.study import write_report
 from trackroller.results.results import Results
 from trackroller.results.stored_study import open_as_reported, open_study
@@ -26,10 +28,12 @@ UNFINISHED = "unfinished"  # folder for the pages of solved cases
 
 @interrupts_wait_for_files()
 def build_report(folder: StudyFolder, tell: Callable[[str], None] = log.info) -> Path:
-    """Write `sensitivity.nc`, `figures/`, `report.html` and the crate beside the gathered results of a study.
+    """Write `sensitivity.nc`, `figures/`, `report.html` and the crate beside the gathered results
+    of a study.
 
-    Two processes that report on the same study do so one after the other. A study that is not gathered yet gets
-    analysis, figures and report of its solved cases in the folder `unfinished/`, without a crate.
+    Two processes that report on the same study do so one after the other. A study that is not
+    gathered yet gets analysis, figures and report of its solved cases in the folder `unfinished/`,
+    without a crate.
 
     Parameters
     ----------
@@ -46,7 +50,8 @@ def build_report(folder: StudyFolder, tell: Callable[[str], None] = log.info) ->
     Raises
     ------
     InputError
-        If no case is solved yet, the folder is somebody else's, or a file of somebody else stands in the place of one.
+        If no case is solved yet, the folder is somebody else's, or a file of somebody else stands
+        in the place of one.
     WorkError
         If a result was altered after it was written, or the folder cannot be written.
     """
@@ -64,7 +69,8 @@ def build_report(folder: StudyFolder, tell: Callable[[str], None] = log.info) ->
         draw_figures(results, place / "figures")
         tell("write the report")
         report = write_report(results, place / "report.html")
-        if folder.plan_file.exists() and not results.unfinished:  # results solved in Python have no plan, and no crate
+        # results solved in Python have no plan, and no crate
+        if folder.plan_file.exists() and not results.unfinished:
             write_crate(folder.root)
             manifest.discard(folder.root / UNFINISHED)
     return report
@@ -76,7 +82,9 @@ def place_of_pages(results: Results, folder: StudyFolder) -> Path:
 
 
 def draw_solved(folder: StudyFolder, out_dir: Path | None = None) -> tuple[Path, list[Any]]:
-    """Draw the figures of a study, of its solved cases if it is unfinished; return their folder and the figures."""
+    """Draw the figures of a study, of its solved cases if it is unfinished; return their folder and
+    the figures.
+    """
     with reporting(folder):
         results = open_as_reported(folder.root)
         out = out_dir or place_of_pages(results, folder) / "figures"
@@ -93,7 +101,9 @@ def write_analysis(results: Results, out: Path) -> None:
 
 
 def draw_figures(results: Results, out: Path) -> list[Any]:
-    """Draw all figures of a study and return them; they are put in place when all of them are drawn."""
+    """Draw all figures of a study and return them; they are put in place when all of them are
+    drawn.
+    """
     from trackroller.report.figures.study import draw_all  # heavy: matplotlib and seaborn
 
     with replacing(out) as beside:

@@ -1,60 +1,73 @@
 """The headline of an answer: one template a question, at most 40 words, from the record alone.
 
-What does not fit a template stands in the table. A text that the record holds (`where`, `binds`) is said if it has at
-most eight words. Lives are written with their years if `Answer.facts` holds `duty` (hours a day and days a year).
+What does not fit a template stands in the table. A text that the record holds (`where`, `binds`) is
+said if it has at most eight words. Lives are written with their years if `Answer.facts` holds
+`duty` (hours a day and days a year).
 
 Keys of `Answer.headline`; a key that is missing, None, NaN or empty is left out of the words:
 
-`decide`, by `Answer.kind` (`build`, `a_or_b`, `none`, `measure`, `give`, `solve_finer`, `cannot_tell`)
+`decide`, by `Answer.kind` (`build`, `a_or_b`, `none`, `measure`, `give`, `solve_finer`,
+`cannot_tell`)
 
-=================  =====================================================================================================
-`names`            list of dict: name of a column of role `name` -> level of the named candidates; only choices that
-                   differ between them and the rest; the first one is the leader (of `none` empty)
+=================  =================================================================================
+`names`            list of dict: name of a column of role `name` -> level of the named candidates;
+                   only choices that differ between them and the rest; the first one is the leader
+                   (of `none` empty)
 `low`, `high`      of the leader's required output at its worst condition [unit of `Answer.output`]
 `worst`            levels of that condition in words (stands in the table)
 `ends`, `ends_high`  limit that ends it, in words that follow "then": "fatigue", "wear"
 `body`             `roller`, `guide` or ''
 `error`            told error of the leader's output [1]
 `extrapolated`     whether the leader's life lies beyond its data
-`not_held`         {count, of, where}: conditions that no candidate holds; `where` as "all 12 driven at friction 0.05"
+`not_held`         {count, of, where}: conditions that no candidate holds; `where` as "all 12 driven
+                   at friction 0.05"
 `why`              of `cannot_tell`: a key of `CAUSES`
 `not_judged`       {count, of, where}: the same for conditions that the model cannot judge
-`elsewhere`        whether the leader holds all other conditions, so that the headline says "elsewhere"
+`elsewhere`        whether the leader holds all other conditions, so that the headline says
+                   "elsewhere"
 `exceeded`         {limit, body, use [1], hours}: the worst check of the leader above 100 %
-`second`           {limit, verdict}: second model ("rating") that turns the leader's verdict; a state of `STATES`
-`measure`          {what, of, on, turn, units, low, high}: placeholder, its body, the other one, where the leader turns
+`second`           {limit, verdict}: second model ("rating") that turns the leader's verdict; a
+                   state of `STATES`
+`measure`          {what, of, on, turn, units, low, high}: placeholder, its body, the other one,
+                   where the leader turns
 `give`             {what}: load that was not given, in words: "the motor force"
-`nearest`          {name (as one of `names`), holds, of, meets, low, fails}: `fails` says where it fails, in words
-`up_to`, `from_on`  levels of the single numeric choice between which all conditions meet the requirement
-`share`, `share_low`, `share_high`  share of the drawn conditions that meets it, Wilson's interval [1]
+`nearest`          {name (as one of `names`), holds, of, meets, low, fails}: `fails` says where it
+                   fails, in words
+`up_to`, `from_on`  levels of the single numeric choice between which all conditions meet the
+                   requirement
+`share`, `share_low`, `share_high`  share of the drawn conditions that meets it, Wilson's interval
+                   [1]
 `wanted`, `n`      share that is wanted [1]; drawn conditions
-=================  =====================================================================================================
+=================  =================================================================================
 
-`how sure`, by `Answer.kind` (`share`, `count`, `cannot_tell` with `why`):
-`share`, `share_low`, `share_high`, `wanted`, `n` of drawn conditions, or `meets`, `of` of listed loads; and
-`low`, `high`, `ends`, `ends_high`, `body`, `error`, `extrapolated`, `exceeded`, `second`, `not_held` as above.
+`how sure`, by `Answer.kind` (`share`, `count`, `cannot_tell` with `why`): `share`, `share_low`,
+`share_high`, `wanted`, `n` of drawn conditions, or `meets`, `of` of listed loads; and `low`,
+`high`, `ends`, `ends_high`, `body`, `error`, `extrapolated`, `exceeded`, `second`, `not_held` as
+above.
 
-`what matters`: `factors`, a list of at most two dicts, the largest first: `title`, `units`, `index`, `index_low`,
-`index_high` [1] (NaN without indices), `height` (as a factor), `from`, `to` (levels at the smallest and the largest end
-of the curve), `at_from`, `at_to` [unit of the output]; `asked`: the same of a factor that the study asks for.
+`what matters`: `factors`, a list of at most two dicts, the largest first: `title`, `units`,
+`index`, `index_low`, `index_high` [1] (NaN without indices), `height` (as a factor), `from`, `to`
+(levels at the smallest and the largest end of the curve), `at_from`, `at_to` [unit of the output];
+`asked`: the same of a factor that the study asks for.
 
-`which model`: `changes`: ``, `verdict`, `order` or `verdict and order`; `models`: list of dict `model`, `verdict`,
-`low`, `high`, `error`, `leader` (a dict as one of `names`); `smallest`, `largest` ratio on like rows to the model
-`base`.
+`which model`: `changes`: ``, `verdict`, `order` or `verdict and order`; `models`: list of dict
+`model`, `verdict`, `low`, `high`, `error`, `leader` (a dict as one of `names`); `smallest`,
+`largest` ratio on like rows to the model `base`.
 
 `best`, by `Answer.kind` (`one`, `front`, `front_required`; `solve_finer`, `open`, `none` with
-`nearest`): `designs`, a list of dict: `name` (as one of `names`),
-`at` (`corner`, `knee` or ''), `goals` and `required` (lists of {words, units, value}; `required` holds outputs of
-requirements that are no goals; a goal with `is_choice` stands in the name), `stopped` (search stopped before this end);
-`binds` (requirement, limit or end of a range in words), `accuracy` (of these numbers), `extrapolated`,
-`exceeded`, `second`, and of drawn conditions `share`, `share_low`, `share_high`, `wanted`, `n` as above.
+`nearest`): `designs`, a list of dict: `name` (as one of `names`), `at` (`corner`, `knee` or ''),
+`goals` and `required` (lists of {words, units, value}; `required` holds outputs of requirements
+that are no goals; a goal with `is_choice` stands in the name), `stopped` (search stopped before
+this end); `binds` (requirement, limit or end of a range in words), `accuracy` (of these numbers),
+`extrapolated`, `exceeded`, `second`, and of drawn conditions `share`, `share_low`, `share_high`,
+`wanted`, `n` as above.
 
-`roller`, `spectrum`, `wear`, `carriage`: see `roller_answer`, `spectrum_answer`, `wear_answer` and `carriage_answer`
-in `trackroller.results`.
+`roller`, `spectrum`, `wear`, `carriage`: see `roller_answer`, `spectrum_answer`, `wear_answer` and
+`carriage_answer` in `trackroller.results`.
 
-`how it behaves`: `smallest`, `largest` [unit of the output], `at_smallest`, `at_largest` (levels in words),
-`ends` (list of {limit, body, count}), `of` (cases), `lost` (cases without the output), `ends_low`.
-"""
+`how it behaves`: `smallest`, `largest` [unit of the output], `at_smallest`, `at_largest` (levels in
+words), `ends` (list of {limit, body, count}), `of` (cases), `lost` (cases without the output),
+`ends_low`."""
 
 from __future__ import annotations
 
@@ -180,7 +193,9 @@ def _give(answer: Answer) -> str:
 
 
 def _solve_finer(answer: Answer) -> str:
-    return f"Solve finer: only the error leaves {_name(answer, _first(answer.headline['names']))} open"
+    return (
+        f"Solve finer: only the error leaves {_name(answer, _first(answer.headline['names']))} open"
+    )
 
 
 def _cannot_tell(answer: Answer) -> str:
@@ -209,11 +224,14 @@ DECISIONS: dict[str, Callable[[Answer], str]] = {
 }
 
 
-ELSEWHERE: dict[str, Callable[[Answer], str]] = {"build": _leader, "a_or_b": _either}  # behind "elsewhere"
+# behind "elsewhere"
+ELSEWHERE: dict[str, Callable[[Answer], str]] = {"build": _leader, "a_or_b": _either}
 
 
 def _lasts(answer: Answer) -> list[str]:
-    """Return what the leader lasts, what ends it, what other rules say of it, and what is required."""
+    """Return what the leader lasts, what ends it, what other rules say of it, and what is
+    required.
+    """
     head = answer.headline
     clauses = []
     tenth = _tenth(answer)
@@ -232,7 +250,9 @@ SILENT = ("none", "cannot_tell")  # kinds without a leader
 
 
 def _has_leader(answer: Answer) -> bool:
-    """Return whether a design can be spoken of: none can where a load is asked for and no design holds."""
+    """Return whether a design can be spoken of: none can where a load is asked for and no design
+    holds.
+    """
     return answer.kind != "give" or bool(answer.headline.get("names"))
 
 
@@ -254,7 +274,9 @@ def _tenth(answer: Answer) -> str:
 def _shares(answer: Answer) -> list[str]:
     """Return the share of the drawn conditions that meets the requirement."""
     head = answer.headline
-    said = f"{_share(head)} of {head['n']:,} drawn conditions {_reach(answer.required)}{_beyond(head)}"
+    said = (
+        f"{_share(head)} of {head['n']:,} drawn conditions {_reach(answer.required)}{_beyond(head)}"
+    )
     wanted = [f"{percent(head['wanted'])} are wanted"] if _known(head, "wanted") else []
     return [said, *wanted, *_other_rules(head)]
 
@@ -278,7 +300,9 @@ def _nearest(answer: Answer) -> list[str]:
     near = answer.headline.get("nearest")
     if answer.kind != "none" or not near:
         return []
-    clauses = _reached(near) if answer.required else [f"holds {near['holds']} of {near['of']} conditions"]
+    clauses = (
+        _reached(near) if answer.required else [f"holds {near['holds']} of {near['of']} conditions"]
+    )
     if _known(near, "low") and near["low"] > 0 and near["holds"] == near["of"]:
         clauses[0] += f", {_output(answer, near['low'])} at the worst"
     fails = _short(near.get("fails"))
@@ -295,7 +319,9 @@ def _turn(head: Mapping[str, Any]) -> list[str]:
     asked = head.get("measure")
     if not asked or not _known(asked, "turn"):
         return []
-    units = f" {unit_text(asked['units'])}" if asked.get("units") not in (None, "", "1", "-") else ""
+    units = (
+        f" {unit_text(asked['units'])}" if asked.get("units") not in (None, "", "1", "-") else ""
+    )
     return [f"the answer turns at {grouped(asked['turn'], 2)}{units}"]
 
 
@@ -340,7 +366,9 @@ def what_matters(answer: Answer) -> Headline:
 
 
 def _in_shares(answer: Answer) -> bool:
-    """Return whether the index of an answer is a share; an effect is said by the height of its curve."""
+    """Return whether the index of an answer is a share; an effect is said by the height of its
+    curve.
+    """
     return any(column.name == "index" and column.kind == "share" for column in answer.columns)
 
 
@@ -374,7 +402,11 @@ def which_model(answer: Answer) -> Headline:
         "verdict and order": "Verdict and order change with the contact model",
     }[changes]
     if not answer.required:
-        lead = "The order changes with the contact model" if changes else "The order is the same by each contact model"
+        lead = (
+            "The order changes with the contact model"
+            if changes
+            else "The order is the same by each contact model"
+        )
     if changes:
         return _joined(lead, [_by_models(answer, models)])
     clauses = []
@@ -391,11 +423,15 @@ def _by_models(answer: Answer, models: Sequence[Mapping[str, Any]]) -> str:
     if len(set(leaders)) == 1:
         first = f"{leaders[0]} is " if leaders[0] and answer.required else ""
         return first + ", ".join(_by_model(answer, one, "") for one in shown)
-    return ", ".join(_by_model(answer, one, leader) for one, leader in zip(shown, leaders, strict=True))
+    return ", ".join(
+        _by_model(answer, one, leader) for one, leader in zip(shown, leaders, strict=True)
+    )
 
 
 def _by_model(answer: Answer, model: Mapping[str, Any], leader: str) -> str:
-    value = carried_range(model["low"], model.get("high", model["low"]), model.get("error", math.nan))
+    value = carried_range(
+        model["low"], model.get("high", model["low"]), model.get("error", math.nan)
+    )
     state = str(model["verdict"]) if answer.required and model.get("verdict") else ""
     what = " ".join(text for text in (leader, state) if text)
     return f"{what} by {model['model']} ({_measured(value, answer.output[2])})".strip()
@@ -412,7 +448,9 @@ def best(answer: Answer) -> Headline:
     first = designs[0]
     values = [one for one in (*first["goals"], *first["required"]) if not one.get("is_choice")]
     accuracy = f" at {head['accuracy']}" if head.get("accuracy") else ""
-    clauses = [f"{listing([_goal(one) for one in values])}{_beyond(head)}{accuracy}"] if values else []
+    clauses = (
+        [f"{listing([_goal(one) for one in values])}{_beyond(head)}{accuracy}"] if values else []
+    )
     binds = _short(head.get("binds"))
     if binds:
         clauses.append(f"bound by {binds}")
@@ -428,8 +466,12 @@ def _without_design(answer: Answer) -> Headline:
     near = answer.headline.get("nearest")
     if answer.kind == "none" or not near:
         return _joined(_none(answer), _nearest(answer))
-    only = "Solve finer: only the error leaves" if answer.kind == "solve_finer" else "A range leaves"
-    return _joined(f"{only} {_name(answer, near['name'])} open", [*_reached(near), *_required(answer)])
+    only = (
+        "Solve finer: only the error leaves" if answer.kind == "solve_finer" else "A range leaves"
+    )
+    return _joined(
+        f"{only} {_name(answer, near['name'])} open", [*_reached(near), *_required(answer)]
+    )
 
 
 def _front(answer: Answer, designs: Sequence[Mapping[str, Any]]) -> Headline:
@@ -490,7 +532,11 @@ def roller(answer: Answer) -> Headline:
     head = answer.headline
     if answer.kind in STOPS:
         return STOPS[answer.kind](answer)
-    unsure = f"if the model holds ({listing(head['not_judged'])}: not judged), " if head["not_judged"] else ""
+    unsure = (
+        f"if the model holds ({listing(head['not_judged'])}: not judged), "
+        if head["not_judged"]
+        else ""
+    )
     clauses = [*_open_limits(head), *_unknown_hours(answer), *_required_states(answer)]
     if answer.kind == "no_life":
         lasts = "no limit with hours is known"
@@ -501,17 +547,29 @@ def roller(answer: Answer) -> Headline:
         return Headline(capital(text), "".join(f"; {clause}" for clause in clauses) + ".")
     worst = head["exceeded"][0]
     hours = worst["hours"]
-    after = f", after {grouped(hours, 2)} h by its rule" if hours is not None and math.isfinite(hours) else ""
+    after = (
+        f", after {grouped(hours, 2)} h by its rule"
+        if hours is not None and math.isfinite(hours)
+        else ""
+    )
     lead = f"{_limit_of(worst)} exceeded ({percent(worst['use'])})"
     return Headline(
-        capital(lead), f"{after}. {capital(unsure + 'otherwise ' + lasts)}{''.join(f'; {c}' for c in clauses)}."
+        capital(lead),
+        f"{after}. {capital(unsure + 'otherwise ' + lasts)}{''.join(f'; {c}' for c in clauses)}.",
     )
 
 
 def _roller_life(answer: Answer) -> str:
     """Return the life of one roller with its years and whether it is extrapolated."""
     head = answer.headline
-    notes = [word for word, true in (("extrapolated", head["extrapolated"]), ("placeholders", head["guessed"])) if true]
+    notes = [
+        word
+        for word, true in (
+            ("extrapolated", head["extrapolated"]),
+            ("placeholders", head["guessed"]),
+        )
+        if true
+    ]
     return _value(answer, head["low"], head["high"], notes)
 
 
@@ -549,7 +607,9 @@ def _unknown_hours(answer: Answer) -> list[str]:
     clauses = [f"the hours of the {head['unknown']} are not known"] if head["unknown"] else []
     if head["unrated"]:
         whose = "" if len(head["unrated"]) > 1 else f" of the {head['unrated'][0]}"
-        clauses.append(f"fatigue{whose} at {percent(answer.facts['probability'])} failed is not known")
+        clauses.append(
+            f"fatigue{whose} at {percent(answer.facts['probability'])} failed is not known"
+        )
     return clauses
 
 
@@ -584,13 +644,17 @@ def _breaks(answer: Answer) -> Headline:
     bodies = listing(_bodies_of(broken))
     verb = "break" if len(broken) > 1 or " and " in bodies else "breaks"
     lead = f"The {bodies} {verb} at once"
-    return Headline(lead, f": peak stress {percent(use)} of what the material bears." if use == use else ".")
+    return Headline(
+        lead, f": peak stress {percent(use)} of what the material bears." if use == use else "."
+    )
 
 
 def _skids(answer: Answer) -> Headline:
     """Say between which motor forces the roller rolls."""
     head = answer.headline
-    rest = [f"friction transmits {grouped(head['motor_low'], 3)} to {grouped(head['motor_high'], 3)} N"]
+    rest = [
+        f"friction transmits {grouped(head['motor_low'], 3)} to {grouped(head['motor_high'], 3)} N"
+    ]
     if not math.isfinite(head["motor_low"] + head["motor_high"]):
         rest = ["the motor force exceeds what friction transmits"]
     if answer.kind == "skids" and math.isfinite(head["low"]):
@@ -602,9 +666,15 @@ def _skids(answer: Answer) -> Headline:
 
 
 def spectrum(answer: Answer) -> Headline:
-    """Say what ends the roller or the guide of a spectrum and when, and which block does most of it."""
+    """Say what ends the roller or the guide of a spectrum and when, and which block does most of
+    it.
+    """
     head = answer.headline
-    clauses = [f"the life of the {body} is not known" for body in head["unknown"]] if answer.kind != "unknown" else []
+    clauses = (
+        [f"the life of the {body} is not known" for body in head["unknown"]]
+        if answer.kind != "unknown"
+        else []
+    )
     clauses = [*_exceeded_in_blocks(head["exceeded"]), *_open_limits(head), *clauses]
     if answer.kind == "breaks":
         broken = head["broken"]
@@ -614,7 +684,11 @@ def spectrum(answer: Answer) -> Headline:
         return _joined(f"The {bodies} {verb} at once in {blocks}", clauses)
     if answer.kind == "unknown":
         return _joined("The life is not known", [*head["why"][:2], *clauses])
-    unsure = f"if the model holds ({listing(head['not_judged'])}: not judged), " if head["not_judged"] else ""
+    unsure = (
+        f"if the model holds ({listing(head['not_judged'])}: not judged), "
+        if head["not_judged"]
+        else ""
+    )
     if answer.kind == "unlimited":
         return _joined(capital(f"{unsure}no limit ends this spectrum"), clauses)
     if head["block"]:
@@ -625,7 +699,9 @@ def spectrum(answer: Answer) -> Headline:
 
 
 def wear(answer: Answer) -> Headline:
-    """Say how deep a roller and its guide have worn after which travel, what becomes of the pressure, and the end."""
+    """Say how deep a roller and its guide have worn after which travel, what becomes of the
+    pressure, and the end.
+    """
     head = answer.headline
     depths = [f"{body} {grouped(depth, 3)} µm" for body, depth in head["depths"].items()]
     worn = f"{listing(depths)} worn" if depths else "neither body has worn"
@@ -638,25 +714,38 @@ def wear(answer: Answer) -> Headline:
         clauses[0] += f", {grouped(most, 3)} MPa at {grouped(head['travel_most'], 3)} km"
     fatigue = head["fatigue"]
     if fatigue:
-        clauses.insert(0, f"fatigue ends the {fatigue['body']} after {grouped(fatigue['travel'], 3)} km")
+        clauses.insert(
+            0, f"fatigue ends the {fatigue['body']} after {grouped(fatigue['travel'], 3)} km"
+        )
     if head["state"]:
-        clauses.append(f"required {_amount(answer.required[0], answer.required[0].least)}: {head['state']}")
+        clauses.append(
+            f"required {_amount(answer.required[0], answer.required[0].least)}: {head['state']}"
+        )
     return _joined(_noted(capital(lead), notes), [*clauses, f"the run ends there: {head['end']}"])
 
 
 def carriage(answer: Answer) -> Headline:
-    """Say which roller of a carriage ends first and when, and up to which loads all rollers roll."""
+    """Say which roller of a carriage ends first and when, and up to which loads all rollers
+    roll.
+    """
     head = answer.headline
-    margins = [f"{one['of']} × {grouped(one['times'], 3)} to {one['end']} ({one['case']})" for one in head["margins"]]
+    margins = [
+        f"{one['of']} × {grouped(one['times'], 3)} to {one['end']} ({one['case']})"
+        for one in head["margins"]
+    ]
     if answer.kind == "unsettled":
-        return _joined(f"The forces in {listing(head['unsettled'])} are not known", ["more preload helps"])
+        return _joined(
+            f"The forces in {listing(head['unsettled'])} are not known", ["more preload helps"]
+        )
     if answer.kind == "lasts":
         return _carriage_lasts(answer, margins)
     if answer.kind == "unlimited":
         return _joined("No roller reaches a limit under these loads", margins)
     lead = "No roller carries a load"
     if _known(head, "force"):
-        lead = f"Roller {head['roller']} carries most, {grouped(head['force'], 3)} N in {head['case']}"
+        lead = (
+            f"Roller {head['roller']} carries most, {grouped(head['force'], 3)} N in {head['case']}"
+        )
     clauses = ["the life of no roller is known"] if answer.kind == "no_life" else []
     return _joined(lead, [*clauses, *margins])
 
@@ -666,7 +755,11 @@ def _carriage_lasts(answer: Answer, margins: Sequence[str]) -> Headline:
     head = answer.headline
     years = years_of(head["low"], head["high"])
     life = _noted(f"{carried_range(head['low'], head['high'])} h", [years] if years else [])
-    unsure = f"if the model holds ({listing(head['not_judged'])}: not judged), " if head["not_judged"] else ""
+    unsure = (
+        f"if the model holds ({listing(head['not_judged'])}: not judged), "
+        if head["not_judged"]
+        else ""
+    )
     lasts = f"{unsure}roller {head['roller']} ends first: {life}, {grouped(head['km'], 3)} km"
     clauses = [f"then {head['limit']} of the {head['body']}"] if head["limit"] else []
     if _known(head, "part"):
@@ -675,23 +768,35 @@ def _carriage_lasts(answer: Answer, margins: Sequence[str]) -> Headline:
         clauses.append(f"the life of {listing(head['unknown'])} is not known")
     if head["state"]:
         of = f" of {listing(head['of'])}" if head["of"] else ""
-        clauses.append(f"required {_bound(answer.required[0], answer.output[0])}{of}: {head['state']}")
+        clauses.append(
+            f"required {_bound(answer.required[0], answer.output[0])}{of}: {head['state']}"
+        )
         margins = ()  # its table has them
     if not head["exceeded"]:
         return _joined(capital(lasts), [*clauses, *margins])
     worst = head["exceeded"][0]
-    amount = f"{grouped(worst['km'], 2)} km" if _known(worst, "km") else f"{grouped(worst['hours'], 2)} h"
+    amount = (
+        f"{grouped(worst['km'], 2)} km"
+        if _known(worst, "km")
+        else f"{grouped(worst['hours'], 2)} h"
+    )
     after = f", after {amount} by its rule" if _known(worst, "km") or _known(worst, "hours") else ""
     lead = f"{capital(_limit_of(worst))} {worst['roller']} exceeded ({percent(worst['use'])})"
     return Headline(lead, f"{after}. {'; '.join([capital('otherwise ' + lasts), *clauses])}.")
 
 
 def end_of_carriage(answer: Answer) -> str:
-    """Return the last line of a carriage: how long it lasts, and which roller or rail ends it by which limit."""
+    """Return the last line of a carriage: how long it lasts, and which roller or rail ends it by
+    which limit.
+    """
     head = answer.headline
     if answer.kind != "lasts" or not head["limit"]:
         return ""
-    place = f"the rail under roller {head['roller']}" if head["body"] == "guide" else f"roller {head['roller']}"
+    place = (
+        f"the rail under roller {head['roller']}"
+        if head["body"] == "guide"
+        else f"roller {head['roller']}"
+    )
     years = years_of(head["low"], head["high"])
     life = _noted(f"{carried_range(head['low'], head['high'])} h", [years] if years else [])
     return f"The carriage lasts {life}: then {place} reaches its first limit, {head['limit']}."
@@ -711,9 +816,15 @@ def _exceeded_in_blocks(listed: Sequence[Mapping[str, Any]]) -> list[str]:
     if not listed:
         return []
     worst = listed[0]
-    use = f" ({percent(worst['use'])})" if worst["use"] is not None and math.isfinite(worst["use"]) else ""
+    use = (
+        f" ({percent(worst['use'])})"
+        if worst["use"] is not None and math.isfinite(worst["use"])
+        else ""
+    )
     more = f" and {len(listed) - 1} more" if len(listed) > 1 else ""
-    return [f"{_limit_of(worst)} exceeded{use} in {listing(list(worst['blocks'])[:MOST_NAMES])}{more}"]
+    return [
+        f"{_limit_of(worst)} exceeded{use} in {listing(list(worst['blocks'])[:MOST_NAMES])}{more}"
+    ]
 
 
 STOPS: dict[str, Callable[[Answer], Headline]] = {  # kinds of one roller without a usual life
@@ -820,9 +931,15 @@ def _alternatives(answer: Answer, names: Sequence[Mapping[str, Any]]) -> str:
         key = keys.pop()
         column = columns.get(key)
         levels = [name[key] for name in names]
-        if column is not None and key not in NAMED and not any(isinstance(level, str) for level in levels):
+        if (
+            column is not None
+            and key not in NAMED
+            and not any(isinstance(level, str) for level in levels)
+        ):
             values = " or ".join(_plain_level(level) for level in levels)
-            return f"{lowered(column.title)} {values} {unit_text(column.units)}".replace(" –", "").replace(" °", "°")
+            return f"{lowered(column.title)} {values} {unit_text(column.units)}".replace(
+                " –", ""
+            ).replace(" °", "°")
     return " or ".join(_name(answer, name) for name in names)
 
 
@@ -847,12 +964,16 @@ def _value_said(answer: Answer) -> str:
 
 
 def _notes(head: Mapping[str, Any]) -> list[str]:
-    """Return what stands in brackets behind a value: why nothing lasts, and whether the value is extrapolated."""
+    """Return what stands in brackets behind a value: why nothing lasts, and whether the value is
+    extrapolated.
+    """
     reason = [str(head["ends"])] if head.get("ends") and not head.get("body") else []
     return [*reason, "extrapolated"] if head.get("extrapolated") else reason
 
 
-def _output(answer: Answer, low: float, high: float | None = None, notes: Sequence[str] = ()) -> str:
+def _output(
+    answer: Answer, low: float, high: float | None = None, notes: Sequence[str] = ()
+) -> str:
     """Return a value of the output of an answer, or a range; hours alone say that it is a life."""
     value = _value(answer, low, high, notes)
     return value if answer.output[2] == "h" else f"{lowered(answer.output[1])} {value}"
@@ -887,7 +1008,9 @@ def _beyond(head: Mapping[str, Any]) -> str:
 
 
 def _then(head: Mapping[str, Any]) -> str:
-    """Return the limit that ends the leader; two where the ends of its range differ; '' where it does not roll."""
+    """Return the limit that ends the leader; two where the ends of its range differ; '' where it
+    does not roll.
+    """
     if not head.get("ends") or not head.get("body"):
         return ""
     limits = dict.fromkeys([head["ends"], head.get("ends_high") or head["ends"]])
@@ -899,7 +1022,12 @@ def _other_rules(head: Mapping[str, Any]) -> list[str]:
     clauses = []
     second = head.get("second")
     if second:
-        verb = {"met": "meets", "open": "leaves it open", "missed": "misses", "none": "does not judge"}
+        verb = {
+            "met": "meets",
+            "open": "leaves it open",
+            "missed": "misses",
+            "none": "does not judge",
+        }
         clauses.append(f"the {second['limit']} {verb[second['verdict']]}")
     exceeded = head.get("exceeded")
     if exceeded:
@@ -915,8 +1043,12 @@ def _required(answer: Answer) -> list[str]:
 
 
 def _bound(required: Required, output: str) -> str:
-    """Return a requirement with its unit, and with the words of its output where it is another than the table's."""
-    words = "" if required.output == output or required.units == "h" else f"{lowered(required.words)} "
+    """Return a requirement with its unit, and with the words of its output where it is another than
+    the table's.
+    """
+    words = (
+        "" if required.output == output or required.units == "h" else f"{lowered(required.words)} "
+    )
     if math.isfinite(required.least) and math.isfinite(required.most):
         return f"{words}{grouped(required.least, 6)} to {_amount(required, required.most)}"
     if math.isfinite(required.most):
@@ -945,7 +1077,9 @@ def _reach(required: Sequence[Required]) -> str:
 
 
 def _wanted(required: Sequence[Required]) -> str:
-    """Return the verb of one candidate that meets a requirement: 'reaches 5,000 h'; '' without a requirement."""
+    """Return the verb of one candidate that meets a requirement: 'reaches 5,000 h'; '' without a
+    requirement.
+    """
     if not required:
         return ""
     if len(required) > 1:
@@ -970,7 +1104,9 @@ def _part(lost: Mapping[str, Any], what: str) -> str:
 
 
 def _short(text: Any) -> str:
-    """Return a text of the record if it is short, otherwise nothing: then it stands in the table alone."""
+    """Return a text of the record if it is short, otherwise nothing: then it stands in the table
+    alone.
+    """
     if not isinstance(text, str) or len(text.split()) > SHORT:
         return ""
     return text

@@ -1,4 +1,6 @@
-"""What the pages of this room share: templates, marked-up texts, pictures inside a page, and pages as files."""
+"""What the pages of this room share: templates, marked-up texts, pictures inside a page, and pages
+as files.
+"""
 
 from __future__ import annotations
 
@@ -23,7 +25,10 @@ from trackroller.study.store.put import put, put_text
 _KINDS = {".svg": "image/svg+xml", ".png": "image/png"}
 _BROWSERS = ("chromium", "chromium-browser", "google-chrome", "chrome", "msedge")
 _PATIENCE = 300  # seconds that printing may take
-_PRINT = "--headless --disable-gpu --no-first-run --disable-background-networking --no-pdf-header-footer".split()
+_PRINT = [
+    *("--headless", "--disable-gpu", "--no-first-run"),
+    *("--disable-background-networking", "--no-pdf-header-footer"),
+]
 _GREEK = {"alpha": "α", "mu": "μ", "nu": "ν", "sigma": "σ", "tau": "τ", "xi": "ξ"}
 
 
@@ -44,7 +49,9 @@ def render(template: str, content: dict[str, Any], **filters: Callable[..., Any]
 
 @functools.cache
 def _template(name: str, filters: tuple[tuple[str, Callable[..., Any]], ...]) -> jinja2.Template:
-    """Return a compiled template; compiling takes half of the time of a drawing, which the live page repeats."""
+    """Return a compiled template; compiling takes half of the time of a drawing, which the live
+    page repeats.
+    """
     environment = jinja2.Environment(
         loader=jinja2.PackageLoader("trackroller.report", "templates"),
         autoescape=True,
@@ -52,19 +59,26 @@ def _template(name: str, filters: tuple[tuple[str, Callable[..., Any]], ...]) ->
         lstrip_blocks=True,
         undefined=jinja2.StrictUndefined,
     )
-    environment.filters |= {"marked": lambda text: Markup(inline(str(text))), "symbols": symbols} | dict(filters)
+    environment.filters |= {
+        "marked": lambda text: Markup(inline(str(text))),
+        "symbols": symbols,
+    } | dict(filters)
     return environment.get_template(name)
 
 
 def inline(text: str) -> str:
-    """Return a text as HTML: `code` and *emphasis* are marked up, links keep only their words, all else is escaped."""
+    """Return a text as HTML: `code` and *emphasis* are marked up, links keep only their words, all
+    else is escaped.
+    """
     text = re.sub(r"\[([^\]]+)\]\([^)]+\)", r"\1", html.escape(text, quote=False))
     text = re.sub(r"`([^`]+)`", r"<code>\1</code>", text)
     return re.sub(r"\*([^*]+)\*", r"<em>\1</em>", text)
 
 
 def symbols(text: str) -> Markup:
-    """Return a text with Greek letters and subscripts where it holds symbols such as F_N, r_C,G or sigma_D."""
+    """Return a text with Greek letters and subscripts where it holds symbols such as F_N, r_C,G or
+    sigma_D.
+    """
     escaped = str(escape(text))
     for name, letter in _GREEK.items():
         escaped = re.sub(rf"\b{name}(?=\b|_)", letter, escaped)
@@ -74,11 +88,14 @@ def symbols(text: str) -> Markup:
 
 def data_uri(path: Path) -> str:
     """Return an SVG or PNG file as a data URI, which stands in a page in place of the file."""
-    return f"data:{_KINDS[path.suffix]};base64,{base64.b64encode(path.read_bytes()).decode('ascii')}"
+    return (
+        f"data:{_KINDS[path.suffix]};base64,{base64.b64encode(path.read_bytes()).decode('ascii')}"
+    )
 
 
 def check_page(path: Path) -> None:
-    """Refuse a page whose name ends neither in .html nor in .pdf, and a PDF without a browser that prints it.
+    """Refuse a page whose name ends neither in .html nor in .pdf, and a PDF without a browser that
+    prints it.
 
     Raises
     ------
@@ -88,14 +105,19 @@ def check_page(path: Path) -> None:
         If it is a PDF, and neither Chromium, Chrome nor Edge is installed.
     """
     if path.suffix.lower() not in (".html", ".htm", ".pdf"):
-        raise InputError("report", str(path), "a file whose name ends in .html or .pdf", "Change the name.")
+        raise InputError(
+            "report", str(path), "a file whose name ends in .html or .pdf", "Change the name."
+        )
     if path.suffix.lower() == ".pdf" and _browser() is None:
         remedy = "Install one of them, or write a page: give a name that ends in .html."
-        raise WorkError(f"{path}: Chromium, Chrome or Edge prints a PDF, and none of them was found. {remedy}")
+        raise WorkError(
+            f"{path}: Chromium, Chrome or Edge prints a PDF, and none of them was found. {remedy}"
+        )
 
 
 def write_page(path: Path, text: str) -> Path:
-    """Write a page as HTML, or print it as PDF if the name of the file ends in .pdf, and return its path.
+    """Write a page as HTML, or print it as PDF if the name of the file ends in .pdf, and return its
+    path.
 
     Raises
     ------
@@ -114,13 +136,23 @@ def _browser() -> str | None:
 
 def _print(text: str, path: Path) -> None:
     """Print a page by a headless browser with a profile of its own."""
-    with tempfile.TemporaryDirectory(prefix="trackroller-print-", ignore_cleanup_errors=True) as place:
+    with tempfile.TemporaryDirectory(
+        prefix="trackroller-print-", ignore_cleanup_errors=True
+    ) as place:
         page, made = Path(place, "page.html"), Path(place, "page.pdf")
         page.write_text(text, encoding="utf-8")
-        alone = ["--no-sandbox"] if getattr(os, "geteuid", lambda: 1)() == 0 else []  # root has no sandbox
+        # root has no sandbox
+        alone = ["--no-sandbox"] if getattr(os, "geteuid", lambda: 1)() == 0 else []
         own = [f"--user-data-dir={place}/profile", f"--print-to-pdf={made}", page.as_uri()]
         try:
-            subprocess.run([str(_browser()), *_PRINT, *alone, *own], capture_output=True, timeout=_PATIENCE, check=True)
+            subprocess.run(
+                [str(_browser()), *_PRINT, *alone, *own],
+                capture_output=True,
+                timeout=_PATIENCE,
+                check=True,
+            )
             shutil.copyfile(made, path)
         except (subprocess.SubprocessError, OSError) as exc:
-            raise WorkError(f"{_browser()} does not print the page: {exc}. Give a name that ends in .html.") from exc
+            raise WorkError(
+                f"{_browser()} does not print the page: {exc}. Give a name that ends in .html."
+            ) from exc

@@ -1,4 +1,6 @@
-"""Numbers, shares, intervals, units, names and levels as an engineer writes them: the only formatting module."""
+"""Numbers, shares, intervals, units, names and levels as an engineer writes them: the only
+formatting module.
+"""
 
 from __future__ import annotations
 
@@ -29,7 +31,16 @@ UNITS |= {
 }
 UNITS |= {"mm3/(N m)": "mm³/(N m)", "degC": "°C", "mm2": "mm²", "W/(m2 K)": "W/(m² K)"}
 UNITS |= {"mm-1": "1/mm", "mm3 N-1": "mm³/N", "mm3/N": "mm³/N"}
-SMALL_NUMBERS = {2: "two", 3: "three", 4: "four", 5: "five", 6: "six", 7: "seven", 8: "eight", 9: "nine"}
+SMALL_NUMBERS = {
+    2: "two",
+    3: "three",
+    4: "four",
+    5: "five",
+    6: "six",
+    7: "seven",
+    8: "eight",
+    9: "nine",
+}
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 BEYOND = "beyond the S-N data"
@@ -38,7 +49,8 @@ LEAST_YEARS = 1.0  # of a life that is said in years
 MOST_YEARS = 1000
 LEAST_CHANCE = 1e-4  # a probability nearer to 0 or 1 is written as a bound
 GUIDE_UNKNOWN = (
-    "the roller stands for the pair, because the guide's hours are unknown: give `guide_overrollings_per_hour`"
+    "the roller stands for the pair, because the guide's hours are unknown: give "
+    "`guide_overrollings_per_hour`"
 )
 
 
@@ -95,7 +107,9 @@ _duty: ContextVar[Mapping[str, float] | None] = ContextVar("duty", default=None)
 
 @contextmanager
 def on_duty(duty: Mapping[str, float] | None) -> Iterator[None]:
-    """Write lives in hours with their years on a duty, see `trackroller.roller.duty`, while this context lasts."""
+    """Write lives in hours with their years on a duty, see `trackroller.roller.duty`, while this
+    context lasts.
+    """
     token = _duty.set(duty)
     try:
         yield
@@ -104,7 +118,9 @@ def on_duty(duty: Mapping[str, float] | None) -> Iterator[None]:
 
 
 def lives_in_years(function: Callable[..., Any]) -> Callable[..., Any]:
-    """Let a function of `Results` or of the result of one case write lives with their years, if a duty is known."""
+    """Let a function of `Results` or of the result of one case write lives with their years, if a
+    duty is known.
+    """
 
     @functools.wraps(function)
     def on_its_duty(result: Any, *args: Any, **settings: Any) -> Any:
@@ -115,9 +131,11 @@ def lives_in_years(function: Callable[..., Any]) -> Callable[..., Any]:
 
 
 def hour_unit(hours: float) -> str:
-    """Return the unit behind a life: 'h', or with its years if the duty of the roller is known: 'h (4.2 years)'.
+    """Return the unit behind a life: 'h', or with its years if the duty of the roller is known: 'h
+    (4.2 years)'.
 
-    A life below a year is said in hours alone, and more than 1,000 years are no number that a person says.
+    A life below a year is said in hours alone, and more than 1,000 years are no number that a
+    person says.
     """
     duty = _duty.get()
     if not duty or not math.isfinite(hours):
@@ -131,7 +149,8 @@ def hour_unit(hours: float) -> str:
 
 
 def year_text(lasts: float) -> str:
-    """Write years as a person says them: two figures, from one year on; a shorter life is said in hours alone.
+    """Write years as a person says them: two figures, from one year on; a shorter life is said in
+    hours alone.
 
     Examples
     --------
@@ -154,29 +173,39 @@ def life_unit(unit: str, value: float) -> str:
 
 
 def lasting(value: float, unit: str = "", beyond: bool = False) -> str:
-    """Write a life, with the remark that it lies beyond the S-N data; an unlimited life is no number of hours."""
+    """Write a life, with the remark that it lies beyond the S-N data; an unlimited life is no
+    number of hours.
+    """
     if value == math.inf:
         return f"{NO_FAILURE} ({BEYOND})"
     return f"{rounded(value)} {life_unit(unit, value)}".strip() + (f" ({BEYOND})" if beyond else "")
 
 
 def between(low: float, high: float, beyond: bool = False) -> str:
-    """Write a life in hours that is known within a range: '26 to 860 h'; one number where the ends round alike."""
+    """Write a life in hours that is known within a range: '26 to 860 h'; one number where the ends
+    round alike.
+    """
     if rounded(low) == rounded(high) or math.isinf(low):
         return lasting(low, "h", beyond)
     if math.isinf(high):
         return f"{lasting(low, 'h')} or more ({BEYOND})"
-    return f"{rounded(low)} to {rounded(high)} {range_unit(low, high)}" + (f" ({BEYOND})" if beyond else "")
+    return f"{rounded(low)} to {rounded(high)} {range_unit(low, high)}" + (
+        f" ({BEYOND})" if beyond else ""
+    )
 
 
 def years_of(low: float, high: float | None = None) -> str:
-    """Return a life in hours, or a range of lives, in years: '4.2 years'; '' without a duty or below a year."""
+    """Return a life in hours, or a range of lives, in years: '4.2 years'; '' without a duty or
+    below a year.
+    """
     unit = hour_unit(low) if high is None or high == low else range_unit(low, high)
     return unit.removeprefix("h").strip(" ()")
 
 
 def range_unit(low: float, high: float) -> str:
-    """Return the unit behind a range of lives: 'h', or with its years where an end lasts at least one."""
+    """Return the unit behind a range of lives: 'h', or with its years where an end lasts at least
+    one.
+    """
     duty = _duty.get()
     if not duty or not (math.isfinite(low) and math.isfinite(high)):
         return "h"
@@ -189,7 +218,9 @@ def range_unit(low: float, high: float) -> str:
 
 
 class Life(float):
-    """A life for a table: a number that is written with the remark that it lies beyond the S-N data."""
+    """A life for a table: a number that is written with the remark that it lies beyond the S-N
+    data.
+    """
 
     beyond: bool
 
@@ -250,13 +281,16 @@ def plus_minus(value: float, low: float, high: float) -> str:
     return f"{value:.{digits}f} ± {half:.{digits}f}".replace("-", "−")
 
 
-LOPSIDED = 0.3  # share of the half of an interval that its shorter side must have to be written as ±
+# share of the half of an interval that its shorter side must have to be written as ±
+LOPSIDED = 0.3
 
 
 def percent(value: float, low: float = math.nan, high: float = math.nan) -> str:
-    """Write a share of variance or a probability as '61 ± 3 %', or '61 %' without an interval; never below 0.
+    """Write a share of variance or a probability as '61 ± 3 %', or '61 %' without an interval;
+    never below 0.
 
-    An interval that reaches much farther on one side is written with its ends: '100 % (98.2 to 100 %)'.
+    An interval that reaches much farther on one side is written with its ends: '100 % (98.2 to 100
+    %)'.
     """
     if math.isinf(value):
         return "unlimited"
@@ -264,7 +298,11 @@ def percent(value: float, low: float = math.nan, high: float = math.nan) -> str:
     if math.isfinite(half):
         if 100 * min(value - low, high - value) < LOPSIDED * half:
             return f"{percent(value)} ({percent(low).removesuffix(' %')} to {percent(high)})"
-        return f"{exact:.0f} ± {max(1.0, half):.0f} %" if half >= 0.5 or exact >= 1 else f"{exact:.1f} ± {half:.1f} %"
+        return (
+            f"{exact:.0f} ± {max(1.0, half):.0f} %"
+            if half >= 0.5 or exact >= 1
+            else f"{exact:.1f} ± {half:.1f} %"
+        )
     return (
         f"{exact:.0f} %"
         if exact == 0 or 1 <= exact <= 99 or exact > 100
@@ -275,13 +313,17 @@ def percent(value: float, low: float = math.nan, high: float = math.nan) -> str:
 
 
 def percent_up(error: float) -> str:
-    """Write an error in percent with two figures, rounded up, so that no error is larger: '1.5 %' for 0.01482."""
+    """Write an error in percent with two figures, rounded up, so that no error is larger: '1.5 %'
+    for 0.01482.
+    """
     step = 10.0 ** (math.floor(math.log10(100 * error)) - 1) if error > 0 else 1.0
     return f"{rounded(math.ceil(100 * error / step - 1e-9) * step, 2)} %"
 
 
 def times(ratio: float) -> str:
-    """Write a ratio, or the inverse of one below 1, as '26-fold'; below 10 in three figures: '2.64-fold'."""
+    """Write a ratio, or the inverse of one below 1, as '26-fold'; below 10 in three figures:
+    '2.64-fold'.
+    """
     ratio = max(ratio, 1 / ratio)
     return f"{rounded(ratio, 3 if ratio < 10 else 2)}-fold"
 
@@ -321,7 +363,9 @@ def year_words() -> str:
 
 
 def head_unit(units: str) -> str:
-    """Return the unit at the head of a column or axis; behind hours the hours of a year, if the duty is known."""
+    """Return the unit at the head of a column or axis; behind hours the hours of a year, if the
+    duty is known.
+    """
     duty = _duty.get() if units == "h" else None
     return f"h; {rounded(1 / years(1.0, duty))} h = 1 year" if duty else unit_text(units)
 
@@ -355,7 +399,9 @@ def long_name(name: str) -> str:
 
 
 def symbol(text: str) -> str:
-    """Write a symbol such as r_C,TR for a figure, with its index below the line; an empty text for none."""
+    """Write a symbol such as r_C,TR for a figure, with its index below the line; an empty text for
+    none.
+    """
     if not text:
         return ""
     letter, _, index = text.partition("_")
@@ -368,20 +414,28 @@ def factor_label(name: str) -> str:
     parameter = parameter_of(name)
     if parameter is None:
         return capital(plain(name))
-    return with_unit(f"{capital(long_name(name))} {symbol(parameter.symbol)}".rstrip(), parameter.unit)
+    return with_unit(
+        f"{capital(long_name(name))} {symbol(parameter.symbol)}".rstrip(), parameter.unit
+    )
 
 
 def level_text(name: str, value: Any, unit: bool = True, words: bool = True) -> str:
-    """Write a level of a factor: 'straight' for an infinite curve, 'driven −30 N' for a motor force.
+    """Write a level of a factor: 'straight' for an infinite curve, 'driven −30 N' for a motor
+    force.
 
-    Without `words`, as for the ends of a range, a number with its unit; without `unit` the number alone.
+    Without `words`, as for the ends of a range, a number with its unit; without `unit` the number
+    alone.
     """
     if isinstance(value, str):
         return short(name, value) if name in MAPPING_FIELDS else _pair(value)
     value = float(value)
     words = words and unit
     if name == "motor_force" and words:
-        return "free rolling" if value == 0 else f"{'driven' if value < 0 else 'braked'} {number(value)} N"
+        return (
+            "free rolling"
+            if value == 0
+            else f"{'driven' if value < 0 else 'braked'} {number(value)} N"
+        )
     if name == "guide_curve_radius" and words:
         if math.isinf(value):
             return "straight"
@@ -396,27 +450,41 @@ def setting(name: str, value: Any) -> str:
     """Write a factor and its level, as 'friction coefficient 0.3' or 'driven −30 N'."""
     text = level_text(name, value)
     spoken = name in NAMED and not (name == "guide_curve_radius" and text == "straight")
-    return text if spoken else "straight track" if name == "guide_curve_radius" else f"{long_name(name)} {text}"
+    return (
+        text
+        if spoken
+        else "straight track"
+        if name == "guide_curve_radius"
+        else f"{long_name(name)} {text}"
+    )
 
 
 def _pair(label: str) -> str:
     parts = label.split(" / ")
-    return f"{parts[0]} on itself" if len(parts) == 2 and parts[0] == parts[1] else " on ".join(parts)
+    return (
+        f"{parts[0]} on itself" if len(parts) == 2 and parts[0] == parts[1] else " on ".join(parts)
+    )
 
 
 def _bounded(part: int, whole: int) -> str:
     """Write a probability as a share; nearer to 0 or 1 than `LEAST_CHANCE`, as a bound."""
     if 0 < whole - part < LEAST_CHANCE * whole:
         return f"over {100 * (1 - LEAST_CHANCE):g} %"
-    return f"below {100 * LEAST_CHANCE:g} %" if 0 < part < LEAST_CHANCE * whole else share(part, whole)
+    return (
+        f"below {100 * LEAST_CHANCE:g} %" if 0 < part < LEAST_CHANCE * whole else share(part, whole)
+    )
 
 
 def chance(value: float, low: float = math.nan, high: float = math.nan, words: str = "") -> str:
-    """Write a probability: '97 %' or '97 % (95 % to 98 %)', with more figures near 0 (never) and 100 % (always)."""
+    """Write a probability: '97 %' or '97 % (95 % to 98 %)', with more figures near 0 (never) and
+    100 % (always).
+    """
     whole = 10**9
     if math.isnan(value):
         return "–"
-    text, *ends = (_bounded(round(v * whole), whole) for v in (value, low, high) if math.isfinite(v))
+    text, *ends = (
+        _bounded(round(v * whole), whole) for v in (value, low, high) if math.isfinite(v)
+    )
     return f"{text} ({words}{' to '.join(ends)})" if ends else text
 
 
@@ -425,13 +493,15 @@ MOST_FIGURES = 6  # that tell a number from the one beside it
 
 
 def carried(value: float, error: float = math.nan, beside: Sequence[float] = ()) -> str:
-    """Write a result with the figures that its error carries: three, or two from an error of 10 % on.
+    """Write a result with the figures that its error carries: three, or two from an error of 10 %
+    on.
 
     Parameters
     ----------
     value : any float
     error : its told relative error [1]; NaN if none is told
-    beside : numbers that it is compared with; more figures are written where it would read like one of them
+    beside : numbers that it is compared with; more figures are written where it would read like one
+        of them
 
     Examples
     --------
@@ -439,14 +509,17 @@ def carried(value: float, error: float = math.nan, beside: Sequence[float] = ())
     ('210,000', '212,000', '419.96')
     """
     figures = 2 if error >= COARSE else 3
-    others = [grouped(other, MOST_FIGURES) for other in beside if math.isfinite(other) and other != value]
+    others = [
+        grouped(other, MOST_FIGURES) for other in beside if math.isfinite(other) and other != value
+    ]
     while figures < MOST_FIGURES and grouped(value, figures) in others:
         figures += 1
     return grouped(value, figures)
 
 
 def grouped(value: float, figures: int = 0) -> str:
-    """Write a number as `number` does, but thousands with a comma from 1,000 on, as those beside it in a column.
+    """Write a number as `number` does, but thousands with a comma from 1,000 on, as those beside it
+    in a column.
 
     Examples
     --------
@@ -460,7 +533,9 @@ def grouped(value: float, figures: int = 0) -> str:
     return text
 
 
-def carried_range(low: float, high: float, error: float = math.nan, beside: Sequence[float] = ()) -> str:
+def carried_range(
+    low: float, high: float, error: float = math.nan, beside: Sequence[float] = ()
+) -> str:
     """Write a range as `carried` does; one number where both ends read alike."""
     ends = (carried(low, error, beside), carried(high, error, beside))
     return " to ".join(dict.fromkeys(ends))

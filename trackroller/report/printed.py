@@ -1,4 +1,6 @@
-"""A record on a terminal: the answer to a study, or the record of a roller, a spectrum or a carriage."""
+"""A record on a terminal: the answer to a study, or the record of a roller, a spectrum or a
+carriage.
+"""
 
 from __future__ import annotations
 
@@ -14,7 +16,8 @@ from trackroller.results.answer import Answer, Part
 def print_answer(answer: Answer) -> None:
     """Print the headline of an answer, its table, what all its rows share, and its warnings.
 
-    Columns that are equal in all rows stand once below the table; of a long table the first rows are printed.
+    Columns that are equal in all rows stand once below the table; of a long table the first rows
+    are printed.
     """
     with on_duty(answer.facts.get("duty")):
         print_text(headline_of(answer).text)

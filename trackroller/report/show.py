@@ -62,7 +62,9 @@ def results_of(result: Any, name: str) -> Results:
 
 
 def write_report(results: Results, path: Path | str) -> Path:
-    """Write the report of a study as HTML, or as PDF by the name of the file, and return its path."""
+    """Write the report of a study as HTML, or as PDF by the name of the file, and return its
+    path.
+    """
     return write_page(Path(path), report_text(results))
 
 
@@ -91,7 +93,8 @@ def explore(results: Results | xr.Dataset, path: Path | str | None = None) -> Pa
     >>> import trackroller as tr
     >>> case = {"friction_coefficient": 0.2, "contact_angle": 45}
     >>> study = {"name": "shown", "base": case, "factors": {"axial_force": {"values": [0, 20]}}}
-    >>> results = tr.run(study | {"contact_model": "sliding", "accuracy": "preview"}, progress=False)
+    >>> study |= {"contact_model": "sliding", "accuracy": "preview"}
+    >>> results = tr.run(study, progress=False)
     >>> tr.explore(results, "explorer.html").name
     'explorer.html'
     """
@@ -124,7 +127,8 @@ def workbook(results: Results | xr.Dataset, path: Path | str) -> Path:
     Examples
     --------
     >>> import trackroller as tr
-    >>> study = {"name": "listed", "factors": {"axial_force": {"values": [0, 20]}}, "contact_model": "sliding"}
+    >>> factors = {"axial_force": {"values": [0, 20]}}
+    >>> study = {"name": "listed", "factors": factors, "contact_model": "sliding"}
     >>> tr.workbook(tr.run(study, progress=False), "cases.csv").name
     'cases.csv'
     """
@@ -132,5 +136,7 @@ def workbook(results: Results | xr.Dataset, path: Path | str) -> Path:
 
 
 def view(results: Results) -> NotebookView:
-    """Return the answer to a study with the table of its designs, as a notebook shows it; the explorer stays away."""
+    """Return the answer to a study with the table of its designs, as a notebook shows it; the
+    explorer stays away.
+    """
     return NotebookView(page_text(shown_answer(results), proof_of(results), None))

@@ -17,7 +17,9 @@ WIDE = 10_000  # letters of a line in a file or a pipe, which no window limits
 
 
 def room() -> int:
-    """Return the letters of a line: COLUMNS, else those of the terminal; a file or a pipe has no limit."""
+    """Return the letters of a line: COLUMNS, else those of the terminal; a file or a pipe has no
+    limit.
+    """
     asked = os.environ.get("COLUMNS", "").lstrip("0")
     # not `Console.is_terminal`: that is true for a file, too, where FORCE_COLOR asks for colours
     return Console().width if asked.isdigit() or sys.stdout.isatty() else WIDE
@@ -30,9 +32,11 @@ def print_table(
     title: str | None = None,
     names: int = 1,
 ) -> None:
-    """Print a table that cuts no cell: cells are broken between words, and a table that is too wide is parted.
+    """Print a table that cuts no cell: cells are broken between words, and a table that is too wide
+    is parted.
 
-    Each part of a table repeats its first columns, which name the rows, where the line has room for them.
+    Each part of a table repeats its first columns, which name the rows, where the line has room for
+    them.
 
     Parameters
     ----------
@@ -48,7 +52,9 @@ def print_table(
     repeated = [0] if wide else list(range(names))
     parts = [list(repeated)]
     for i in range(len(repeated), len(heads)):
-        if sum(least[j] + FRAME for j in (*parts[-1], i)) + 1 > width and len(parts[-1]) > len(repeated):
+        if sum(least[j] + FRAME for j in (*parts[-1], i)) + 1 > width and len(parts[-1]) > len(
+            repeated
+        ):
             parts.append(list(repeated))
         parts[-1].append(i)
     console = Console(width=width, highlight=False, markup=False)
@@ -66,7 +72,9 @@ def print_table(
 
 
 def _least(cells: Sequence[str]) -> int:
-    """Return the letters that a column needs so that only long cells are broken, and only between words."""
+    """Return the letters that a column needs so that only long cells are broken, and only between
+    words.
+    """
     longest = max(map(len, cells))
     word = max((len(word) for cell in cells for word in cell.split()), default=0)
     return longest if longest <= NARROW else max(word, NARROW)

@@ -1,4 +1,6 @@
-"""Export of the report's tables, of the cases of a study and of one roller, as CSV files and XLSX workbooks."""
+"""Export of the report's tables, of the cases of a study and of one roller, as CSV files and XLSX
+workbooks.
+"""
 
 from __future__ import annotations
 
@@ -53,7 +55,9 @@ def export(tables: Sequence[Table], folder: Path) -> list[Path]:
     for table in tables:
         path = folder / f"{table.name}.csv"
         with path.open("w", newline="", encoding="utf-8") as file:
-            csv.writer(file).writerows([inert_cell(value) for value in row] for row in [table.heads, *table.rows])
+            csv.writer(file).writerows(
+                [inert_cell(value) for value in row] for row in [table.heads, *table.rows]
+            )
         paths.append(path)
     book = folder / "tables.xlsx"
     put(book, lambda beside: _save(beside, tables))
@@ -63,8 +67,8 @@ def export(tables: Sequence[Table], folder: Path) -> list[Path]:
 def write_answer(answer: Answer, folder: Path) -> list[Path]:
     """Write the record of an answer as a workbook, its rows as CSV, and all of it as JSON.
 
-    The workbook has the sheets `headline`, `rows` (numbers with all digits, texts as texts), `columns` with their
-    definitions, `effects`, `ends` and `warnings`.
+    The workbook has the sheets `headline`, `rows` (numbers with all digits, texts as texts),
+    `columns` with their definitions, `effects`, `ends` and `warnings`.
 
     Parameters
     ----------
@@ -78,17 +82,34 @@ def write_answer(answer: Answer, folder: Path) -> list[Path]:
     folder.mkdir(parents=True, exist_ok=True)
     rows = _rows_sheet(answer)
     book, table, record_file = (folder / f"answer.{ending}" for ending in ("xlsx", "csv", "json"))
-    put(book, lambda beside: _save(beside, [_headline_sheet(answer), rows, *_further_sheets(answer)]))
+    put(
+        book,
+        lambda beside: _save(beside, [_headline_sheet(answer), rows, *_further_sheets(answer)]),
+    )
     with table.open("w", newline="", encoding="utf-8") as file:
-        csv.writer(file).writerows([inert_cell(value) for value in row] for row in [rows.heads, *rows.rows])
-    put_text(record_file, json.dumps(answer.to_dict(), ensure_ascii=False, allow_nan=False, indent=1) + "\n")
+        csv.writer(file).writerows(
+            [inert_cell(value) for value in row] for row in [rows.heads, *rows.rows]
+        )
+    put_text(
+        record_file,
+        json.dumps(answer.to_dict(), ensure_ascii=False, allow_nan=False, indent=1) + "\n",
+    )
     return [book, table, record_file]
 
 
 def _headline_sheet(answer: Answer) -> Table:
-    """Return the headline and its fields, one field a row; a field of a field has its name behind a dot."""
-    fields = [("headline", headline_of(answer).text), ("question", answer.question), ("kind", answer.kind)]
-    fields += [(f"output.{name}", text) for name, text in zip(("name", "words", "units"), answer.output, strict=True)]
+    """Return the headline and its fields, one field a row; a field of a field has its name behind a
+    dot.
+    """
+    fields = [
+        ("headline", headline_of(answer).text),
+        ("question", answer.question),
+        ("kind", answer.kind),
+    ]
+    fields += [
+        (f"output.{name}", text)
+        for name, text in zip(("name", "words", "units"), answer.output, strict=True)
+    ]
     fields += list(_fields("", answer.headline))
     for place, one in enumerate(answer.required, 1):
         fields += list(_fields(f"required.{place}", vars(one)))
@@ -109,7 +130,9 @@ def _fields(name: str, value: Any) -> Iterator[tuple[str, Any]]:
 
 
 def _rows_sheet(answer: Answer) -> Table:
-    """Return the rows of an answer: every column that a reader is shown, and both ends of a range."""
+    """Return the rows of an answer: every column that a reader is shown, and both ends of a
+    range.
+    """
     return _sheet_of("rows", "Rows", answer.table, answer.columns)
 
 
@@ -129,7 +152,12 @@ def _further_sheets(answer: Answer) -> list[Table]:
     sheets = [Table("columns", "Columns", heads, told)]
     sheets += [_sheet_of(part.name, part.title, part.table, part.columns) for part in answer.parts]
     effects = [
-        [curve.factor, level, *(float(end[place]) for end in (curve.middle, curve.low, curve.high)), curve.units]
+        [
+            curve.factor,
+            level,
+            *(float(end[place]) for end in (curve.middle, curve.low, curve.high)),
+            curve.units,
+        ]
         for curve in answer.curves
         for place, level in enumerate(curve.levels)
     ]
@@ -140,8 +168,19 @@ def _further_sheets(answer: Answer) -> list[Table]:
         ends = [list(row) for row in answer.ends.itertuples(index=False)]
         sheets.append(Table("ends", "Ends", list(map(str, answer.ends.columns)), ends))
     warnings = [[one.code, one.count, one.of, one.what, one.where] for one in answer.warnings]
-    unchecked = [["not_checked", "", "", body, limit] for body, of in answer.not_checked.items() for limit in of]
-    sheets.append(Table("warnings", "Warnings", ["code", "count", "of", "what", "where"], [*warnings, *unchecked]))
+    unchecked = [
+        ["not_checked", "", "", body, limit]
+        for body, of in answer.not_checked.items()
+        for limit in of
+    ]
+    sheets.append(
+        Table(
+            "warnings",
+            "Warnings",
+            ["code", "count", "of", "what", "where"],
+            [*warnings, *unchecked],
+        )
+    )
     return sheets
 
 
@@ -151,8 +190,8 @@ MOST_ROWS = 1_048_575  # of a sheet below its head, by the format XLSX
 def write_cases(table: pd.DataFrame, path: Path) -> Path:
     """Write the cases of a study as a workbook with one sheet, or as CSV, by the name of the file.
 
-    The workbook has a line of units below the names, and words in place of the numbers of flags; a CSV file has the
-    numbers.
+    The workbook has a line of units below the names, and words in place of the numbers of flags; a
+    CSV file has the numbers.
 
     Parameters
     ----------
@@ -165,16 +204,22 @@ def write_cases(table: pd.DataFrame, path: Path) -> Path:
     """
     if path.suffix.lower() == ".csv":
         texts = table.select_dtypes(exclude="number")
-        inert = table.assign(**{str(name): texts[name].map(inert_cell) for name in texts}).rename(columns=inert_cell)
+        inert = table.assign(**{str(name): texts[name].map(inert_cell) for name in texts}).rename(
+            columns=inert_cell
+        )
         return put(path, lambda beside: inert.to_csv(beside, index=False))
     if path.suffix.lower() != ".xlsx":
-        raise InputError("cases", str(path), "a file whose name ends in .xlsx or .csv", "Change the name.")
+        raise InputError(
+            "cases", str(path), "a file whose name ends in .xlsx or .csv", "Change the name."
+        )
     if len(table) > MOST_ROWS:
         remedy = "Write them as .csv."
         raise InputError("cases", len(table), f"at most {MOST_ROWS:,} cases in a workbook", remedy)
     names = list(map(str, table.columns))
     columns = [in_words(str(name), table[name].astype(object).tolist()) for name in table]
-    sheet = Table("cases", "Cases", names, [list(map(unit_of, names)), *map(list, zip(*columns, strict=True))])
+    sheet = Table(
+        "cases", "Cases", names, [list(map(unit_of, names)), *map(list, zip(*columns, strict=True))]
+    )
     return put(path, lambda beside: _save(beside, [sheet], heads=2))
 
 
@@ -195,7 +240,8 @@ def write_results(results: Results, path: Path) -> Path:
 def write_roller(ds: xr.Dataset, path: Path) -> Path:
     """Write the result of one case as a workbook with the sheets `inputs`, `results` and `limits`.
 
-    Further sheets hold the rest of its record: `headline`, `columns`, `warnings`, and one for each further table.
+    Further sheets hold the rest of its record: `headline`, `columns`, `warnings`, and one for each
+    further table.
     """
     inputs, example = record.inputs_of(ds), record.names_not_given(ds.attrs)
     own = record.radii_of(ds) | {name: value for name, value in inputs.items() if value is not None}
@@ -207,16 +253,29 @@ def write_roller(ds: xr.Dataset, path: Path) -> Path:
     strokes = strokes_of(ds) or {}
     if strokes:
         sources[OVERROLLINGS] = "strokes"
-    rows = [[name, _plain(value), units.get(name, unit_of(name)), sources[name]] for name, value in own.items()]
+    rows = [
+        [name, _plain(value), units.get(name, unit_of(name)), sources[name]]
+        for name, value in own.items()
+    ]
     by_strokes = {"hours_per_day": "strokes"} if strokes else {}
     units_of_strokes = {"stroke": "m"}
     for name, value in (duty | strokes).items():
         rows.append([name, value, units_of_strokes.get(name, "-"), by_strokes.get(name, "given")])
     rows = [[name, long_name(name), *others] for name, *others in rows]
     sheets = [Table("inputs", "Inputs", ["input", "meaning", "value", "unit", "from"], rows)]
-    known = parts_in(ds, (str(name) for name, v in ds.data_vars.items() if v.dtype.kind in "fiu"), ())
-    found = [(name, part.words, part.values(ds).item()) for name, part in known.items() if "limit" not in part.at]
-    told = [[name, words, in_words(name, [value])[0], unit_of(name)] for name, words, value in found if value == value]
+    known = parts_in(
+        ds, (str(name) for name, v in ds.data_vars.items() if v.dtype.kind in "fiu"), ()
+    )
+    found = [
+        (name, part.words, part.values(ds).item())
+        for name, part in known.items()
+        if "limit" not in part.at
+    ]
+    told = [
+        [name, words, in_words(name, [value])[0], unit_of(name)]
+        for name, words, value in found
+        if value == value
+    ]
     sheets.append(Table("results", "Results", ["result", "meaning", "value", "unit"], told))
     answer = answer_of_roller(ds)
     limits = _rows_sheet(answer)
@@ -231,7 +290,8 @@ def _plain(value: Any) -> Any:
 
 
 def unit_of(name: str) -> str:
-    """Return the unit of an input or a result as `--set` and tables of cases take it, "-" for a pure number.
+    """Return the unit of an input or a result as `--set` and tables of cases take it, "-" for a
+    pure number.
 
     Examples
     --------
@@ -253,9 +313,17 @@ def in_words(name: str, values: Sequence[Any]) -> list[Any]:
     >>> in_words("regime", [0.0, 2.0]), in_words("validity_roller", [0, 3]), in_words("slip", [0.1])
     (['rolling', 'lift-off'], ['', 'half space, yield'], [0.1])
     """
-    variable = max((flag for flag in _WORDS if name == flag or name.startswith(f"{flag}_")), key=len, default="")
-    told: Callable[[Any], Any] = (lambda value: _WORDS[variable](int(value))) if variable else (lambda value: value)
-    return [value if isinstance(value, float) and math.isnan(value) else told(value) for value in values]
+    variable = max(
+        (flag for flag in _WORDS if name == flag or name.startswith(f"{flag}_")),
+        key=len,
+        default="",
+    )
+    told: Callable[[Any], Any] = (
+        (lambda value: _WORDS[variable](int(value))) if variable else (lambda value: value)
+    )
+    return [
+        value if isinstance(value, float) and math.isnan(value) else told(value) for value in values
+    ]
 
 
 def _flags_set(bits: int) -> str:
@@ -267,7 +335,9 @@ def _word(words: Sequence[str]) -> Callable[[int], str]:
     return lambda code: plain(words[code]) if 0 <= code < len(words) else str(code)
 
 
-_WORDS: dict[str, Callable[[int], str]] = {name: _word(words) for name, (_, words) in FLAGS.items()} | {
+_WORDS: dict[str, Callable[[int], str]] = {
+    name: _word(words) for name, (_, words) in FLAGS.items()
+} | {
     "regime": _word(REGIME_LABELS),
     "validity": _flags_set,
     "at_surface": _word(("no", "yes")),
@@ -275,7 +345,9 @@ _WORDS: dict[str, Callable[[int], str]] = {name: _word(words) for name, (_, word
 
 
 def _save(path: Path, tables: Sequence[Table], heads: int = 1) -> None:
-    """Write a workbook with one sheet a table, whose first lines stay in sight and whose last head filters."""
+    """Write a workbook with one sheet a table, whose first lines stay in sight and whose last head
+    filters.
+    """
     names = [re.sub(r"[\[\]:*?/\\]", " ", table.name)[:31] for table in tables]
     parts: dict[str, tuple[str, list[Any]]] = {
         "[Content_Types].xml": ("types", []),
@@ -290,7 +362,14 @@ def _save(path: Path, tables: Sequence[Table], heads: int = 1) -> None:
         for name, (part, rows) in parts.items():
             widths = [min(max(len(str(value)) + 3, 9), 40) for value in rows[0]] if rows else []
             span = f"A{heads}:{_letters(len(widths))}{max(len(rows), heads)}"
-            content = {"part": part, "names": names, "rows": rows, "heads": heads, "widths": widths, "span": span}
+            content = {
+                "part": part,
+                "names": names,
+                "rows": rows,
+                "heads": heads,
+                "widths": widths,
+                "span": span,
+            }
             text = html.render("workbook.xml.j2", content, figure=_figure, printable=_printable)
             file.writestr(zipfile.ZipInfo(name, (1980, 1, 1, 0, 0, 0)), text)
 
@@ -303,9 +382,15 @@ def _letters(column: int) -> str:
 
 def _figure(value: Any) -> str | None:
     """Return a finite number with all its figures, None for anything else."""
-    return repr(float(value)) if isinstance(value, (int, float, np.number)) and np.isfinite(value) else None
+    return (
+        repr(float(value))
+        if isinstance(value, (int, float, np.number)) and np.isfinite(value)
+        else None
+    )
 
 
 def _printable(value: Any) -> str:
     """Return a text without the characters that XML forbids."""
-    return re.sub(r"[\x00-\x08\x0b\x0c\x0e-\x1f]", " ", value if isinstance(value, str) else cell(value))
+    return re.sub(
+        r"[\x00-\x08\x0b\x0c\x0e-\x1f]", " ", value if isinstance(value, str) else cell(value)
+    )

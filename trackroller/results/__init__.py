@@ -1,6 +1,9 @@
-"""The results of a study, and what follows from them: candidates, sensitivity indices, robustness, Pareto sets."""
+"""The results of a study, and what follows from them: candidates, sensitivity indices, robustness,
+Pareto sets.
+"""
 
 from collections.abc import Callable
 from typing import Any
 
-SHOWN: dict[str, Callable[..., Any]] = {}  # methods of `Results`; trackroller/__init__ adds what shows it
+# methods of `Results`; trackroller/__init__ adds what shows it
+SHOWN: dict[str, Callable[..., Any]] = {}

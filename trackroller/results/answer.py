@@ -1,6 +1,7 @@
 """The answer to a study: one flat record of numbers and names.
 
-The record holds numbers and names, no sentences. `Results.answer` returns it, and `to_dict` states its keys.
+The record holds numbers and names, no sentences. `Results.answer` returns it, and `to_dict` states
+its keys.
 """
 
 from __future__ import annotations
@@ -16,7 +17,8 @@ import pandas as pd
 
 from trackroller.study.file.questions import QUESTIONS as QUESTIONS
 
-VERSION = 1  # of the keys of `Answer.to_dict`; a key that is renamed or that changes its meaning raises it
+# of the keys of `Answer.to_dict`; a key that is renamed or that changes its meaning raises it
+VERSION = 1
 WARNINGS = {  # code -> what it means
     "not_held": "cases that skid, lift off, break, or exceed a limit",
     "not_judged": "cases that the model cannot judge",
@@ -30,7 +32,8 @@ WARNINGS = {  # code -> what it means
     "doubtful": "values that are unusual",
     "flagged": "an assumption of the model or an accuracy is not kept",
 }
-STATES = ("met", "open", "missed", "none")  # of a candidate; a limit has those of `trackroller.damage.verdict.STATES`
+# of a candidate; a limit has those of `trackroller.damage.verdict.STATES`
+STATES = ("met", "open", "missed", "none")
 
 
 @dataclass(frozen=True)
@@ -43,14 +46,14 @@ class Column:
     title : its head
     units : unit of its numbers; '' for texts and plain numbers
     meaning : its definition in one sentence
-    kind : `level` of a factor, `number`, `count`, `share` [1], `ratio`, `error` [1], `state`, `text`, `whole` for a
-        number that is said with four figures, `life` for hours of which a very long life is said as a bound,
-        `years`, or
-        `bounded` for a value of a permitted one, in the unit that the column `units` states
+    kind : `level` of a factor, `number`, `count`, `share` [1], `ratio`, `error` [1], `state`,
+        `text`, `whole` for a number that is said with four figures, `life` for hours of which a
+        very long life is said as a bound, `years`, or `bounded` for a value of a permitted one, in
+        the unit that the column `units` states
     until : column with the upper end of the same range, or with the permitted value; '' without one
-    role : `name` for the choices that name a row, `bar` for those that the picture of a decision draws (`low`, `median`
-        and `best`), `use` for the share of a limit that is used, `file` for one that stands in files alone; otherwise
-        an empty text
+    role : `name` for the choices that name a row, `bar` for those that the picture of a decision
+        draws (`low`, `median` and `best`), `use` for the share of a limit that is used, `file` for
+        one that stands in files alone; otherwise an empty text
     """
 
     name: str
@@ -71,7 +74,8 @@ class Caution:
     code : one of `WARNINGS`
     count, of : rows concerned, of all
     where : the levels that hold these rows, or the values concerned
-    what : what is counted: `cases`, `candidates`, `blocks`, `rollers`; '' for one roller, where nothing is counted
+    what : what is counted: `cases`, `candidates`, `blocks`, `rollers`; '' for one roller, where
+        nothing is counted
     """
 
     code: str
@@ -90,11 +94,12 @@ class Curve:
     factor, title, units : the factor with its words and unit
     role : `choice`, `condition` or ''
     levels : values of the factor, shape (k,)
-    middle, low, high : of the output at each level: the fit, or the median of like cases, and the tenth and the
-        ninetieth hundredth of the cases, shape (k,) each [unit of the output]
+    middle, low, high : of the output at each level: the fit, or the median of like cases, and the
+        tenth and the ninetieth hundredth of the cases, shape (k,) each [unit of the output]
     logarithmic : whether the levels stand on a logarithmic axis
     ordered : whether the levels have an order
-    height : largest over smallest middle [1]; of an output that changes its sign largest less smallest
+    height : largest over smallest middle [1]; of an output that changes its sign largest less
+        smallest
     shape : `rise`, `fall`, `hump`, `dip`, `cliff`, `groups` or `flat`
     rows : cases that it rests on
     left_out : valid cases that lack a partner at some level
@@ -124,7 +129,8 @@ class Required:
     ----------
     output : name of the output
     words, units : of the output
-    least, most : smallest and largest value that is enough [unit of the output]; infinite without one
+    least, most : smallest and largest value that is enough [unit of the output]; infinite without
+        one
     probability : share of the conditions that have to meet it [1]; NaN without one
     years : the same life in years, where the study file says so; NaN otherwise
     """
@@ -140,7 +146,8 @@ class Required:
 
 @dataclass(frozen=True, eq=False)
 class Part:
-    """A further table of an answer, such as the forces of both contacts or the blocks of a spectrum.
+    """A further table of an answer, such as the forces of both contacts or the blocks of a
+    spectrum.
 
     Attributes
     ----------
@@ -164,25 +171,28 @@ class Answer:
     Attributes
     ----------
     question : one of `QUESTIONS`, `roller` for one roller, `spectrum`, `carriage` or `wear`
-    kind : the answer in one word. Of a decision: `build`, `a_or_b`, `none`, `measure`, `give`, `solve_finer` or
-        `cannot_tell`. Every module of a question states its own
+    kind : the answer in one word. Of a decision: `build`, `a_or_b`, `none`, `measure`, `give`,
+        `solve_finer` or `cannot_tell`. Every module of a question states its own
     headline : the numbers and names of the headline
     output : name, words and unit of what the table compares
-    table : one row a candidate, factor, model or output; the first row is the one that the headline names
+    table : one row a candidate, factor, model or output; the first row is the one that the headline
+        names
     columns : the columns of `table` in their order
     required : what is wanted
     curves : effects, the largest first
-    ends : counts of cases by what ends them (columns) at each level of a factor (columns `factor` and `level`)
-    outputs : range of each usual output over the cases that are held, see `trackroller.results.output_ranges`
+    ends : counts of cases by what ends them (columns) at each level of a factor (columns `factor`
+        and `level`)
+    outputs : range of each usual output over the cases that are held, see
+        `trackroller.results.output_ranges`
     parts : further tables
     picture : arrays of the picture of the first screen that `table` and `curves` do not hold
     not_checked : limits that were not checked for each body
     not_used : values that were given and changed nothing
     not_given : values that nobody gave, with their units in words
     warnings : see `Caution`
-    facts : title line: `name`, `description`, `date`, `cases`, `candidates`, `conditions`, `drawn`, `models`,
-        `accuracy`, `duty`, `strokes` (those that the duty was given in), `counted` (what `cases` counts); of one roller
-        `probability`, `regime`, `converged` and `reason` as well
+    facts : title line: `name`, `description`, `date`, `cases`, `candidates`, `conditions`, `drawn`,
+        `models`, `accuracy`, `duty`, `strokes` (those that the duty was given in), `counted` (what
+        `cases` counts); of one roller `probability`, `regime`, `converged` and `reason` as well
     """
 
     question: str
@@ -211,7 +221,9 @@ class Answer:
         same = {}
         for column in self.columns:
             ends = [name for name in (column.name, column.until) if name]
-            if not column.role and all(self.table[name].nunique(dropna=False) == 1 for name in ends):
+            if not column.role and all(
+                self.table[name].nunique(dropna=False) == 1 for name in ends
+            ):
                 same[column.name] = self.table[column.name].iloc[0]
         return same
 
@@ -246,7 +258,12 @@ class Answer:
 def _part(part: Part) -> dict[str, Any]:
     """Return a further table as plain values."""
     columns = [vars(column) for column in part.columns]
-    return {"title": part.title, "columns": columns, "rows": part.table.to_dict("records"), "note": part.note}
+    return {
+        "title": part.title,
+        "columns": columns,
+        "rows": part.table.to_dict("records"),
+        "note": part.note,
+    }
 
 
 def plain_value(value: Any) -> Any:

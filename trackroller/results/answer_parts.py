@@ -1,4 +1,6 @@
-"""Parts of the answers to all questions: title line, warnings, and what was not checked, not given and not used."""
+"""Parts of the answers to all questions: title line, warnings, and what was not checked, not given
+and not used.
+"""
 
 from __future__ import annotations
 
@@ -26,8 +28,10 @@ from trackroller.roller.stored_inputs import names_not_given
 from trackroller.study.outputs import flat
 from trackroller.study.store.provenance import DATE
 
-CAUSES = {"lifts off": "axial_force", "skids": "motor_force"}  # input that brings a condition out of reach
-MANY = 0.5  # share of the cases lost by an input that was not given, from which on the input is asked for
+# input that brings a condition out of reach
+CAUSES = {"lifts off": "axial_force", "skids": "motor_force"}
+# share of the cases lost by an input that was not given, from which on the input is asked for
+MANY = 0.5
 LOADS = ("radial_force", "axial_force", "motor_force")
 UNEQUAL = 0.01  # relative difference from which on loads of candidates are unlike
 NAMED_LEVELS = 4  # values that a warning lists
@@ -61,15 +65,19 @@ def facts_of(results: SolvedCases, own: Comparison | None = None) -> dict[str, A
     if own is not None:
         sizes = np.bincount(own.pairs[0], minlength=own.count)
         conditions = sorted({int(size) for size in sizes})
-        facts |= {"candidates": own.count, "drawn": own.drawn, "conditions": [conditions[0], conditions[-1]]}
+        facts |= {
+            "candidates": own.count,
+            "drawn": own.drawn,
+            "conditions": [conditions[0], conditions[-1]],
+        }
     return facts
 
 
 def checks_left_out(results: SolvedCases) -> dict[str, tuple[str, ...]]:
     """Return the limits that were not checked for each body, in words.
 
-    A limit is checked for a body if its life, or of a limit without lives its use, is known in every valid row. A limit
-    that is known in some of the rows is listed with their number.
+    A limit is checked for a body if its life, or of a limit without lives its use, is known in
+    every valid row. A limit that is known in some of the rows is listed with their number.
     """
     found: dict[str, list[str]] = {body: [] for body in BODIES}
     rows = results.of_one_model(results.inside)
@@ -105,7 +113,9 @@ def _known(results: SolvedCases) -> dict[str, np.ndarray]:
 
 
 def _without_limits(results: SolvedCases) -> dict[str, np.ndarray]:
-    """Return which of static strength and fatigue are known in a study without the group of the limits."""
+    """Return which of static strength and fatigue are known in a study without the group of the
+    limits.
+    """
     stress = np.stack([results.column(f"peak_stress_{body}") for body in BODIES], axis=1)
     lives = np.stack([results.column(f"{body}_life_hours") for body in BODIES], axis=1)
     return {"static": ~np.isnan(stress), "fatigue": ~np.isnan(lives)}
@@ -119,7 +129,9 @@ def unchecked_names(results: SolvedCases) -> list[str]:
 
 
 def given_for_nothing(results: SolvedCases) -> dict[str, str]:
-    """Return the values under `base` that serve only limits which were not checked, with these limits in words."""
+    """Return the values under `base` that serve only limits which were not checked, with these
+    limits in words.
+    """
     unknown = names_not_given(results.data.attrs)
     idle = given_in_vain(results.config.base, unchecked_names(results))
     return {
@@ -144,7 +156,8 @@ def not_given_words(results: SolvedCases) -> dict[str, str]:
 def lost_by_missing_input(own: Comparison) -> str:
     """Return the load that was not given and by which conditions are lost; '' without one.
 
-    With a requirement each condition that no candidate holds counts, otherwise at least half of the cases.
+    With a requirement each condition that no candidate holds counts, otherwise at least half of the
+    cases.
     """
     results = own.results
     skids = slip_margin(results) < 0
@@ -154,7 +167,8 @@ def lost_by_missing_input(own: Comparison) -> str:
             continue
         lost = own.own & (own.ranges.reason == cause)
         if name != "motor_force":
-            lost &= ~skids  # more axial force is no remedy for a drive that friction cannot transmit
+            # more axial force is no remedy for a drive that friction cannot transmit
+            lost &= ~skids
         hopeless = lost & own.unreachable
         if not own.ranges.held.any():
             hopeless = lost
@@ -167,7 +181,9 @@ def lost_by_missing_input(own: Comparison) -> str:
 def where_text(results: SolvedCases, hit: np.ndarray, among: np.ndarray) -> str:
     """Return the levels of factors that hold some rows and no others; '' if no levels do."""
     places = places_of(results.table, results.factors, hit, among)
-    return places_text([place for place in places if len(place) <= 3], results.table) if places else ""
+    return (
+        places_text([place for place in places if len(place) <= 3], results.table) if places else ""
+    )
 
 
 def cautions(own: Comparison, shown: pd.DataFrame, named: int = 1) -> tuple[Caution, ...]:
@@ -184,10 +200,14 @@ def cautions(own: Comparison, shown: pd.DataFrame, named: int = 1) -> tuple[Caut
         turned = (shown["second_state"] != "") & (shown["second_state"] != shown["state"])
         if turned.iloc[1:].any():
             words = ", ".join(dict.fromkeys(shown["second"][turned]))
-            found.append(Caution("second_model", int(turned.sum()), len(shown), words, "candidates"))
+            found.append(
+                Caution("second_model", int(turned.sum()), len(shown), words, "candidates")
+            )
     edges = [edge for edge in shown["edge"].iloc[:named] if edge]
     if edges:
-        found.append(Caution("at_end", len(edges), named, _edge_text(own, shown, edges[0]), "candidates"))
+        found.append(
+            Caution("at_end", len(edges), named, _edge_text(own, shown, edges[0]), "candidates")
+        )
     return (*found, *_unlike(own, shown))
 
 
@@ -219,13 +239,23 @@ def case_cautions(results: SolvedCases, ranges: CaseRanges, rows: np.ndarray) ->
     unknown = rows & ~ranges.judged
     for code, hit in (("not_held", lost), ("not_judged", unknown)):
         if hit.any():
-            reasons = pd.Series(ranges.reason[hit]).map(lambda word: limit_word(str(word).removeprefix("limit ")))
-            counts = ", ".join(f"{word} {count:,}" for word, count in reasons.value_counts().items())
+            reasons = pd.Series(ranges.reason[hit]).map(
+                lambda word: limit_word(str(word).removeprefix("limit "))
+            )
+            counts = ", ".join(
+                f"{word} {count:,}" for word, count in reasons.value_counts().items()
+            )
             where = where_text(results, hit, rows)
-            found.append(Caution(code, int(hit.sum()), total, f"{counts}: {where}" if where else counts))
+            found.append(
+                Caution(code, int(hit.sum()), total, f"{counts}: {where}" if where else counts)
+            )
     beyond = ranges.beyond & rows
     if is_life(ranges.output[0]) and beyond.any():
-        found.append(Caution("extrapolated", int(beyond.sum()), total, "life beyond the data of its S-N line"))
+        found.append(
+            Caution(
+                "extrapolated", int(beyond.sum()), total, "life beyond the data of its S-N line"
+            )
+        )
     beyond_table = results.flagged("wear_extrapolated") & rows & ranges.held
     if beyond_table.any():
         where = "wear beyond the table of its energy law"
@@ -235,15 +265,22 @@ def case_cautions(results: SolvedCases, ranges: CaseRanges, rows: np.ndarray) ->
         found.append(Caution("worn", int(worn.sum()), total, "the groove changes within the life"))
     words = not_given_words(results)
     if words:
-        found.append(Caution("not_given", total, total, _listed(f"{long_name_of(n)} {v}" for n, v in words.items())))
+        found.append(
+            Caution(
+                "not_given",
+                total,
+                total,
+                _listed(f"{long_name_of(n)} {v}" for n, v in words.items()),
+            )
+        )
     return found
 
 
 def _outlives_groove(results: SolvedCases, output: str) -> np.ndarray:
     """Return the cases in which an output lasts beyond the run-in of the groove, shape (n,) bool.
 
-    The life of a body counts for this body only. That of the pair ends with the first body whose life is known. All
-    other outputs are those of a new groove, which either body may outlive.
+    The life of a body counts for this body only. That of the pair ends with the first body whose
+    life is known. All other outputs are those of a new groove, which either body may outlive.
     """
     body = body_of(output)
     if is_life(output) and body:
@@ -265,20 +302,38 @@ def _unlike(own: Comparison, shown: pd.DataFrame) -> list[Caution]:
     found = []
     if own.drawn and shown["n"].nunique() > 1:
         sizes = ", ".join(str(size) for size in shown["n"].head(NAMED_LEVELS))
-        found.append(Caution("unlike", len(shown), len(shown), f"sample sizes: {sizes} conditions", "candidates"))
+        found.append(
+            Caution(
+                "unlike", len(shown), len(shown), f"sample sizes: {sizes} conditions", "candidates"
+            )
+        )
     loads = _unequal_loads(own)
     if loads:
-        words = _listed(f"{long_name_of(name)} by up to {100 * share:.2g} %" for name, share in loads.items())
+        words = _listed(
+            f"{long_name_of(name)} by up to {100 * share:.2g} %" for name, share in loads.items()
+        )
         found.append(
-            Caution("unlike", own.count, own.count, f"loads differ in the same condition: {words}", "candidates")
+            Caution(
+                "unlike",
+                own.count,
+                own.count,
+                f"loads differ in the same condition: {words}",
+                "candidates",
+            )
         )
     if own.count > 1 and not own.matched and not own.drawn and own.conditions:
-        found.append(Caution("unlike", own.count, own.count, "candidates have other conditions", "candidates"))
+        found.append(
+            Caution(
+                "unlike", own.count, own.count, "candidates have other conditions", "candidates"
+            )
+        )
     return found
 
 
 def _unequal_loads(own: Comparison) -> Mapping[str, float]:
-    """Return the loads that differ between candidates in the same condition by more than a hundredth."""
+    """Return the loads that differ between candidates in the same condition by more than a
+    hundredth.
+    """
     found: dict[str, float] = {}
     if not own.matched or own.count < 2:
         return found

@@ -15,12 +15,14 @@ from trackroller.roller.stored_inputs import CASE
 
 
 def answer_of(ds: xr.Dataset) -> Answer | None:
-    """Return the record of a roller, a roller that wears, a spectrum or a carriage; None for results of several cases.
+    """Return the record of a roller, a roller that wears, a spectrum or a carriage; None for
+    results of several cases.
 
     Parameters
     ----------
     ds : xarray.Dataset
-        Result of `trackroller.solve`, `trackroller.wear`, `trackroller.carriage` or `solve_spectrum`.
+        Result of `trackroller.solve`, `trackroller.wear`, `trackroller.carriage` or
+        `solve_spectrum`.
     """
     makers: dict[str, Callable[[xr.Dataset], Answer]] = {
         "groove_depth": answer_of_wear,

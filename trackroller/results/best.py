@@ -82,7 +82,9 @@ class _Found:
 
     @cached_property
     def ranges(self) -> CaseRanges:
-        """Return the output of every case that says why a case does not hold: the life, otherwise the first goal."""
+        """Return the output of every case that says why a case does not hold: the life, otherwise
+        the first goal.
+        """
         life = life_of_search(self.results)
         if life is not None:
             return life
@@ -115,10 +117,11 @@ class _Found:
 
     @cached_property
     def verdict(self) -> np.ndarray:
-        """Return whether each design meets the requirement, shape (designs,): `met`, `open`, `missed`, or `none`.
+        """Return whether each design meets the requirement, shape (designs,): `met`, `open`,
+        `missed`, or `none`.
 
-        Optima are judged by their solution at `reference`. `none` stands where a design does not hold in enough
-        conditions to be compared.
+        Optima are judged by their solution at `reference`. `none` stands where a design does not
+        hold in enough conditions to be compared.
         """
         short = shortfall(self.results)
         for number, one in self.optima.items():
@@ -135,7 +138,9 @@ class _Found:
     def front(self) -> np.ndarray:
         """Return the designs that no other one beats, shape (designs,) bool."""
         best = self.judged
-        return np.asarray((nondominated_ranks(best.costs, best.missed) == 0) & (best.missed == best.missed.min()))
+        return np.asarray(
+            (nondominated_ranks(best.costs, best.missed) == 0) & (best.missed == best.missed.min())
+        )
 
     @cached_property
     def optima(self) -> dict[int, Mapping[str, Any]]:
@@ -144,7 +149,9 @@ class _Found:
 
     @cached_property
     def corners(self) -> dict[int, bool]:
-        """Return the best design in each of several goals, and whether no step improves it, by its number."""
+        """Return the best design in each of several goals, and whether no step improves it, by its
+        number.
+        """
         found: dict[int, bool] = {}
         for one in self.search.get("corners", ()):
             found[int(one["design"])] = found.get(int(one["design"]), True) and bool(one["solved"])
@@ -162,7 +169,9 @@ class _Found:
 
     @cached_property
     def named(self) -> list[int]:
-        """Return the designs of the headline: the recommended one, or both corners and the knee in their order."""
+        """Return the designs of the headline: the recommended one, or both corners and the knee in
+        their order.
+        """
         if not self.usable:
             return []
         if len(self.goals) == 1 or self.wanted:
@@ -172,9 +181,13 @@ class _Found:
 
     @cached_property
     def shown(self) -> list[int]:
-        """Return the designs of the table: those of the headline, the corners, then the others along the first goal."""
+        """Return the designs of the table: those of the headline, the corners, then the others
+        along the first goal.
+        """
         others = [number for number in self.optima if number not in (*self.named, *self.corners)]
-        order = sorted(others, key=lambda number: tuple(np.nan_to_num(self.judged.costs[number], nan=np.inf)))
+        order = sorted(
+            others, key=lambda number: tuple(np.nan_to_num(self.judged.costs[number], nan=np.inf))
+        )
         return list(dict.fromkeys([*self.named, *self.corners, *order])) if self.usable else []
 
 
@@ -189,11 +202,12 @@ def answer_of_search(results: SolvedCases) -> Answer:
     Returns
     -------
     Answer
-        Its kind is `one` (one goal), `front` (several goals, no requirement: corners and knee), `front_required` (the
-        best that meets the requirement), `solve_finer` (only the error of the solution leaves the requirement open),
-        `open` (a range leaves it open), or `none`: no design holds, or none meets the requirement. The headline holds
-        `designs` (name, goals, `at`, `stopped`), `binds`, `accuracy`, `extrapolated`, `second` and `exceeded`. Where
-        no design is known to meet the requirement, `nearest` stands in place of `designs`.
+        Its kind is `one` (one goal), `front` (several goals, no requirement: corners and knee),
+        `front_required` (the best that meets the requirement), `solve_finer` (only the error of the
+        solution leaves the requirement open), `open` (a range leaves it open), or `none`: no design
+        holds, or none meets the requirement. The headline holds `designs` (name, goals, `at`,
+        `stopped`), `binds`, `accuracy`, `extrapolated`, `second` and `exceeded`. Where no design is
+        known to meet the requirement, `nearest` stands in place of `designs`.
 
     Raises
     ------
@@ -203,7 +217,9 @@ def answer_of_search(results: SolvedCases) -> Answer:
     search = optimum_of(results)
     if search is None:
         allowed = "results of a search, method: optimise"
-        raise InputError("study", results.study.name, allowed, "Run the search to its end.", "holds no search")
+        raise InputError(
+            "study", results.study.name, allowed, "Run the search to its end.", "holds no search"
+        )
     found = _Found(results, search)
     kind = _kind(found)
     first = next(iter(found.goals))
@@ -244,7 +260,9 @@ def _kind(found: _Found) -> str:
 def _headline(found: _Found, kind: str) -> dict[str, Any]:
     """Return the numbers and names of the headline."""
     settled = kind in ("one", "front", "front_required")
-    head: dict[str, Any] = {"designs": [_design(found, number) for number in found.named] if settled else []}
+    head: dict[str, Any] = {
+        "designs": [_design(found, number) for number in found.named] if settled else []
+    }
     if not found.usable:
         return head
     chosen = found.chosen
@@ -260,7 +278,10 @@ def _headline(found: _Found, kind: str) -> dict[str, Any]:
     if found.wanted and _is_drawn(found):
         own = _requirement(found, chosen)
         head |= {key: own[key] for key in ("share", "share_low", "share_high")}
-        head |= {"wanted": max(one.wanted for one in found.shares), "n": found.results.design.meta["inner_samples"]}
+        head |= {
+            "wanted": max(one.wanted for one in found.shares),
+            "n": found.results.design.meta["inner_samples"],
+        }
     if kind != "front":
         binds = _binds(found, chosen)[:2]
         head["binds"] = listing(binds) if binds else ""
@@ -276,18 +297,26 @@ def _design(found: _Found, number: int) -> dict[str, Any]:
     for goal, value in zip(found.goals, found.optima[number]["reference"], strict=True):
         _, units, words = goal_column(found.results, goal)
         is_choice = judged_by(goal)[1] in found.results.design.meta["outer"]
-        goals.append({"words": words, "units": units, "value": float(value), "is_choice": is_choice})
+        goals.append(
+            {"words": words, "units": units, "value": float(value), "is_choice": is_choice}
+        )
     required = []
     for (_, own), value in zip(found.judges, found.optima[number]["required"][1], strict=True):
-        if own.output[0] not in {judged_by(goal)[1] for goal in found.goals} and not _is_drawn(found):
+        if own.output[0] not in {judged_by(goal)[1] for goal in found.goals} and not _is_drawn(
+            found
+        ):
             required.append({"words": own.output[1], "units": own.output[2], "value": float(value)})
     stopped = _is_stopped(found, number)
-    name = {choice: _level(choice, value) for choice, value in choices_of(found.results, number).items()}
+    name = {
+        choice: _level(choice, value) for choice, value in choices_of(found.results, number).items()
+    }
     return {"name": name, "at": at, "goals": goals, "required": required, "stopped": stopped}
 
 
 def _nearest(found: _Found, number: int) -> dict[str, Any]:
-    """Return the design that comes nearest to the requirement: its name, where it holds and meets, and its low end."""
+    """Return the design that comes nearest to the requirement: its name, where it holds and meets,
+    and its low end.
+    """
     rows = found.rows(number)
     meets = min((own.sure[number] for own in found.shares), default=0.0)
     of = rows.stop - rows.start
@@ -327,7 +356,9 @@ def _is_stopped(found: _Found, number: int) -> bool:
     """Return whether the search stopped before a corner, or before its only optimum."""
     if number in found.corners:
         return not found.corners[number]
-    return number == found.chosen and len(found.goals) == 1 and not found.search.get("polished", False)
+    return (
+        number == found.chosen and len(found.goals) == 1 and not found.search.get("polished", False)
+    )
 
 
 def _table(found: _Found) -> tuple[pd.DataFrame, tuple[Column, ...]]:
@@ -337,19 +368,33 @@ def _table(found: _Found) -> tuple[pd.DataFrame, tuple[Column, ...]]:
     if found.wanted:
         columns.append(Column("verdict", "Requirement", kind="state", meaning=_MEANINGS["verdict"]))
         if found.results.design.meta["inner_samples"] > 1:
-            columns.append(Column("share", "Conditions that meet it", "1", _MEANINGS["share"], "share"))
+            columns.append(
+                Column("share", "Conditions that meet it", "1", _MEANINGS["share"], "share")
+            )
         if _is_drawn(found):
             title = "95 % interval of the share"
-            columns.append(Column("share_low", title, "1", _MEANINGS["share_low"], "share", "share_high"))
+            columns.append(
+                Column("share_low", title, "1", _MEANINGS["share_low"], "share", "share_high")
+            )
     columns += [
         Column("binds", "Bound by", kind="text", meaning=_MEANINGS["binds"]),
         Column("step", "A step changes the first goal to", "1", _MEANINGS["step"], "ratio"),
         Column("step_of", "Step", kind="text", meaning="the choice that is moved, and by how much"),
         Column("corner", "Corner", kind="text", meaning=_MEANINGS["corner"]),
         Column("second", "Second model", "h", _MEANINGS["second"]),
-        Column("second_verdict", "By the second model", kind="state", meaning="the requirement by the second model"),
+        Column(
+            "second_verdict",
+            "By the second model",
+            kind="state",
+            meaning="the requirement by the second model",
+        ),
         Column("exceeded", "Largest use above 100 %", "1", _MEANINGS["exceeded"], "share"),
-        Column("extrapolated", "Extrapolated", kind="text", meaning="a life among the goals lies beyond its data"),
+        Column(
+            "extrapolated",
+            "Extrapolated",
+            kind="text",
+            meaning="a life among the goals lies beyond its data",
+        ),
     ]
     if table.empty:
         names = [name for column in columns for name in (column.name, column.until) if name]
@@ -358,17 +403,22 @@ def _table(found: _Found) -> tuple[pd.DataFrame, tuple[Column, ...]]:
 
 
 _MEANINGS = {
-    "verdict": "met: enough conditions meet the requirement also with the told error; missed: they do not; open: "
+    "verdict": "met: enough conditions meet the requirement also with the told error; missed: "
+    "they do not; open: "
     "between both",
     "share": "share of the conditions that meet the requirement with the told error",
     "share_low": "Wilson's 95 % interval of this share for the number of drawn conditions",
-    "binds": "what a design with a better goal would miss, and the choices that stand at an end of their range",
-    "step": "smallest ratio (of a goal to be large) or largest one (of a goal to be small) if one choice moves by its "
+    "binds": "what a design with a better goal would miss, and the choices that stand at an end "
+    "of their range",
+    "step": "smallest ratio (of a goal to be large) or largest one (of a goal to be small) if one "
+    "choice moves by its "
     "tolerance",
-    "corner": "solved: neither an end of a range nor the smallest step improves the goal; stopped: the search stopped "
+    "corner": "solved: neither an end of a range nor the smallest step improves the goal; "
+    "stopped: the search stopped "
     "before",
     "second": "shortest life by a second model of an end that another limit has",
-    "exceeded": "largest use of a limit other than fatigue over the conditions, if it is above 100 %",
+    "exceeded": "largest use of a limit other than fatigue over the conditions, if it is above "
+    "100 %",
 }
 
 
@@ -385,12 +435,16 @@ def _choice_columns(found: _Found) -> list[Column]:
         known = parameter_of(name)
         units = known.units if known else ""
         role = "name" if _varies(found, name) else ""
-        columns.append(Column(name, long_name_of(name), units, "choice of the designer", "level", role=role))
+        columns.append(
+            Column(name, long_name_of(name), units, "choice of the designer", "level", role=role)
+        )
     return columns
 
 
 def _goal_columns(found: _Found) -> list[Column]:
-    """Return the columns of each goal: its value, the range of a life, and its value at `reference`."""
+    """Return the columns of each goal: its value, the range of a life, and its value at
+    `reference`.
+    """
     columns = []
     for number, (goal, way) in enumerate(found.goals.items(), 1):
         if judged_by(goal)[1] in found.results.design.meta["outer"]:
@@ -399,8 +453,16 @@ def _goal_columns(found: _Found) -> list[Column]:
         better = "larger is better" if way == "max" else "smaller is better"
         name = GOAL.format(number)
         columns.append(Column(name, words, units, f"{words}; {better}"))
-        columns.append(Column(f"{name}_low", f"{words}, range", units, "with placeholders", until=f"{name}_high"))
-        columns.append(Column(REFERENCE.format(number), f"{words} at reference", units, "the same at `reference`"))
+        columns.append(
+            Column(
+                f"{name}_low", f"{words}, range", units, "with placeholders", until=f"{name}_high"
+            )
+        )
+        columns.append(
+            Column(
+                REFERENCE.format(number), f"{words} at reference", units, "the same at `reference`"
+            )
+        )
     return columns
 
 
@@ -429,7 +491,9 @@ def _row(found: _Found, number: int) -> dict[str, Any]:
     if found.wanted:
         row |= _requirement(found, number)
     row |= _step(found) if number == found.chosen else {"step": np.nan, "step_of": ""}
-    row["binds"] = ", ".join(_binds(found, number)) if number in (*found.named, *found.corners) else ""
+    row["binds"] = (
+        ", ".join(_binds(found, number)) if number in (*found.named, *found.corners) else ""
+    )
     row["corner"] = _corner(found, number)
     second = _second_life(found, number)
     row["second"] = np.nan if second is None else second[1]
@@ -462,7 +526,12 @@ def _requirement(found: _Found, number: int) -> dict[str, Any]:
     if _is_drawn(found):
         count = np.array([found.results.design.meta["inner_samples"]])
         low, high = (float(end[0]) for end in wilson(share * count, count))
-    return {"verdict": str(found.verdict[number]), "share": share, "share_low": low, "share_high": high}
+    return {
+        "verdict": str(found.verdict[number]),
+        "share": share,
+        "share_low": low,
+        "share_high": high,
+    }
 
 
 def _is_drawn(found: _Found) -> bool:
@@ -473,7 +542,9 @@ def _is_drawn(found: _Found) -> bool:
 
 
 def _step(found: _Found) -> dict[str, Any]:
-    """Return to which part or multiple a tolerance takes the first goal of the recommended design."""
+    """Return to which part or multiple a tolerance takes the first goal of the recommended
+    design.
+    """
     way = next(iter(found.goals.values()))
     own = float(found.judged.values[found.chosen, 0])
     worst, step = np.nan, ""
@@ -485,7 +556,8 @@ def _step(found: _Found) -> dict[str, Any]:
 
 
 def _binds(found: _Found, number: int) -> list[str]:
-    """Return what binds a design: what the nearest design with a better goal misses, then ends of ranges.
+    """Return what binds a design: what the nearest design with a better goal misses, then ends of
+    ranges.
 
     A goal in which a design that misses no more is better is bound by the other goals.
     """
@@ -520,7 +592,11 @@ def _at_ends(found: _Found, number: int) -> list[str]:
         factor = found.results.study.parsed[name]
         tried = factor.numbers
         if factor.discrete:
-            tried = factor.levels if factor.ordered and factor.numeric and len(factor.levels) > 2 else ()
+            tried = (
+                factor.levels
+                if factor.ordered and factor.numeric and len(factor.levels) > 2
+                else ()
+            )
         if not tried:
             continue
         low, high = min(map(float, tried)), max(map(float, tried))
@@ -538,8 +614,12 @@ def _beyond(found: _Found) -> np.ndarray:
 
 
 def _required_life(found: _Found) -> tuple[float, float]:
-    """Return the required life of the pair and the share of the conditions that has to reach it; NaN without one."""
-    lives = [own for own in found.shares if own.required.output in OF_PAIR and own.required.least > 0]
+    """Return the required life of the pair and the share of the conditions that has to reach it;
+    NaN without one.
+    """
+    lives = [
+        own for own in found.shares if own.required.output in OF_PAIR and own.required.least > 0
+    ]
     if not lives:
         return np.nan, np.nan
     longest = max(lives, key=lambda own: own.required.least)
@@ -547,7 +627,8 @@ def _required_life(found: _Found) -> tuple[float, float]:
 
 
 def _second_life(found: _Found, number: int) -> tuple[str, float, str] | None:
-    """Return the second model with the shortest life of a design, this life [h], and its verdict on the requirement.
+    """Return the second model with the shortest life of a design, this life [h], and its verdict on
+    the requirement.
 
     None where no second model knows its life in every condition that is judged.
     """
@@ -560,7 +641,11 @@ def _second_life(found: _Found, number: int) -> tuple[str, float, str] | None:
     shortest: tuple[str, float, str] | None = None
     limits = data["limit"].values.tolist()
     for place, limit in enumerate(limits):
-        if limit not in LIMITS or not LIMITS[limit].beside or lacks_a_body(hours[valid], limits, limit).any():
+        if (
+            limit not in LIMITS
+            or not LIMITS[limit].beside
+            or lacks_a_body(hours[valid], limits, limit).any()
+        ):
             continue
         own = np.fmin.reduce(hours[valid, place], axis=1)
         if not own.size or np.isnan(own).any():
@@ -582,7 +667,8 @@ def _second(found: _Found, number: int) -> dict[str, str] | None:
 
 
 def _exceeded(found: _Found, number: int) -> dict[str, Any] | None:
-    """Return the limit of a design that is exceeded most, second models included; None if all are kept.
+    """Return the limit of a design that is exceeded most, second models included; None if all are
+    kept.
 
     A use of the S-N curve above 1 is a finite life, and no excess.
     """
@@ -607,9 +693,11 @@ def _exceeded(found: _Found, number: int) -> dict[str, Any] | None:
 
 
 def _picture(found: _Found) -> dict[str, Any]:
-    """Return the designs of the picture: their goals, those of the front, and those of the headline.
+    """Return the designs of the picture: their goals, those of the front, and those of the
+    headline.
 
-    Of one goal `history` holds the best value that was known after each design, among those that miss least.
+    Of one goal `history` holds the best value that was known after each design, among those that
+    miss least.
     """
     judged, names = found.judged, list(found.goals)
     picture: dict[str, Any] = {
@@ -633,26 +721,35 @@ def _warnings(found: _Found) -> tuple[Caution, ...]:
     """Return the warnings of a search."""
     results = found.results
     if not found.usable:
-        said = ", ".join(f"{word.replace('_', ' ')} {n:,}" for word, n in found.search["reasons"].items())
+        said = ", ".join(
+            f"{word.replace('_', ' ')} {n:,}" for word, n in found.search["reasons"].items()
+        )
         tried = int(found.search["designs"])
         return (Caution("not_held", tried, tried, said, "candidates"),)
     rows = np.zeros(len(results.table), dtype=bool)
     rows[found.rows(found.chosen)] = True
     warnings = case_cautions(results, found.ranges, rows)
-    warnings = [one for one in warnings if one.code != "extrapolated"]  # of the designs of the table, below
+    # of the designs of the table, below
+    warnings = [one for one in warnings if one.code != "extrapolated"]
     shown = np.array(found.shown)
     beyond = int(_beyond(found)[shown].sum())
     if beyond:
-        warnings.append(Caution("extrapolated", beyond, len(shown), "designs of the table", "candidates"))
+        warnings.append(
+            Caution("extrapolated", beyond, len(shown), "designs of the table", "candidates")
+        )
     turned = [number for number in found.shown if _second(found, number) is not None]
     if turned:
         limits = sorted({str(_second_life(found, number)[0]) for number in turned})  # type: ignore[index]
-        warnings.append(Caution("second_model", len(turned), len(shown), listing(limits), "candidates"))
+        warnings.append(
+            Caution("second_model", len(turned), len(shown), listing(limits), "candidates")
+        )
     stopped = [number for number in found.named if _is_stopped(found, number)]
     ends = _at_ends(found, found.chosen)
     if stopped or ends:
         where = ["the search stopped before it", *ends] if stopped else ends
-        warnings.append(Caution("at_end", len(stopped) or 1, len(found.named), listing(where), "candidates"))
+        warnings.append(
+            Caution("at_end", len(stopped) or 1, len(found.named), listing(where), "candidates")
+        )
     return tuple(warnings)
 
 

@@ -1,9 +1,11 @@
-"""Lives over what the tests of fitted materials leave open: their posterior moves and spreads the lives of a study.
+"""Lives over what the tests of fitted materials leave open: their posterior moves and spreads the
+lives of a study.
 
-Each draw from the posterior of a fitted line moves the lives by fatigue of its material by the ratio of both lines at
-the stress of the case. A band holds 90 % of the draws.
+Each draw from the posterior of a fitted line moves the lives by fatigue of its material by the
+ratio of both lines at the stress of the case. A band holds 90 % of the draws.
 
-ASSUME: lives by fatigue move; other limits stay. Below the fatigue limit the ratio is that of both straight lines.
+ASSUME: lives by fatigue move; other limits stay. Below the fatigue limit the ratio is that of both
+straight lines.
 """
 
 from __future__ import annotations
@@ -45,9 +47,13 @@ Shift = Callable[[str], np.ndarray]  # of ln life by body, (n,)
 
 
 def materials_fitted(results: SolvedCases) -> dict[str, StoredFit]:
-    """Return the fits of the materials of a study by the names of the materials, whether they hold for it or not."""
+    """Return the fits of the materials of a study by the names of the materials, whether they hold
+    for it or not.
+    """
     stored = json.loads(str(results.data.attrs.get("materials", "{}")))
-    fits = {name: stored_fit(name, values, results.materials_file) for name, values in stored.items()}
+    fits = {
+        name: stored_fit(name, values, results.materials_file) for name, values in stored.items()
+    }
     return {name: fit for name, fit in fits.items() if fit is not None}
 
 
@@ -58,11 +64,15 @@ def options_of(results: SolvedCases) -> dict[str, Any]:
 
 
 def not_held(results: SolvedCases) -> dict[str, str]:
-    """Return the fitted materials of a study that was solved with other options than their fit, with these options."""
+    """Return the fitted materials of a study that was solved with other options than their fit,
+    with these options.
+    """
     used, found = options_of(results), {}
     for name, fit in materials_fitted(results).items():
         other = [
-            f"{k} {fit.given[k]}" for k in DEFAULTS if str(used.get(k, DEFAULTS[k])) != fit.given.get(k, used.get(k))
+            f"{k} {fit.given[k]}"
+            for k in DEFAULTS
+            if str(used.get(k, DEFAULTS[k])) != fit.given.get(k, used.get(k))
         ]
         if other:
             found[name] = listing(other)
@@ -71,7 +81,8 @@ def not_held(results: SolvedCases) -> dict[str, str]:
 
 @made_once
 def by_tests_of(results: SolvedCases) -> ByTests | None:
-    """Return the fits of the materials of a study that hold for it, with the draws of their posteriors.
+    """Return the fits of the materials of a study that hold for it, with the draws of their
+    posteriors.
 
     Returns
     -------
@@ -84,12 +95,13 @@ def by_tests_of(results: SolvedCases) -> ByTests | None:
 
 
 def beyond_sn_data(results: SolvedCases, column: str) -> np.ndarray:
-    """Mark the cases in which a life lies beyond the S-N data, shape (n,); no case for another quantity.
+    """Mark the cases in which a life lies beyond the S-N data, shape (n,); no case for another
+    quantity.
 
-    The body stays below its fatigue limit, or lasts more than `DATA_END` overrollings. Of a material that was
-    fitted to tests, its stress or its life lies beyond the tests. For the pair the body that fails first counts,
-    or the roller where no body is known to fail first. A life to the first limit that wear or the bearing ends
-    rests on no S-N data.
+    The body stays below its fatigue limit, or lasts more than `DATA_END` overrollings. Of a
+    material that was fitted to tests, its stress or its life lies beyond the tests. For the pair
+    the body that fails first counts, or the roller where no body is known to fail first. A life to
+    the first limit that wear or the bearing ends rests on no S-N data.
 
     Parameters
     ----------
@@ -104,13 +116,17 @@ def beyond_sn_data(results: SolvedCases, column: str) -> np.ndarray:
     if not body:
         guide = results.first_failing(column) == FIRST_TO_FAIL.index("guide")
         own = body_lives(column)
-        return np.where(guide, *(beyond_sn_data(results, own[body]) for body in ("guide", "roller")))
+        return np.where(
+            guide, *(beyond_sn_data(results, own[body]) for body in ("guide", "roller"))
+        )
     if of_first_limit(column):
         fatigue = results.column(f"limiting_mechanism_{body}") == results.limits.index("fatigue")
         return np.asarray(fatigue & beyond_sn_data(results, f"{body}_life_hours"))
     names = pd.Series(results.material(body))
     stored = json.loads(str(results.data.attrs.get("materials", "{}")))
-    knees = {n: float(stored.get(n, {}).get("cycles_at_fatigue_limit", np.inf)) for n in names.unique()}
+    knees = {
+        n: float(stored.get(n, {}).get("cycles_at_fatigue_limit", np.inf)) for n in names.unique()
+    }
     endless = np.isposinf(results.column(f"{body}_life_hours"))
     cycles = results.column(f"life_cycles_{body}")
     past = past_data(cycles, names.map(knees).to_numpy(dtype=float)) | endless
@@ -132,7 +148,9 @@ def required(results: SolvedCases) -> ByTests:
     if not found:
         stored = list(json.loads(str(results.data.attrs.get("materials", "{}"))))
         allowed = "a study with a material that `trackroller fit` wrote"
-        remedy = f"Fit {listing(stored, 'or')} to tests, or set material_scatter to true or a number."
+        remedy = (
+            f"Fit {listing(stored, 'or')} to tests, or set material_scatter to true or a number."
+        )
         raise InputError("analysis.material_scatter", WANTED, allowed, remedy)
     for fit in found.values():
         check_same(fit.given, options_of(results), fit.name)
@@ -156,21 +174,28 @@ class ByTests:
     def drawn(self) -> dict[str, Values]:
         """Return values of the line of each material, (draws,) each.
 
-        The draws have equal weights, and those of the first material rise with the life at its mean tested stress.
-        Those of further materials are shuffled, because posteriors of different materials are independent.
+        The draws have equal weights, and those of the first material rise with the life at its mean
+        tested stress. Those of further materials are shuffled, because posteriors of different
+        materials are independent.
         """
         out = {}
         for i, (name, fit) in enumerate(self.fits.items()):
             rows = _spread_evenly(fit.posterior)
             rows = rows if i == 0 else np.random.default_rng(i).permutation(rows)
-            out[name] = Values(*(np.broadcast_to(v, fit.posterior.weight.shape)[rows] for v in fit.posterior.values))
+            out[name] = Values(
+                *(
+                    np.broadcast_to(v, fit.posterior.weight.shape)[rows]
+                    for v in fit.posterior.values
+                )
+            )
         return out
 
     @cached_property
     def stress(self) -> dict[str, np.ndarray]:
         """Return the stress of each body that enters its line, at its worse contact, (n,) [MPa].
 
-        A study without stresses gives those of fitted materials by their lines, from which its lives follow.
+        A study without stresses gives those of fitted materials by their lines, from which its
+        lives follow.
         """
         out = {}
         for body in BODIES:
@@ -180,28 +205,45 @@ class ByTests:
         return out
 
     def _by_line(self, body: str) -> np.ndarray:
-        """Return the stress of a body at which the line of its material gives its life, (n,) [MPa]; else NaN."""
+        """Return the stress of a body at which the line of its material gives its life, (n,) [MPa];
+        else NaN.
+        """
         names, cycles = self.results.material(body), self.results.column(f"life_cycles_{body}")
         out = np.full(len(names), np.nan)
         for name, fit in self.fits.items():
             best, rows = fit.line.best, (names == name) & (cycles > 0) & np.isfinite(cycles)
-            out[rows] = np.exp(fit.line.reference + (best.level - np.log(cycles[rows])) / best.slope)
+            out[rows] = np.exp(
+                fit.line.reference + (best.level - np.log(cycles[rows])) / best.slope
+            )
         return out
 
     @cached_property
     def named(self) -> dict[str, np.ndarray]:
-        """Return the fitted material of each body in each case, (n,); '' where it was not fitted."""
+        """Return the fitted material of each body in each case, (n,); '' where it was not
+        fitted.
+        """
         names = {body: self.results.material(body) for body in BODIES}
-        return {b: np.where(np.isin(n, list(self.fits)) & (self.stress[b] > 0), n, "") for b, n in names.items()}
+        return {
+            b: np.where(np.isin(n, list(self.fits)) & (self.stress[b] > 0), n, "")
+            for b, n in names.items()
+        }
 
     @cached_property
     def _reached(self) -> dict[str, np.ndarray]:
-        """Return hours until each limit at each end of the ranges of placeholders, (n, limit, body)."""
+        """Return hours until each limit at each end of the ranges of placeholders, (n, limit,
+        body).
+        """
         return {end: reached_by_body(self.results, end) for end in ("", "_low", "_high")}
 
     def beyond(self, body: str) -> np.ndarray:
-        """Return the cases whose stress or life of a body lies beyond the tests of its material, (n,)."""
-        names, stress, cycles = self.named[body], self.stress[body], self.results.column(f"life_cycles_{body}")
+        """Return the cases whose stress or life of a body lies beyond the tests of its material,
+        (n,).
+        """
+        names, stress, cycles = (
+            self.named[body],
+            self.stress[body],
+            self.results.column(f"life_cycles_{body}"),
+        )
         out = np.zeros(len(names), dtype=bool)
         for name, fit in self.fits.items():
             rows = names == name
@@ -211,7 +253,8 @@ class ByTests:
     def moved(
         self, body: str, rows: np.ndarray, draws: Any = slice(None), probability: float = 0.5
     ) -> tuple[np.ndarray, np.ndarray]:
-        """Return the shift of ln life of a body, and the deviation of log10 life of its material, (rows, draws) each.
+        """Return the shift of ln life of a body, and the deviation of log10 life of its material,
+        (rows, draws) each.
 
         Parameters
         ----------
@@ -235,7 +278,10 @@ class ByTests:
         deviate = float(ndtri(probability))
         for name, fit in self.fits.items():
             own = names == name
-            best, values = fit.line.best, Values(*(np.asarray(value)[draws] for value in self.drawn[name]))
+            best, values = (
+                fit.line.best,
+                Values(*(np.asarray(value)[draws] for value in self.drawn[name])),
+            )
             away = np.log(stress[own])[:, None] - fit.line.reference
             spread = np.exp(values.log_scatter)
             shift[own] = (values.level - best.level) - (values.slope - best.slope) * away
@@ -249,11 +295,15 @@ class ByTests:
         fitted = np.flatnonzero(self.named[body] != "")
         step = max(AT_ONCE // DRAWS, 1)
         for part in (fitted[i : i + step] for i in range(0, len(fitted), step)):
-            out[:, part] = np.quantile(self.moved(body, part, probability=probability)[0], BAND, axis=1)
+            out[:, part] = np.quantile(
+                self.moved(body, part, probability=probability)[0], BAND, axis=1
+            )
         return out
 
     def reached(self, shift: Shift, end: str = "") -> np.ndarray:
-        """Return the hours until each limit when those by fatigue are moved, see `lives`, (n, limit, body) [h]."""
+        """Return the hours until each limit when those by fatigue are moved, see `lives`, (n,
+        limit, body) [h].
+        """
         out, limits = self._reached[end].copy(), self.results.data["limit"].values.tolist()
         for i, body in enumerate(BODIES):
             if "fatigue" in limits:
@@ -272,7 +322,8 @@ class ByTests:
         shift : callable
             Returns the shift of ln life by fatigue of a body, (n,).
         end : str
-            `_low` or `_high` for the ends of the ranges of placeholders, to which the values belong.
+            `_low` or `_high` for the ends of the ranges of placeholders, to which the values
+            belong.
         """
         body = body_of(name)
         if of_fatigue(name) and body:
@@ -280,7 +331,9 @@ class ByTests:
         if of_fatigue(name):
             own = [self.results.column(column) for column in body_lives(name).values()]
             before, after = (
-                np.fmin.reduce([life * np.exp(s * shift(b)) for b, life in zip(BODIES, own, strict=True)])
+                np.fmin.reduce(
+                    [life * np.exp(s * shift(b)) for b, life in zip(BODIES, own, strict=True)]
+                )
                 for s in (0, 1)
             )
         elif of_first_limit(name):
@@ -305,8 +358,8 @@ class ByTests:
 def _spread_evenly(posterior: Posterior) -> np.ndarray:
     """Return numbers of points of a posterior that stand for equal shares of its weight, (draws,).
 
-    Points are sorted by the level into parts, each of these by the slope, and each of these by the scatter; the points
-    at equal steps of the weight in this order are taken.
+    Points are sorted by the level into parts, each of these by the slope, and each of these by the
+    scatter; the points at equal steps of the weight in this order are taken.
     """
     weight = posterior.weight
     parts: list[np.ndarray] = [np.arange(len(weight))]
@@ -316,7 +369,11 @@ def _spread_evenly(posterior: Posterior) -> np.ndarray:
         for part in parts:
             order = part[np.argsort(own[part], kind="stable")]
             share = np.cumsum(weight[order])
-            cuts = np.searchsorted(share, np.arange(1, PARTS) / PARTS * share[-1]) if len(order) else []
+            cuts = (
+                np.searchsorted(share, np.arange(1, PARTS) / PARTS * share[-1])
+                if len(order)
+                else []
+            )
             halves += np.split(order, cuts)
         parts = halves
     order = np.concatenate(parts)
@@ -325,21 +382,32 @@ def _spread_evenly(posterior: Posterior) -> np.ndarray:
 
 
 def probability_of(results: SolvedCases, name: str) -> float:
-    """Return the failure probability that a life of a study belongs to [1]: lives to a limit have that of the study."""
-    return float(results.data.attrs.get("failure_probability", 0.5)) if of_first_limit(name) else 0.5
+    """Return the failure probability that a life of a study belongs to [1]: lives to a limit have
+    that of the study.
+    """
+    return (
+        float(results.data.attrs.get("failure_probability", 0.5)) if of_first_limit(name) else 0.5
+    )
 
 
-def _drawn_lives(own: ByTests, column: Output, given: np.ndarray | None) -> tuple[np.ndarray, np.ndarray]:
-    """Return the lives of a column and the deviations of log10 life under each draw, (n, draws) each."""
+def _drawn_lives(
+    own: ByTests, column: Output, given: np.ndarray | None
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the lives of a column and the deviations of log10 life under each draw, (n, draws)
+    each.
+    """
     name, n = column.name, len(column.values)
     every, p = np.arange(n), probability_of(own.results, column.name)
-    lives = np.stack([own.lives(name, column.values, own.at(i, probability=p)) for i in range(DRAWS)], axis=1)
+    lives = np.stack(
+        [own.lives(name, column.values, own.at(i, probability=p)) for i in range(DRAWS)], axis=1
+    )
     deviation = own.moved(scattering_body(name), every)[1]
     return lives, np.where(np.isnan(deviation), 0.0 if given is None else given[:, None], deviation)
 
 
 def bands(results: SolvedCases, deviations: Mapping[str, np.ndarray]) -> xr.Dataset:
-    """Return the bands of targets and of B10 by the tests, for a study with `material_scatter: fitted`.
+    """Return the bands of targets and of B10 by the tests, for a study with `material_scatter:
+    fitted`.
 
     Parameters
     ----------
@@ -351,26 +419,33 @@ def bands(results: SolvedCases, deviations: Mapping[str, np.ndarray]) -> xr.Data
     Returns
     -------
     xarray.Dataset
-        `tests_low` and `tests_high` along `target`, over all cases; NaN for a target that is no life. For each life of
-        the study `b10_tests_low` and `b10_tests_high` along `life`, and along `point` of a design with design points,
-        beside `b10_tests`, B10 by the fitted values with the scatter of the material;
-        over the cases that roll. Their attributes `tests` and `materials` say how many tests the bands rest on, and of
-        which materials.
+        `tests_low` and `tests_high` along `target`, over all cases; NaN for a target that is no
+        life. For each life of the study `b10_tests_low` and `b10_tests_high` along `life`, and
+        along `point` of a design with design points, beside `b10_tests`, B10 by the fitted values
+        with the scatter of the material; over the cases that roll. Their attributes `tests` and
+        `materials` say how many tests the bands rest on, and of which materials.
     """
     own, wanted = required(results), results.config.requirement
-    words = {"tests": str(sum(fit.rows for fit in own.fits.values())), "materials": listing(list(own.fits))}
+    words = {
+        "tests": str(sum(fit.rows for fit in own.fits.values())),
+        "materials": listing(list(own.fits)),
+    }
     columns = _columns(results, list(wanted))
     found = []
     for column in columns:
         judged = results.judged_targets.get(column.name)
-        sooner = judged is not None and bool((results.valid & (judged < column.values * (1 - SAME_ENDS))).any())
+        sooner = judged is not None and bool(
+            (results.valid & (judged < column.values * (1 - SAME_ENDS))).any()
+        )
         if not is_life(column.name) or sooner:
             found.append((math.nan, math.nan))
             continue
         lives, scatter = _drawn_lives(own, column, deviations.get(scattering_body(column.name)))
         goal = wanted[column.name]
         shares = [
-            float(hits_of(dataclasses.replace(column, values=lives[:, i]), goal, scatter[:, i]).mean())
+            float(
+                hits_of(dataclasses.replace(column, values=lives[:, i]), goal, scatter[:, i]).mean()
+            )
             for i in range(DRAWS)
         ]
         found.append(tuple(np.quantile(shares, BAND)))
@@ -387,18 +462,32 @@ def _columns(results: SolvedCases, names: list[str]) -> list[Output]:
     """Return these outputs as they are, without a limit of their number."""
     factors = results.design.factors
     return (
-        outputs(results.data, factors, names, scale="natural", unlimited=True, allowed=results.allowed) if names else []
+        outputs(
+            results.data, factors, names, scale="natural", unlimited=True, allowed=results.allowed
+        )
+        if names
+        else []
     )
 
 
-def _b10_bands(own: ByTests, deviations: Mapping[str, np.ndarray], words: Mapping[str, str]) -> xr.Dataset:
-    """Return B10 of each life and its band by the tests, at each design point or over all cases of a sample."""
+def _b10_bands(
+    own: ByTests, deviations: Mapping[str, np.ndarray], words: Mapping[str, str]
+) -> xr.Dataset:
+    """Return B10 of each life and its band by the tests, at each design point or over all cases of
+    a sample.
+    """
     results, design = own.results, own.results.design
-    lives = [name for name, _, _ in (results.life or ("", "", ""), *results.fatigue_lives) if name in results.table]
+    lives = [
+        name
+        for name, _, _ in (results.life or ("", "", ""), *results.fatigue_lives)
+        if name in results.table
+    ]
     lives = [name for name in dict.fromkeys(lives) if is_life(name)]
     if not (design.method.points or design.method.sampled) or not lives:
         return xr.Dataset()
-    points: list[Any] = list(design.points) if design.method.points else [design.method.independent_rows(design)]
+    points: list[Any] = (
+        list(design.points) if design.method.points else [design.method.independent_rows(design)]
+    )
     columns = _columns(results, lives)
     values = np.full((3, len(columns), len(points)), np.nan)
     for i, column in enumerate(columns):
@@ -421,7 +510,10 @@ def _b10_bands(own: ByTests, deviations: Mapping[str, np.ndarray], words: Mappin
     axes = ("life", "point") if design.method.points else ("life",)
     values = values if design.method.points else values[:, :, 0]
     return xr.Dataset(
-        {n: (axes, v, {"long_name": names[n]} | dict(words)) for n, v in zip(names, values, strict=True)},
+        {
+            n: (axes, v, {"long_name": names[n]} | dict(words))
+            for n, v in zip(names, values, strict=True)
+        },
         {
             "life": [column.name for column in columns],
             "life_name": ("life", [column.long_name for column in columns]),
@@ -442,8 +534,8 @@ def b10_of_draws(lives: np.ndarray, scatter: np.ndarray) -> np.ndarray:
 
     Notes
     -----
-    The root of mean_i Phi((lg t - lg N_i) / s) = 0.1 by bisection, as `trackroller.methods.b10.b10` finds it for one
-    set of lives.
+    The root of mean_i Phi((lg t - lg N_i) / s) = 0.1 by bisection, as `trackroller.methods.b10.b10`
+    finds it for one set of lives.
     """
     with np.errstate(divide="ignore"):
         logs = np.log10(lives)
@@ -459,5 +551,6 @@ def b10_of_draws(lives: np.ndarray, scatter: np.ndarray) -> np.ndarray:
             middle = 0.5 * (low + high)
             below = ndtr((middle - logs) / spread).mean(axis=0) < 0.1
             low, high = np.where(below, middle, low), np.where(below, high, middle)
-    ends = np.quantile(lives, 0.1, axis=0, method="inverted_cdf")  # 0 or without end: scatter changes nothing
+    # 0 or without end: scatter changes nothing
+    ends = np.quantile(lives, 0.1, axis=0, method="inverted_cdf")
     return np.asarray(np.where((ends == 0) | np.isinf(ends), ends, 10.0 ** (0.5 * (low + high))))

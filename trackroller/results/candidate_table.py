@@ -29,12 +29,14 @@ def candidate_table(own: Comparison) -> pd.DataFrame:
 
     Returns
     -------
-    The columns of `candidate_columns`, `number` and `case` (its worst condition, a row of the study) and `middle`, the
-    geometric middle of the range at the worst condition.
+    The columns of `candidate_columns`, `number` and `case` (its worst condition, a row of the
+    study) and `middle`, the geometric middle of the range at the worst condition.
     """
     table = own.members.copy()
     table.insert(0, "number", np.arange(own.count))
-    table = table.assign(**_ends(own), **_counts(own), **_shares(own), **_second_models(own), **_exceeded(own))
+    table = table.assign(
+        **_ends(own), **_counts(own), **_shares(own), **_second_models(own), **_exceeded(own)
+    )
     table["state"] = states_of(own, table)
     table["fails"] = _fails(own, table)
     table["edge"] = _edges(own)
@@ -42,9 +44,13 @@ def candidate_table(own: Comparison) -> pd.DataFrame:
 
 
 def _goods(own: Comparison, table: pd.DataFrame) -> dict[str, Any]:
-    """Return the columns of the user's own of each candidate, such as its price, which `table` has not yet."""
+    """Return the columns of the user's own of each candidate, such as its price, which `table` has
+    not yet.
+    """
     first = [rows[0] for rows in own.rows]
-    return {_good(name, table): own.results.table[name].to_numpy()[first] for name in own.results.goods}
+    return {
+        _good(name, table): own.results.table[name].to_numpy()[first] for name in own.results.goods
+    }
 
 
 def _good(name: str, table: pd.DataFrame) -> str:
@@ -70,7 +76,9 @@ def _goods_columns(own: Comparison, table: pd.DataFrame) -> list[Column]:
 
 
 def candidate_columns(own: Comparison, table: pd.DataFrame) -> tuple[Column, ...]:
-    """Return the columns of the table of candidates that a reader is shown, as far as the study has them."""
+    """Return the columns of the table of candidates that a reader is shown, as far as the study has
+    them.
+    """
     name, words, units = own.ranges.output
     chance = 0.5
     if of_first_limit(name):
@@ -79,67 +87,152 @@ def candidate_columns(own: Comparison, table: pd.DataFrame) -> tuple[Column, ...
     columns = []
     if own.required:
         meaning = (
-            "met: the low end over (1 + error) reaches the requirement. Missed: the high end times (1 + error) does "
+            "met: the low end over (1 + error) reaches the requirement. Missed: the high end "
+            "times (1 + error) does "
             "not. Otherwise open; none: no condition is held"
         )
         columns.append(Column("state", "Verdict", meaning=meaning, kind="state"))
     for choice in own.choices:
         known = parameter_of(choice)
-        unit = "" if known is None else known.units.replace("1", "") if known.units == "1" else known.units
+        unit = (
+            ""
+            if known is None
+            else known.units.replace("1", "")
+            if known.units == "1"
+            else known.units
+        )
         meaning = long_name_of(choice) if known is None else known.meaning
         columns.append(Column(choice, long_name_of(choice), unit, meaning, "level", role="name"))
     columns += _goods_columns(own, table)
     columns += [
         Column(
-            "low", "Worst", units, f"{life}: worst condition, low to high end of its range", until="high", role="bar"
+            "low",
+            "Worst",
+            units,
+            f"{life}: worst condition, low to high end of its range",
+            until="high",
+            role="bar",
         ),
-        Column("median", "Median", units, f"{words}: median of the conditions that are held", role="bar"),
+        Column(
+            "median",
+            "Median",
+            units,
+            f"{words}: median of the conditions that are held",
+            role="bar",
+        ),
         Column("best", "Best", units, f"{words}: best condition that is held", role="bar"),
-        Column("worst", "Worst condition", "", "the levels of the condition at the low end", "text"),
-        Column("ends", "Ended by", "", "what ends the candidate at the low end of its worst condition", "text"),
+        Column(
+            "worst", "Worst condition", "", "the levels of the condition at the low end", "text"
+        ),
+        Column(
+            "ends",
+            "Ended by",
+            "",
+            "what ends the candidate at the low end of its worst condition",
+            "text",
+        ),
         *_ends_apart(table),
     ]
     columns += _count_columns(own)
     columns += _drawn_columns(own, units)
     if (table["second"] != "").any():
         columns += [
-            Column("second", "Second model", "", "the second model of the same end with the shortest life", "text"),
-            Column("second_low", "By second model", "h", "its life at its worst condition", until="second_high"),
+            Column(
+                "second",
+                "Second model",
+                "",
+                "the second model of the same end with the shortest life",
+                "text",
+            ),
+            Column(
+                "second_low",
+                "By second model",
+                "h",
+                "its life at its worst condition",
+                until="second_high",
+            ),
         ]
         if any(one.output in OF_PAIR for one in own.required):
-            columns.append(Column("second_state", "Its verdict", "", "the requirement by the second model", "state"))
+            columns.append(
+                Column(
+                    "second_state",
+                    "Its verdict",
+                    "",
+                    "the requirement by the second model",
+                    "state",
+                )
+            )
     if (table["exceeded"] != "").any():
         columns.append(
-            Column("exceeded", "Above 100 %", "", "limits that are exceeded somewhere, the worst one", "text")
+            Column(
+                "exceeded",
+                "Above 100 %",
+                "",
+                "limits that are exceeded somewhere, the worst one",
+                "text",
+            )
         )
     if own.count > 1:
         better = "conditions in which the candidate is better than the leader"
         columns += [
             Column(
-                "ratio_low", "To the leader", "1", "ratio to the leader in the same condition", "ratio", "ratio_high"
+                "ratio_low",
+                "To the leader",
+                "1",
+                "ratio to the leader in the same condition",
+                "ratio",
+                "ratio_high",
             ),
             Column("longer", "Better in", "", better, "count"),
         ]
     if table["error"].notna().any():
-        columns.append(Column("error", "Error", "1", "told 95 % error of the solution at the worst condition", "error"))
+        columns.append(
+            Column(
+                "error",
+                "Error",
+                "1",
+                "told 95 % error of the solution at the worst condition",
+                "error",
+            )
+        )
     columns.append(
-        Column("extrapolated", "Extrapolated", "", "conditions whose life lies beyond the data of its rule", "count")
+        Column(
+            "extrapolated",
+            "Extrapolated",
+            "",
+            "conditions whose life lies beyond the data of its rule",
+            "count",
+        )
     )
     if (table["edge"] != "").any():
         columns.append(
-            Column("edge", "At the end of", "", "choices at the smallest or largest of their levels", "text")
+            Column(
+                "edge",
+                "At the end of",
+                "",
+                "choices at the smallest or largest of their levels",
+                "text",
+            )
         )
     return tuple(columns)
 
 
 def _drawn_columns(own: Comparison, units: str) -> list[Column]:
-    """Return the columns of drawn conditions: shares and order statistics with their intervals; [] for listed ones."""
+    """Return the columns of drawn conditions: shares and order statistics with their intervals; []
+    for listed ones.
+    """
     if not own.drawn:
         return []
-    share = "share of the drawn conditions that meet the requirement" if own.required else "share that is held"
+    share = (
+        "share of the drawn conditions that meet the requirement"
+        if own.required
+        else "share that is held"
+    )
     return [
         Column("share", "Share", "1", share, "share"),
-        Column("share_low", "95 %", "1", "Wilson's interval of the share", "share", until="share_high"),
+        Column(
+            "share_low", "95 %", "1", "Wilson's interval of the share", "share", until="share_high"
+        ),
         Column(
             "share_short",
             "With error",
@@ -149,34 +242,70 @@ def _drawn_columns(own: Comparison, units: str) -> list[Column]:
             until="share_long",
         ),
         Column("tenth", "Tenth part", units, "what nine of ten drawn conditions reach"),
-        Column("tenth_low", "Its 95 %", units, "interval of the tenth part by order statistics", until="tenth_high"),
-        Column("median_low", "95 % of the median", units, "interval by order statistics", until="median_high"),
+        Column(
+            "tenth_low",
+            "Its 95 %",
+            units,
+            "interval of the tenth part by order statistics",
+            until="tenth_high",
+        ),
+        Column(
+            "median_low",
+            "95 % of the median",
+            units,
+            "interval by order statistics",
+            until="median_high",
+        ),
     ]
 
 
 def _count_columns(own: Comparison) -> list[Column]:
-    """Return the columns that count conditions; of drawn ones a share says how many meet a requirement."""
+    """Return the columns that count conditions; of drawn ones a share says how many meet a
+    requirement.
+    """
     columns = [
-        Column("holds", "Holds", "", "conditions in which the roller rolls inside all limits", "count"),
+        Column(
+            "holds", "Holds", "", "conditions in which the roller rolls inside all limits", "count"
+        ),
         Column("judged", "Judged", "", "conditions that the model can judge", "count"),
         Column("of", "Of", "", "conditions of the candidate", "count"),
     ]
     if not own.required or own.drawn:
         return columns
-    meets = Column("meets", "Meets", "", "conditions that meet the requirement within the error", "count")
-    fails = Column("fails", "Fails where", "", "levels that cover the misses, or counts of their causes", "text")
+    meets = Column(
+        "meets", "Meets", "", "conditions that meet the requirement within the error", "count"
+    )
+    fails = Column(
+        "fails",
+        "Fails where",
+        "",
+        "levels that cover the misses, or counts of their causes",
+        "text",
+    )
     return [*columns[:2], meets, columns[2], fails]
 
 
 def _ends_apart(table: pd.DataFrame) -> list[Column]:
-    """Return the column of what ends candidates at the high end; none if it is the same as at the low end."""
+    """Return the column of what ends candidates at the high end; none if it is the same as at the
+    low end.
+    """
     if (table["ends"] == table["ends_high"]).all():
         return []
-    return [Column("ends_high", "At the high end", "", "what ends the candidate at the high end of its range", "text")]
+    return [
+        Column(
+            "ends_high",
+            "At the high end",
+            "",
+            "what ends the candidate at the high end of its range",
+            "text",
+        )
+    ]
 
 
 def _ends(own: Comparison) -> dict[str, Any]:
-    """Return the range at the worst condition, the median and the best condition, and what ends the candidate."""
+    """Return the range at the worst condition, the median and the best condition, and what ends the
+    candidate.
+    """
     ranges = own.ranges
     rows = own.own if own.drawn else own.reachable
     worse, case = own.smallest(ranges.worse, rows)
@@ -208,7 +337,8 @@ def _ends(own: Comparison) -> dict[str, Any]:
 
 
 def _at_best_place(own: Comparison, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the better end at the worst condition of each candidate, and its case, shape (candidates,) each.
+    """Return the better end at the worst condition of each candidate, and its case, shape
+    (candidates,) each.
 
     Where a factor spans the range of a placeholder, the place at which this end is best counts.
     """
@@ -224,7 +354,9 @@ def _at_best_place(own: Comparison, rows: np.ndarray) -> tuple[np.ndarray, np.nd
 
 
 def _least(own: Comparison, values: np.ndarray, rows: np.ndarray) -> np.ndarray:
-    """Return the smallest of some values of each candidate, shape (candidates,); NaN without a row."""
+    """Return the smallest of some values of each candidate, shape (candidates,); NaN without
+    a row.
+    """
     chosen = np.flatnonzero(rows & own.own & ~np.isnan(values))
     out = np.full(own.count, np.inf)
     np.minimum.at(out, own.place[chosen], values[chosen])
@@ -239,7 +371,9 @@ def _condition_text(own: Comparison, names: list[str], row: int) -> str:
 
 
 def _end_words(own: Comparison, case: np.ndarray, end: str) -> tuple[list[str], list[str]]:
-    """Return what ends each candidate in a case, and the body; '' where nothing does, or it is not known."""
+    """Return what ends each candidate in a case, and the body; '' where nothing does, or it is not
+    known.
+    """
     names, guide = own.ranges.first_at(end)
     value = own.ranges.low if end == "_low" else own.ranges.high
     words, bodies = [], []
@@ -253,7 +387,9 @@ def _end_words(own: Comparison, case: np.ndarray, end: str) -> tuple[list[str], 
 
 
 def _conditions_with(own: Comparison, rows: np.ndarray) -> np.ndarray:
-    """Return the number of conditions of each candidate with one of some cases, shape (candidates,)."""
+    """Return the number of conditions of each candidate with one of some cases, shape
+    (candidates,).
+    """
     pair = own.pairs[2]
     hit = np.bincount(pair[rows & own.own], minlength=len(own.pairs[0])) > 0
     return own.counted(hit)
@@ -272,7 +408,8 @@ def _counts(own: Comparison) -> dict[str, Any]:
 
 
 def states_of(own: Comparison, table: pd.DataFrame, exact: bool = False) -> list[str]:
-    """Return the state of each candidate: met, open or missed of the requirement, or none; '' where none is judged.
+    """Return the state of each candidate: met, open or missed of the requirement, or none; '' where
+    none is judged.
 
     Conditions that no candidate holds do not count. `exact` leaves the errors of the solution out.
     """
@@ -292,7 +429,9 @@ def states_of(own: Comparison, table: pd.DataFrame, exact: bool = False) -> list
 
 
 def _everywhere(own: Comparison, rows: np.ndarray) -> np.ndarray:
-    """Return the candidates of which all cases that count are among some rows, shape (candidates,)."""
+    """Return the candidates of which all cases that count are among some rows, shape
+    (candidates,).
+    """
     counts = own.reachable
     bad = np.bincount(own.place[counts & ~rows], minlength=own.count)
     some = np.bincount(own.place[counts], minlength=own.count) > 0
@@ -300,7 +439,9 @@ def _everywhere(own: Comparison, rows: np.ndarray) -> np.ndarray:
 
 
 def _shares(own: Comparison) -> dict[str, Any]:
-    """Return the share of the drawn conditions that meets the requirement, with both of its ranges."""
+    """Return the share of the drawn conditions that meets the requirement, with both of its
+    ranges.
+    """
     if not own.drawn:
         return {}
     hits = own.hits()
@@ -329,7 +470,9 @@ def _fails(own: Comparison, table: pd.DataFrame) -> list[str]:
     """Return where each candidate misses its requirement, or is not held without one."""
     good = own.met()[0] if own.required else own.ranges.held
     names = [name for name in own.conditions if own.results.table[name].nunique() > 1]
-    missed = table["of"].to_numpy() - (table["meets"] if own.required else table["holds"]).to_numpy()
+    missed = (
+        table["of"].to_numpy() - (table["meets"] if own.required else table["holds"]).to_numpy()
+    )
     out = []
     for number in range(own.count):
         if missed[number] == 0:
@@ -344,7 +487,9 @@ def _fails(own: Comparison, table: pd.DataFrame) -> list[str]:
 
 
 def _where(own: Comparison, names: list[str], number: int, good: np.ndarray) -> str:
-    """Return the levels that cover the misses of a candidate, otherwise how often it misses by what."""
+    """Return the levels that cover the misses of a candidate, otherwise how often it misses by
+    what.
+    """
     rows = own.rows[number]
     part = own.results.table.iloc[rows]
     found = places_of(part, names, ~good[rows], np.ones(len(rows), dtype=bool))
@@ -362,9 +507,11 @@ MOST_FACTORS = 2  # whose levels describe where a candidate fails
 
 
 def _second_models(own: Comparison) -> dict[str, Any]:
-    """Return the life of each candidate by the second model that is shortest, with its name and its verdict.
+    """Return the life of each candidate by the second model that is shortest, with its name and its
+    verdict.
 
-    A second model that knows no life of a body whose fatigue is known says nothing of this candidate.
+    A second model that knows no life of a body whose fatigue is known says nothing of this
+    candidate.
     """
     nothing = {"second": "", "second_low": np.nan, "second_high": np.nan, "second_state": ""}
     value = own.hours_by_limit("")
@@ -397,9 +544,11 @@ def _second_models(own: Comparison) -> dict[str, Any]:
 
 
 def _ends_by(own: Comparison, limits: list[str], name: str) -> np.ndarray | None:
-    """Return the shorter life of both bodies by a second model, at both ends of its range, shape (2, n) [h].
+    """Return the shorter life of both bodies by a second model, at both ends of its range, shape
+    (2, n) [h].
 
-    The life is NaN where the model lacks that of a body whose fatigue is known; None for a model that knows no life.
+    The life is NaN where the model lacks that of a body whose fatigue is known; None for a model
+    that knows no life.
     """
     hours = [own.hours_by_limit(end) for end in ("", "_low", "_high")]
     place = limits.index(name) if name in limits else -1
@@ -417,7 +566,8 @@ def _ends_by(own: Comparison, limits: list[str], name: str) -> np.ndarray | None
 
 
 def _second_states(own: Comparison, lives: np.ndarray) -> np.ndarray:
-    """Return the state of each candidate if a second model gives its lives, shape (candidates,); '' if none is judged.
+    """Return the state of each candidate if a second model gives its lives, shape (candidates,); ''
+    if none is judged.
 
     Parameters
     ----------
@@ -437,7 +587,9 @@ def _second_states(own: Comparison, lives: np.ndarray) -> np.ndarray:
 
 
 def _exceeded(own: Comparison) -> dict[str, Any]:
-    """Return the limit of each candidate that is used most above 100 %, its body, its use and its hours."""
+    """Return the limit of each candidate that is used most above 100 %, its body, its use and its
+    hours.
+    """
     nothing: dict[str, Any] = {
         "exceeded": "",
         "exceeded_by": "",
@@ -473,7 +625,9 @@ def _exceeded(own: Comparison) -> dict[str, Any]:
                 out[name].append(value)
             continue
         limit, body = divmod(int(place[row]), len(BODIES))
-        out["exceeded"].append(f"{limit_word(names[limit])} of the {BODIES[body]} {100 * worst[row]:.3g} %")
+        out["exceeded"].append(
+            f"{limit_word(names[limit])} of the {BODIES[body]} {100 * worst[row]:.3g} %"
+        )
         out["exceeded_by"].append(limit_word(names[limit]))
         out["exceeded_body"].append(BODIES[body])
         out["use"].append(float(worst[row]))
@@ -482,7 +636,9 @@ def _exceeded(own: Comparison) -> dict[str, Any]:
 
 
 def _edges(own: Comparison) -> list[str]:
-    """Return the choices of each candidate that stand at the smallest or largest of at least three numbers."""
+    """Return the choices of each candidate that stand at the smallest or largest of at least three
+    numbers.
+    """
     table, out = own.members, np.full(own.count, "", dtype=object)
     for name in own.choices:
         levels = own.results.levels(name)
@@ -491,7 +647,10 @@ def _edges(own: Comparison) -> list[str]:
         at = table[name].isin([levels[0], levels[-1]]).to_numpy()
         words = long_name_of(name)
         out = np.array(
-            [f"{old}, {words}" if old and hit else words if hit else old for old, hit in zip(out, at, strict=True)]
+            [
+                f"{old}, {words}" if old and hit else words if hit else old
+                for old, hit in zip(out, at, strict=True)
+            ]
         )
     return [str(one) for one in out]
 

@@ -1,6 +1,7 @@
 """Compare designs over their conditions.
 
-A design is one combination of choices. It is judged over all conditions in which the study has it, the worst first.
+A design is one combination of choices. It is judged over all conditions in which the study has it,
+the worst first.
 """
 
 from __future__ import annotations
@@ -22,25 +23,36 @@ from trackroller.roller.output_names import is_life
 from trackroller.study.design.levels import OF_MATERIALS
 
 FEWEST = 20  # sampled conditions of a design below which its life is not stated
-SHARED = 2  # conditions that all designs of a table must have, so that they are compared over these alone
-STRESS = ("peak_stress_roller", "peak stress of the roller", "MPa")  # compared in a study without lives
-UNRANKED = ("converged", "conditions met", "")  # without lives and stresses: 1 in each solved case, so that all tie
+# conditions that all designs of a table must have, so that they are compared over these alone
+SHARED = 2
+# compared in a study without lives
+STRESS = ("peak_stress_roller", "peak stress of the roller", "MPa")
+# without lives and stresses: 1 in each solved case, so that all tie
+UNRANKED = ("converged", "conditions met", "")
 TIED = 1e-9  # relative difference of lives that count as equal
 
 
 def slip_margin(results: SolvedCases) -> np.ndarray:
-    """Return the share of the largest transmissible force that the drive leaves, 1 - |F_Motor|/(mu |F_rad|/cos alpha).
+    """Return the share of the largest transmissible force that the drive leaves, 1 - |F_Motor|/(mu
+    |F_rad|/cos alpha).
 
     Returns
     -------
-    Shape (n,) [1]; NaN without friction and drive, and with friction that depends on the slip speed.
+    Shape (n,) [1]; NaN without friction and drive, and with friction that depends on the slip
+    speed.
 
     Notes
     -----
     At full slip no lateral friction is left, and both contacts carry |F_rad|/cos alpha together.
     """
-    friction = "friction_coefficient_value" if "friction_coefficient_value" in results.table else "friction_coefficient"
-    motor, mu, radial, angle = (_input(results, n) for n in ("motor_force", friction, "radial_force", "contact_angle"))
+    friction = (
+        "friction_coefficient_value"
+        if "friction_coefficient_value" in results.table
+        else "friction_coefficient"
+    )
+    motor, mu, radial, angle = (
+        _input(results, n) for n in ("motor_force", friction, "radial_force", "contact_angle")
+    )
     if results.base.get("friction_law") or "friction_law" in results.table:
         return np.full(len(results.table), np.nan)
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -49,7 +61,9 @@ def slip_margin(results: SolvedCases) -> np.ndarray:
 
 
 def lift_off_margin(results: SolvedCases) -> np.ndarray:
-    """Return the load of the lighter contact over that of the heavier one, shape (n,) [1]; 0 at lift-off."""
+    """Return the load of the lighter contact over that of the heavier one, shape (n,) [1]; 0 at
+    lift-off.
+    """
     loads = np.stack([results.column("normal_force_1"), results.column("normal_force_2")])
     with np.errstate(divide="ignore", invalid="ignore"):
         ratio: np.ndarray = np.min(loads, axis=0) / np.max(loads, axis=0)
@@ -64,14 +78,17 @@ def _input(results: SolvedCases, name: str) -> np.ndarray:
 
 
 def mixed(results: SolvedCases) -> np.ndarray:
-    """Return the rows of a random design that are no draws of their own, such as the mixtures of Saltelli's; (n,)."""
+    """Return the rows of a random design that are no draws of their own, such as the mixtures of
+    Saltelli's; (n,).
+    """
     out = np.ones(len(results.table), dtype=bool)
     out[results.design.method.independent_rows(results.design)] = False
     return out
 
 
 def _shared(place: np.ndarray, use: np.ndarray) -> np.ndarray:
-    """Mark the rows whose conditions every design has once; none if there are fewer than `SHARED` such conditions.
+    """Mark the rows whose conditions every design has once; none if there are fewer than `SHARED`
+    such conditions.
 
     Parameters
     ----------
@@ -88,7 +105,9 @@ def _shared(place: np.ndarray, use: np.ndarray) -> np.ndarray:
 
 
 def goal_without_lives(results: SolvedCases) -> tuple[str, str, str] | None:
-    """Return what compares designs without lives: a stress, else whether they meet the target; None without both."""
+    """Return what compares designs without lives: a stress, else whether they meet the target; None
+    without both.
+    """
     if STRESS[0] in results.table:
         return STRESS
     return UNRANKED if results.config.requirement else None
@@ -124,12 +143,13 @@ class Candidates:
     ----------
     results : the solved study
     choices, conditions : names of the factors by role
-    goal : column, words and unit of the life that is compared; of a study without lives the peak stress of the roller,
-        and `UNRANKED` without this stress
-    place : number of the design of each case, shape (n,); -1 for cases of a less exact contact model, and for those
-        that are no draws of their own
+    goal : column, words and unit of the life that is compared; of a study without lives the peak
+        stress of the roller, and `UNRANKED` without this stress
+    place : number of the design of each case, shape (n,); -1 for cases of a less exact contact
+        model, and for those that are no draws of their own
     matched : whether each design has the same conditions, each once
-    untried : rows of a table whose conditions were not tried with every design, shape (n,) bool; not in `place`
+    untried : rows of a table whose conditions were not tried with every design, shape (n,) bool;
+        not in `place`
     design : `place` with the rows of `untried`, shape (n,)
     """
 
@@ -143,7 +163,9 @@ class Candidates:
     design: np.ndarray
 
     @classmethod
-    def grouped(cls, results: SolvedCases, goal: tuple[str, str, str], free: tuple[str, ...] = ()) -> Candidates:
+    def grouped(
+        cls, results: SolvedCases, goal: tuple[str, str, str], free: tuple[str, ...] = ()
+    ) -> Candidates:
         """Return the designs of a study, whether a case is valid or not.
 
         Parameters
@@ -153,7 +175,9 @@ class Candidates:
         free : conditions that count as choices here
         """
         roles = results.roles | dict.fromkeys(free, "choice")
-        choices, conditions = (tuple(n for n, r in roles.items() if r == role) for role in ("choice", "condition"))
+        choices, conditions = (
+            tuple(n for n, r in roles.items() if r == role) for role in ("choice", "condition")
+        )
         own = results.of_one_model()
         place = np.where(own, codes(results.table, choices), -1)
         place[own] = np.unique(place[own], return_inverse=True)[1]
@@ -161,7 +185,11 @@ class Candidates:
         if conditions and (left_out := mixed(results)).any():
             place = np.where(left_out, -1, place)
             place[place >= 0] = np.unique(place[place >= 0], return_inverse=True)[1]
-        shared = _shared(place, use) if results.config.method.observed else np.zeros(len(use), dtype=bool)
+        shared = (
+            _shared(place, use)
+            if results.config.method.observed
+            else np.zeros(len(use), dtype=bool)
+        )
         untried = own & ~shared if shared.any() else shared
         design, place = place, np.where(untried, -1, place)
         kept = place >= 0
@@ -177,17 +205,25 @@ class Candidates:
 
     @property
     def drawn(self) -> bool:
-        """Return whether the conditions are a random sample, so that a worst case depends on its size."""
+        """Return whether the conditions are a random sample, so that a worst case depends on its
+        size.
+        """
         return bool(self.conditions) and (not self.matched or self.results.config.method.sampled)
 
     @property
     def comparable(self) -> bool:
-        """Return whether the designs can be compared: they share their conditions, or each has a sample of them."""
-        return not self.conditions or self.matched or bool(self.size.min() >= FEWEST and self.weighted)
+        """Return whether the designs can be compared: they share their conditions, or each has a
+        sample of them.
+        """
+        return (
+            not self.conditions or self.matched or bool(self.size.min() >= FEWEST and self.weighted)
+        )
 
     @property
     def weighted(self) -> bool:
-        """Return whether the rows stand for the use: drawn by their probability, or the user's own."""
+        """Return whether the rows stand for the use: drawn by their probability, or the
+        user's own.
+        """
         method = self.results.config.method
         return method.weighted or method.observed
 
@@ -198,19 +234,28 @@ class Candidates:
 
     @property
     def ranks(self) -> bool:
-        """Return whether the goal ranks the designs: a life does, and a stress does among designs of one material."""
-        one = not any(self.members[name].nunique() > 1 for name in OF_MATERIALS if name in self.choices)
+        """Return whether the goal ranks the designs: a life does, and a stress does among designs
+        of one material.
+        """
+        one = not any(
+            self.members[name].nunique() > 1 for name in OF_MATERIALS if name in self.choices
+        )
         return self.rising or (self.goal == STRESS and one)
 
     @property
     def usable(self) -> np.ndarray:
-        """Return the cases whose life or stress counts, shape (n,): they hold, are compared, and have a value."""
-        rows: np.ndarray = self.results.held & (self.place >= 0) & ~np.isnan(self.results.column(self.goal[0]))
+        """Return the cases whose life or stress counts, shape (n,): they hold, are compared, and
+        have a value.
+        """
+        rows: np.ndarray = (
+            self.results.held & (self.place >= 0) & ~np.isnan(self.results.column(self.goal[0]))
+        )
         return rows
 
     @cached_property
     def reached(self) -> np.ndarray:
-        """Return the cases of the conditions in which a design holds, shape (n,); all if designs share no conditions.
+        """Return the cases of the conditions in which a design holds, shape (n,); all if designs
+        share no conditions.
 
         So do all of drawn conditions, and of a study in which no design holds anywhere.
         """
@@ -226,8 +271,14 @@ class Candidates:
 
     @cached_property
     def possible(self) -> int:
-        """Return the number of conditions in which at least one design is valid; 0 if designs share no conditions."""
-        return len(np.unique(codes(self.results.table, self.conditions)[self.usable])) if self.matched else 0
+        """Return the number of conditions in which at least one design is valid; 0 if designs share
+        no conditions.
+        """
+        return (
+            len(np.unique(codes(self.results.table, self.conditions)[self.usable]))
+            if self.matched
+            else 0
+        )
 
     @cached_property
     def members(self) -> pd.DataFrame:
@@ -239,19 +290,23 @@ class Candidates:
 
     @cached_property
     def table(self) -> pd.DataFrame:
-        """Return one row a design, the best first: by the share of conditions that it holds, then by its life.
+        """Return one row a design, the best first: by the share of conditions that it holds, then
+        by its life.
 
-        Columns: the choices; the numbers of cases `cases`, `rolls` and `valid`; `worst`, `median` and `best` of the
-        goal over the valid cases, `worst_case` (its row), and which of the three lie beyond the S-N data; the number
-        of valid cases in which each body fails `first_`; the worst life of each body; the smallest margins, at most 0
-        where a case slips or lifts off; with random conditions `b10`, the life that nine of ten cases reach if cases
-        that are not valid count as 0, with its 95 % interval; `rank`, equal for ties.
+        Columns: the choices; the numbers of cases `cases`, `rolls` and `valid`; `worst`, `median`
+        and `best` of the goal over the valid cases, `worst_case` (its row), and which of the three
+        lie beyond the S-N data; the number of valid cases in which each body fails `first_`; the
+        worst life of each body; the smallest margins, at most 0 where a case slips or lifts off;
+        with random conditions `b10`, the life that nine of ten cases reach if cases that are not
+        valid count as 0, with its 95 % interval; `rank`, equal for ties.
         """
         return _ranked(*self._listed)
 
     @cached_property
     def _listed(self) -> tuple[pd.DataFrame, pd.Series, pd.Series, pd.Series]:
-        """Return the rows of `table` in the order of their numbers, and what ranks them: see `_ranked`."""
+        """Return the rows of `table` in the order of their numbers, and what ranks them: see
+        `_ranked`.
+        """
         results = self.results
         table = self.members.copy()
         table["cases"] = self.size
@@ -269,7 +324,9 @@ class Candidates:
             ("slip_margin", slip_margin(results), "full_slip"),
             ("lift_off_margin", lift_off_margin(results), "lift_off"),
         ):
-            case = self._least(margin, self.reached & (results.rolling | (results.regime == REGIMES.index(lost))))
+            case = self._least(
+                margin, self.reached & (results.rolling | (results.regime == REGIMES.index(lost)))
+            )
             table[name] = np.where(case < 0, np.nan, margin[case])
         sign = 1.0 if self.rising else -1.0
         key = sign * table["worst"]
@@ -289,7 +346,8 @@ class Candidates:
         return rows
 
     def worst_cases(self, values: np.ndarray, way: str) -> np.ndarray:
-        """Return the case of each design with the worst value among its valid cases, -1 without one.
+        """Return the case of each design with the worst value among its valid cases, -1 without
+        one.
 
         Parameters
         ----------
@@ -302,7 +360,9 @@ class Candidates:
         return np.bincount(self.place[rows & (self.place >= 0)], minlength=len(self.size))
 
     def _least(self, values: np.ndarray, rows: np.ndarray) -> np.ndarray:
-        """Return the case with the smallest value of each design among the rows, -1 if no value is known."""
+        """Return the case with the smallest value of each design among the rows, -1 if no value is
+        known.
+        """
         known = np.flatnonzero(rows & (self.place >= 0) & ~np.isnan(values))
         order = known[np.lexsort((values[known], self.place[known]))]
         candidates, first = np.unique(self.place[order], return_index=True)
@@ -311,13 +371,19 @@ class Candidates:
         return out
 
     def _spread(self) -> dict[str, np.ndarray]:
-        """Return worst, median and best of the goal of each design, and whether they lie beyond the S-N data."""
+        """Return worst, median and best of the goal of each design, and whether they lie beyond the
+        S-N data.
+        """
         values, rows = self.results.column(self.goal[0]), np.flatnonzero(self.usable)
         order = rows[np.lexsort((values[rows] if self.rising else -values[rows], self.place[rows]))]
         number = self._count(self.usable)
         start, some = np.cumsum(number) - number, number > 0
         beyond = beyond_sn_data(self.results, self.goal[0])
-        ends = {"worst": (0, 0), "median": ((number - 1) // 2, number // 2), "best": (number - 1, number - 1)}
+        ends = {
+            "worst": (0, 0),
+            "median": ((number - 1) // 2, number // 2),
+            "best": (number - 1, number - 1),
+        }
         columns: dict[str, np.ndarray] = {}
         for name, two in ends.items():
             low, high = (order[np.where(some, start + step, 0)] for step in two)
@@ -329,10 +395,11 @@ class Candidates:
         return columns
 
     def _quantile(self) -> dict[str, np.ndarray]:
-        """Return the life that nine of ten cases of each design reach, its interval, and whether it lies beyond.
+        """Return the life that nine of ten cases of each design reach, its interval, and whether it
+        lies beyond.
 
-        Cases that are not valid have life 0. The scatter of the material of the body that fails first counts if the
-        study asks for it, and if the S-N curve decides.
+        Cases that are not valid have life 0. The scatter of the material of the body that fails
+        first counts if the study asks for it, and if the S-N curve decides.
         """
         results = self.results
         lives = np.where(self.usable, results.column(self.goal[0]), 0.0)
@@ -342,22 +409,33 @@ class Candidates:
         cases = [self.cases_of(i) for i in range(len(self.size))]
         ends = np.array([b10(lives[c], scatter[c]) for c in cases]).T
         columns = dict(zip(("b10", "b10_low", "b10_high"), ends, strict=True))
-        rests = np.array([max(b10(lives[c])[0], value) for c, value in zip(cases, ends[0], strict=True)])
+        rests = np.array(
+            [max(b10(lives[c])[0], value) for c, value in zip(cases, ends[0], strict=True)]
+        )
         there = self.usable & (lives <= rests[self.place]) & beyond_sn_data(results, self.goal[0])
         return columns | {"b10_beyond": self._count(there) > 0}
 
 
-def _ranked(table: pd.DataFrame, held: pd.Series, key: pd.Series, middle: pd.Series) -> pd.DataFrame:
-    """Sort designs by the share of cases that they hold, then by the key, and rank them; equal ones tie."""
+def _ranked(
+    table: pd.DataFrame, held: pd.Series, key: pd.Series, middle: pd.Series
+) -> pd.DataFrame:
+    """Sort designs by the share of cases that they hold, then by the key, and rank them; equal ones
+    tie.
+    """
     order = np.lexsort((-middle.fillna(-np.inf), -key.fillna(-np.inf), -held))
     shares, keys = held.to_numpy()[order], key.to_numpy()[order]
-    same = np.isclose(shares[1:], shares[:-1], TIED, 0) & np.isclose(keys[1:], keys[:-1], TIED, 0, equal_nan=True)
-    rank = np.maximum.accumulate(np.concatenate([[1], np.where(same, 1, np.arange(2, len(order) + 1))]))
+    same = np.isclose(shares[1:], shares[:-1], TIED, 0) & np.isclose(
+        keys[1:], keys[:-1], TIED, 0, equal_nan=True
+    )
+    rank = np.maximum.accumulate(
+        np.concatenate([[1], np.where(same, 1, np.arange(2, len(order) + 1))])
+    )
     return table.iloc[order].assign(rank=rank)
 
 
 def hardest_first(candidates: Candidates) -> np.ndarray:
-    """Number the conditions of the cases, shape (n,): fewest valid designs first, then the worse worst case.
+    """Number the conditions of the cases, shape (n,): fewest valid designs first, then the worse
+    worst case.
 
     Cases of a less exact contact model have the number -1.
     """

@@ -1,12 +1,15 @@
-"""The record of a carriage: its worst roller with the life, every roller, the loads, and the margins of the load cases.
+"""The record of a carriage: its worst roller with the life, every roller, the loads, and the
+margins of the load cases.
 
-Keys of `Answer.headline`: `roller` (the worst one, or the one with the largest radial force), `case` (that does most of
-its damage, or has that force), `part` (of the damage by that case [1]), `low`, `high` [h], `km` [km], `body` (`roller`
-or `guide`) and `limit` (in words) that end it, `force` (largest radial force [N]), `unknown` (rollers whose life is not
-known), `unsettled` (load cases without forces), `margins` (list of {of, end, times, case, tipping}: the first end of
-the payload and of all loads), `exceeded` (list of {limit, body, roller, use [1], hours, km}, the worst one first),
-`not_judged` (reasons why the model does not judge the worst roller), `state` (of the required life: `met`, `open`,
-`missed`, or '' without one) and `of` (rollers that have this state, where others have another one).
+Keys of `Answer.headline`: `roller` (the worst one, or the one with the largest radial force),
+`case` (that does most of its damage, or has that force), `part` (of the damage by that case [1]),
+`low`, `high` [h], `km` [km], `body` (`roller` or `guide`) and `limit` (in words) that end it,
+`force` (largest radial force [N]), `unknown` (rollers whose life is not known), `unsettled` (load
+cases without forces), `margins` (list of {of, end, times, case, tipping}: the first end of the
+payload and of all loads), `exceeded` (list of {limit, body, roller, use [1], hours, km}, the worst
+one first), `not_judged` (reasons why the model does not judge the worst roller), `state` (of the
+required life: `met`, `open`, `missed`, or '' without one) and `of` (rollers that have this state,
+where others have another one).
 """
 
 from __future__ import annotations
@@ -29,7 +32,13 @@ from trackroller.results.answer import Answer, Caution, Column, Part, Required
 from trackroller.results.flags import OUTSIDE
 from trackroller.results.lives import FIRST_LIMIT
 from trackroller.results.placeholders import guess_cautions, placeholders_part
-from trackroller.results.roller_answer import CODES, checks_left_out, facts_of_data, rounded_text, state_of_life
+from trackroller.results.roller_answer import (
+    CODES,
+    checks_left_out,
+    facts_of_data,
+    rounded_text,
+    state_of_life,
+)
 from trackroller.results.spectrum_answer import not_given_values
 from trackroller.roller.dataset import validity_bit
 from trackroller.roller.duty import strokes_words
@@ -40,22 +49,76 @@ ENDS = {"one_contact": "one contact", "lift_off": "lift-off", "tipping": "tippin
 ROLLING = REGIMES.index("rolling")
 COLUMNS = (
     Column("roller", "Roller", "", "roller of the carriage", "text", role="name"),
-    Column("state", "Verdict", "", "whether the life reaches what the file of the roller requires", "state"),
-    Column("low", "Life", "h", "hours of travel to the first limit of the roller or its rail", "life", "high", "bar"),
-    Column("required", "Required", "h", "life that the file of the roller requires", "life", role="file"),
-    Column("hours", "Life at the values", "h", "the same at the values of the placeholders", "life", role="file"),
+    Column(
+        "state",
+        "Verdict",
+        "",
+        "whether the life reaches what the file of the roller requires",
+        "state",
+    ),
+    Column(
+        "low",
+        "Life",
+        "h",
+        "hours of travel to the first limit of the roller or its rail",
+        "life",
+        "high",
+        "bar",
+    ),
+    Column(
+        "required",
+        "Required",
+        "h",
+        "life that the file of the roller requires",
+        "life",
+        role="file",
+    ),
+    Column(
+        "hours",
+        "Life at the values",
+        "h",
+        "the same at the values of the placeholders",
+        "life",
+        role="file",
+    ),
     Column("km", "Travel", "km", "the same life as travel of the carriage"),
     Column("years", "Years", "", "the same life in years of the duty, from one year on", "years"),
-    Column("ends", "Ended by", "", "the limit that is reached first, and the body that reaches it", "text"),
-    Column("case", "Load case", "", "load case with the largest part of the damage, or the largest force", "text"),
+    Column(
+        "ends",
+        "Ended by",
+        "",
+        "the limit that is reached first, and the body that reaches it",
+        "text",
+    ),
+    Column(
+        "case",
+        "Load case",
+        "",
+        "load case with the largest part of the damage, or the largest force",
+        "text",
+    ),
     Column("part", "Its part", "1", "part of the damage that this load case does", "share"),
     Column("force", "Largest radial force", "N", "that presses the roller on its rail", "whole"),
     Column("lifted", "Lifted in", "", "load cases in which the roller carries no load", "text"),
-    Column("lifted_share", "of the travel", "1", "share of the travel of these load cases", "share"),
-    Column("one_contact", "Not on both contacts in", "", "load cases in which a contact carries no load", "text"),
+    Column(
+        "lifted_share", "of the travel", "1", "share of the travel of these load cases", "share"
+    ),
+    Column(
+        "one_contact",
+        "Not on both contacts in",
+        "",
+        "load cases in which a contact carries no load",
+        "text",
+    ),
     Column("factor", "Load factor", "1", "largest load factor of the maker's catalogue"),
     Column("catalogue_km", "By the catalogue", "km", "life by the maker's catalogue"),
-    Column("exceeded", "Exceeded", "", "limits that the roller or its rail exceeds, with the largest use", "text"),
+    Column(
+        "exceeded",
+        "Exceeded",
+        "",
+        "limits that the roller or its rail exceeds, with the largest use",
+        "text",
+    ),
 )
 OF_LOADS = (
     Column("case", "Load case", "", "", "text", role="name"),
@@ -71,11 +134,19 @@ OF_CASES = (
     Column("share", "Share", "1", "share of the travel", "share"),
     Column("drive", "Drive", "N", "force of the drive along the track", "whole"),
     *(
-        Column(f"{part}_{end}", f"{words} to {ends}", "1", f"multiplier of {words} that leads to {ends}", "whole")
+        Column(
+            f"{part}_{end}",
+            f"{words} to {ends}",
+            "1",
+            f"multiplier of {words} that leads to {ends}",
+            "whole",
+        )
         for part, words in LOADS.items()
         for end, ends in ENDS.items()
     ),
-    Column("settled", "Settled", "", "whether a state of the rollers fulfils all conditions", "text"),
+    Column(
+        "settled", "Settled", "", "whether a state of the rollers fulfils all conditions", "text"
+    ),
 )
 MASSES = (
     Column("name", "Mass", "", "", "text", role="name"),
@@ -85,14 +156,21 @@ MASSES = (
 PLACES = (
     Column("roller", "Roller", "", "", "text", role="name"),
     *(Column(f"at_{axis}", f"at {axis}", "mm", "place", "whole") for axis in "xyz"),
-    *(Column(f"pushes_{axis}", f"pushes {axis}", "1", "direction of its load on the rail", "whole") for axis in "xyz"),
+    *(
+        Column(
+            f"pushes_{axis}", f"pushes {axis}", "1", "direction of its load on the rail", "whole"
+        )
+        for axis in "xyz"
+    ),
     *(Column(f"axis_{axis}", f"x_R {axis}", "1", "axis of the roller", "whole") for axis in "xyz"),
     Column("locating", "Locating", "", "whether it carries axial load", "text"),
 )
 OF_MARGINS = (
-    "A margin is a multiplier of the payload, or of all loads, with the same preload; ∞ is not up to 1000. "
+    "A margin is a multiplier of the payload, or of all loads, with the same preload; ∞ is "
+    "not up to 1000. "
     "One contact: "
-    "the axial force lifts the other contact of a roller; friction may do so earlier. The model ends there: later "
+    "the axial force lifts the other contact of a roller; friction may do so earlier. The "
+    "model ends there: later "
     "margins are not stated (–)."
 )
 
@@ -133,7 +211,9 @@ def answer_of_carriage(ds: xr.Dataset) -> Answer:
 
 
 def worst_place(ds: xr.Dataset) -> tuple[str, str]:
-    """Return the worst roller and the load case with most of its damage, or those of the largest radial force."""
+    """Return the worst roller and the load case with most of its damage, or those of the largest
+    radial force.
+    """
     worst = ds.attrs.get("worst_roller")
     if worst:
         damage = ds["damage_per_km"].sel(roller=worst).values
@@ -196,7 +276,9 @@ def _headline(ds: xr.Dataset, table: pd.DataFrame) -> dict[str, Any]:
 
 
 def _first_margins(ds: xr.Dataset) -> Iterator[dict[str, Any]]:
-    """Yield the smallest multiplier of the payload, and of all loads, up to which all rollers roll on both contacts."""
+    """Yield the smallest multiplier of the payload, and of all loads, up to which all rollers roll
+    on both contacts.
+    """
     for part, words in LOADS.items():
         if f"{part}_to_lift_off" not in ds:  # the forces alone
             continue
@@ -217,13 +299,17 @@ def _first_margins(ds: xr.Dataset) -> Iterator[dict[str, Any]]:
 
 
 def _required(table: pd.DataFrame) -> tuple[Required, ...]:
-    """Return the life that is required of the rollers with the worst verdict; () without a requirement."""
+    """Return the life that is required of the rollers with the worst verdict; () without a
+    requirement.
+    """
     required = table["required"][table["state"] == _judged(table)["state"]]
     return () if required.isna().all() else (Required(*FIRST_LIMIT, least=float(required.max())),)
 
 
 def _judged(table: pd.DataFrame) -> dict[str, Any]:
-    """Return the worst verdict of the rollers, and which rollers have it where others have another one."""
+    """Return the worst verdict of the rollers, and which rollers have it where others have another
+    one.
+    """
     states = table["state"]
     worst = next((state for state in ("missed", "open", "met") if (states == state).any()), "")
     alike = (states == worst).all() or not worst
@@ -231,11 +317,15 @@ def _judged(table: pd.DataFrame) -> dict[str, Any]:
 
 
 def _exceeded(ds: xr.Dataset) -> Iterator[dict[str, Any]]:
-    """Yield each limit that a roller or its rail exceeds; the first limit of a roller that breaks is its end."""
+    """Yield each limit that a roller or its rail exceeds; the first limit of a roller that breaks
+    is its end.
+    """
     for roller in map(str, ds["roller"].values):
         own = ds.sel(roller=roller)
         for name, body, used, hours in _limits_of(own, "exceeded"):
-            if name != wear.LIMIT.name and not (own["life_hours"] == 0 and own["first_limit"] == name):
+            if name != wear.LIMIT.name and not (
+                own["life_hours"] == 0 and own["first_limit"] == name
+            ):
                 yield _use(roller, name, body, used, hours, math.nan)
         factor, km = _by_catalogue(own)
         if factor > 1:
@@ -243,7 +333,14 @@ def _exceeded(ds: xr.Dataset) -> Iterator[dict[str, Any]]:
 
 
 def _use(roller: str, name: str, body: str, used: float, hours: float, km: float) -> dict[str, Any]:
-    return {"limit": limit_word(name), "body": body, "roller": roller, "use": used, "hours": hours, "km": km}
+    return {
+        "limit": limit_word(name),
+        "body": body,
+        "roller": roller,
+        "use": used,
+        "hours": hours,
+        "km": km,
+    }
 
 
 def _limits_of(own: xr.Dataset, state: str = "") -> Iterator[tuple[str, str, float, float]]:
@@ -258,27 +355,39 @@ def _limits_of(own: xr.Dataset, state: str = "") -> Iterator[tuple[str, str, flo
 
 
 def _by_catalogue(own: xr.Dataset) -> tuple[float, float]:
-    """Return the largest load factor of a roller by its maker's catalogue, and its life [km]; NaN without them."""
+    """Return the largest load factor of a roller by its maker's catalogue, and its life [km]; NaN
+    without them.
+    """
     if "load_factor" not in own or own["load_factor"].isnull().all():
         return math.nan, math.nan
     return float(own["load_factor"].max()), float(own["catalogue_life_km"])
 
 
 def _not_checked(ds: xr.Dataset) -> dict[str, tuple[str, ...]]:
-    """Return the limits that were not checked by body; where only some of the loaded rollers lack one, with these."""
-    loaded = [str(one) for one in ds["roller"].values if (ds["radial_force"].sel(roller=one) < 0).any()]
+    """Return the limits that were not checked by body; where only some of the loaded rollers lack
+    one, with these.
+    """
+    loaded = [
+        str(one) for one in ds["roller"].values if (ds["radial_force"].sel(roller=one) < 0).any()
+    ]
     if "limit_state" not in ds or not loaded:
         return {}
     lacking: dict[str, dict[str, list[str]]] = {body: {} for body in BODIES}
     for roller in loaded:
         own = ds.sel(roller=roller).rename(roller_regime="regime")
         names = {field: {"name": str(own[field].item())} for field in MATERIAL_FIELDS}
-        known = () if math.isnan(_by_catalogue(own)[0]) else (catalogue.LIMIT.name,)  # by that of the carriage
-        for body, limits in checks_left_out(own.assign_attrs({MATERIALS: json.dumps(names)}), known).items():
+        # by that of the carriage
+        known = () if math.isnan(_by_catalogue(own)[0]) else (catalogue.LIMIT.name,)
+        for body, limits in checks_left_out(
+            own.assign_attrs({MATERIALS: json.dumps(names)}), known
+        ).items():
             for words in limits:
                 lacking[body].setdefault(words, []).append(roller)
     return {
-        body: tuple(words if rollers == loaded else f"{', '.join(rollers)}: {words}" for words, rollers in own.items())
+        body: tuple(
+            words if rollers == loaded else f"{', '.join(rollers)}: {words}"
+            for words, rollers in own.items()
+        )
         for body, own in lacking.items()
     }
 
@@ -296,7 +405,9 @@ def _table(ds: xr.Dataset) -> pd.DataFrame:
     rows = [_row(ds, str(name)) for name in ds["roller"].values]
     worst = worst_place(ds)[0]
     rows.sort(key=lambda row: row["roller"] != worst)
-    return pd.DataFrame(rows, columns=[name for one in COLUMNS for name in (one.name, one.until) if name])
+    return pd.DataFrame(
+        rows, columns=[name for one in COLUMNS for name in (one.name, one.until) if name]
+    )
 
 
 def _row(ds: xr.Dataset, roller: str) -> dict[str, Any]:
@@ -306,33 +417,52 @@ def _row(ds: xr.Dataset, roller: str) -> dict[str, Any]:
     cases = ds["load_case"].values
     lifted = forces == 0
     case, part = _worst_case(ds, roller)
-    row: dict[str, Any] = {"roller": roller, "case": case, "part": part, "lifted": ", ".join(cases[lifted])}
+    row: dict[str, Any] = {
+        "roller": roller,
+        "case": case,
+        "part": part,
+        "lifted": ", ".join(cases[lifted]),
+    }
     row["force"] = -float(np.nanmin(forces)) if np.isfinite(forces).any() else math.nan
     row["lifted_share"] = float(ds["share"].values[lifted].sum()) if lifted.any() else math.nan
     row["one_contact"] = _beside_rolling(own)
-    numbers = {"low": "life_hours_low", "high": "life_hours_high", "hours": "life_hours", "km": "life_km"}
+    numbers = {
+        "low": "life_hours_low",
+        "high": "life_hours_high",
+        "hours": "life_hours",
+        "km": "life_km",
+    }
     numbers |= {"years": "life_years", "catalogue_km": "catalogue_life_km"}
     row |= {key: float(own[name]) if name in own else math.nan for key, name in numbers.items()}
     row["ends"] = _end_of(own)
     row["factor"] = _by_catalogue(own)[0]
     row["required"] = float(own["required_hours"]) if "required_hours" in own else math.nan
-    row["state"] = "" if math.isnan(row["required"]) else state_of_life(row["low"], row["high"], row["required"])
+    row["state"] = (
+        ""
+        if math.isnan(row["required"])
+        else state_of_life(row["low"], row["high"], row["required"])
+    )
     over = [
-        f"{limit_word(name)} of the {body} ({100 * used:.3g} %)" for name, body, used, _ in _limits_of(own, "exceeded")
+        f"{limit_word(name)} of the {body} ({100 * used:.3g} %)"
+        for name, body, used, _ in _limits_of(own, "exceeded")
     ]
     row["exceeded"] = ", ".join(over)
     return row
 
 
 def _end_of(own: xr.Dataset) -> str:
-    """Return the limit that a roller or its rail reaches first, and the body; '' where it is not known."""
+    """Return the limit that a roller or its rail reaches first, and the body; '' where it is not
+    known.
+    """
     if "first_limit" not in own or not str(own["first_limit"].item()):
         return ""
     return f"{limit_word(str(own['first_limit'].item()))} of the {own['first_body'].item()}"
 
 
 def _worst_case(ds: xr.Dataset, roller: str) -> tuple[str, float]:
-    """Return the load case with most of the damage of a roller, and this part; or that with its largest force."""
+    """Return the load case with most of the damage of a roller, and this part; or that with its
+    largest force.
+    """
     own = ds.sel(roller=roller)
     if "damage_per_km" in own and float(np.nansum(own["damage_per_km"].values)) > 0:
         damage = np.nan_to_num(own["damage_per_km"].values, posinf=math.inf)
@@ -349,14 +479,18 @@ def _beside_rolling(own: xr.Dataset) -> str:
     if "roller_regime" not in own:
         return ""
     found: dict[str, list[str]] = {}
-    for code, case in zip(own["roller_regime"].values.tolist(), own["load_case"].values, strict=True):
+    for code, case in zip(
+        own["roller_regime"].values.tolist(), own["load_case"].values, strict=True
+    ):
         if code not in (-1, ROLLING):
             found.setdefault(REGIME_LABELS[code], []).append(str(case))
     return "; ".join(f"{', '.join(cases)} ({regime})" for regime, cases in found.items())
 
 
 def _parts(ds: xr.Dataset) -> Iterator[Part]:
-    """Yield the further tables of a carriage: loads, load cases with their margins, masses, and places."""
+    """Yield the further tables of a carriage: loads, load cases with their margins, masses, and
+    places.
+    """
     loads = pd.DataFrame(list(_loads(ds)), columns=[one.name for one in OF_LOADS])
     columns = tuple(one for one in OF_LOADS if not _is_empty(loads[one.name]) or one.role)
     yield Part("loads", "Loads of the rollers", loads, columns, strokes_words(ds))
@@ -365,9 +499,13 @@ def _parts(ds: xr.Dataset) -> Iterator[Part]:
     yield Part("cases", "Load cases and margins", cases, shown, OF_MARGINS)
     masses = [
         [str(name), float(value), *map(float, at)]
-        for name, value, at in zip(ds["mass_name"].values, ds["mass"].values, ds["mass_at"].values, strict=True)
+        for name, value, at in zip(
+            ds["mass_name"].values, ds["mass"].values, ds["mass_at"].values, strict=True
+        )
     ]
-    yield Part("masses", "Masses", pd.DataFrame(masses, columns=[one.name for one in MASSES]), MASSES)
+    yield Part(
+        "masses", "Masses", pd.DataFrame(masses, columns=[one.name for one in MASSES]), MASSES
+    )
     places = [
         [str(name), *np.round(np.concatenate(own), 9).tolist(), "yes" if locates else "no"]
         for name, locates, *own in zip(
@@ -377,7 +515,12 @@ def _parts(ds: xr.Dataset) -> Iterator[Part]:
             strict=True,
         )
     ]
-    yield Part("places", "Places and directions", pd.DataFrame(places, columns=[one.name for one in PLACES]), PLACES)
+    yield Part(
+        "places",
+        "Places and directions",
+        pd.DataFrame(places, columns=[one.name for one in PLACES]),
+        PLACES,
+    )
 
 
 def _loads(ds: xr.Dataset) -> Iterator[dict[str, Any]]:
@@ -389,15 +532,26 @@ def _loads(ds: xr.Dataset) -> Iterator[dict[str, Any]]:
             regime = ""
             if "roller_regime" in own:
                 regime = "lifted" if lifted else REGIME_LABELS[int(own["roller_regime"])]
-            row = {"case": str(case), "roller": str(roller), "regime": regime, "radial": float(own["radial_force"])}
+            row = {
+                "case": str(case),
+                "roller": str(roller),
+                "regime": regime,
+                "radial": float(own["radial_force"]),
+            }
             row["axial"] = float(own["axial_force"])
-            row["hours"] = float(own["case_life_hours"]) if "case_life_hours" in own and not lifted else math.nan
+            row["hours"] = (
+                float(own["case_life_hours"])
+                if "case_life_hours" in own and not lifted
+                else math.nan
+            )
             row["factor"] = float(own["load_factor"]) if "load_factor" in own else math.nan
             yield row
 
 
 def _cases(ds: xr.Dataset) -> Iterator[dict[str, Any]]:
-    """Yield share, drive and margins of each load case; margins later than one contact are not stated."""
+    """Yield share, drive and margins of each load case; margins later than one contact are not
+    stated.
+    """
     for case in ds["load_case"].values:
         own = ds.sel(load_case=case)
         row = {"case": str(case), "share": float(own["share"]), "drive": float(own["drive_force"])}
@@ -418,11 +572,16 @@ def _margins_of(own: xr.Dataset, part: str) -> dict[str, float]:
 
 
 def _warnings(ds: xr.Dataset) -> Iterator[Caution]:
-    """Yield what a user has to know of forces, rollers without load, contacts, flags and unusual values."""
+    """Yield what a user has to know of forces, rollers without load, contacts, flags and unusual
+    values.
+    """
     rollers = ds["roller"].values
     cases = ds["load_case"].values[~ds["converged"].values].tolist()
     if cases:
-        text = "no state of the rollers fulfils all conditions (balance, no pull on a rail, no axial force on a lifted "
+        text = (
+            "no state of the rollers fulfils all conditions (balance, no pull on a rail, no "
+            "axial force on a lifted "
+        )
         text += f"roller), so that no life is known: {', '.join(cases)}. More preload helps."
         yield Caution("not_judged", len(cases), ds.sizes["load_case"], text, "load cases")
     without = [name for name in ds.attrs.get("without_case", "").split(", ") if name]
@@ -445,8 +604,10 @@ def _swinging(ds: xr.Dataset) -> Iterator[Caution]:
     angles = ds["swing"].values
     place = int(np.argmax(np.abs(angles)))
     text = (
-        "a pendulum: the rollers stand in one line, about which the carriage is free to roll and stable; it swings by "
-        f"{angles[place]:.3g}° in {ds['load_case'].values[place]}, the largest angle, and the forces stand in the axes "
+        "a pendulum: the rollers stand in one line, about which the carriage is free to roll and "
+        "stable; it swings by "
+        f"{angles[place]:.3g}° in {ds['load_case'].values[place]}, the largest angle, and the "
+        "forces stand in the axes "
         "of the swung carriage"
     )
     if np.isnan(ds.get("payload_to_tipping", ds["swing"])).any():
@@ -456,7 +617,9 @@ def _swinging(ds: xr.Dataset) -> Iterator[Caution]:
 
 
 def _unloaded(ds: xr.Dataset) -> Iterator[Caution]:
-    """Yield the rollers that are lifted in some load cases, or carry no load in any, with the cause."""
+    """Yield the rollers that are lifted in some load cases, or carry no load in any, with the
+    cause.
+    """
     settled = ds["converged"].values
     play = ds.attrs.get("with_play", "").split(", ")
     never: dict[bool, list[str]] = {}
@@ -465,11 +628,15 @@ def _unloaded(ds: xr.Dataset) -> Iterator[Caution]:
         up = (ds["radial_force"].sel(roller=roller) == 0).values
         gap = max(0.0, -float(ds["approach"].sel(roller=roller).max()))
         if up.any() and up[settled].all():
-            told = f"{roller} ({gap:.3g} mm away from its rail at least)" if roller in play else roller
+            told = (
+                f"{roller} ({gap:.3g} mm away from its rail at least)" if roller in play else roller
+            )
             never.setdefault(roller in play, []).append(told)
         elif up.any():
             share = 100 * float(ds["share"].values[up].sum())
-            lifted.append(f"{roller} in {', '.join(ds['load_case'].values[up])} ({share:.3g} % of the travel)")
+            lifted.append(
+                f"{roller} in {', '.join(ds['load_case'].values[up])} ({share:.3g} % of the travel)"
+            )
     total = ds.sizes["roller"]
     if lifted:
         yield Caution("not_held", len(lifted), total, f"lifted: {'; '.join(lifted)}", "rollers")
@@ -479,7 +646,13 @@ def _unloaded(ds: xr.Dataset) -> Iterator[Caution]:
             if has_play
             else "a preload presses them on"
         )
-        yield Caution("not_held", len(names), total, f"without load in any case: {', '.join(names)}; {why}", "rollers")
+        yield Caution(
+            "not_held",
+            len(names),
+            total,
+            f"without load in any case: {', '.join(names)}; {why}",
+            "rollers",
+        )
 
 
 def _one_contact(ds: xr.Dataset) -> Iterator[Caution]:
@@ -501,9 +674,16 @@ def _second_models(ds: xr.Dataset) -> Iterator[Caution]:
     told: dict[str, list[str]] = {}
     for roller in map(str, ds["roller"].values):
         own = ds.sel(roller=roller)
-        life = {name: float(own[name]) if name in own else math.nan for name in ("life_hours", "life_km")}
+        life = {
+            name: float(own[name]) if name in own else math.nan
+            for name in ("life_hours", "life_km")
+        }
         for name, body, used, hours in _limits_of(own):
-            if LIMITS[name].beside and (used > 1 or not hours >= life["life_hours"]) and not math.isnan(hours):
+            if (
+                LIMITS[name].beside
+                and (used > 1 or not hours >= life["life_hours"])
+                and not math.isnan(hours)
+            ):
                 text = f"{roller} {100 * used:.3g} % used, {rounded_text(hours)} h"
                 told.setdefault(f"{limit_word(name)} of the {body}", []).append(text)
         factor, km = _by_catalogue(own)
@@ -511,7 +691,13 @@ def _second_models(ds: xr.Dataset) -> Iterator[Caution]:
             text = f"{roller} {100 * factor:.3g} % used, {rounded_text(km)} km"
             told.setdefault(f"{limit_word(catalogue.LIMIT.name)} of the roller", []).append(text)
     for words, rollers in told.items():
-        yield Caution("second_model", len(rollers), ds.sizes["roller"], f"{words}: {'; '.join(rollers)}", "rollers")
+        yield Caution(
+            "second_model",
+            len(rollers),
+            ds.sizes["roller"],
+            f"{words}: {'; '.join(rollers)}",
+            "rollers",
+        )
 
 
 def _flags(ds: xr.Dataset) -> Iterator[Caution]:
@@ -525,6 +711,9 @@ def _flags(ds: xr.Dataset) -> Iterator[Caution]:
         rollers: Sequence[str] = ds["roller"].values[here.any(axis=0)].tolist()
         cases = ds["load_case"].values[here.any(axis=1)].tolist()
         words = (
-            f"{flag.words[:1].upper()}{flag.words[1:]} for {', '.join(rollers)} in {', '.join(cases)}. {flag.remedy}"
+            f"{flag.words[:1].upper()}{flag.words[1:]} for {', '.join(rollers)} in "
+            f"{', '.join(cases)}. {flag.remedy}"
         )
-        yield Caution(CODES.get(name, "flagged"), len(rollers), ds.sizes["roller"], words, "rollers")
+        yield Caution(
+            CODES.get(name, "flagged"), len(rollers), ds.sizes["roller"], words, "rollers"
+        )

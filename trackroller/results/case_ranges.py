@@ -1,4 +1,6 @@
-"""One output of every case with its range: both ends, the error of the solution, and why a case has no value."""
+"""One output of every case with its range: both ends, the error of the solution, and why a case has
+no value.
+"""
 
 from __future__ import annotations
 
@@ -30,9 +32,10 @@ NOT_JUDGED = (
 class CaseRanges:
     """One output of every case.
 
-    A case that is not held (it skids, lifts off, yields, breaks, misses a constraint, or exceeds a limit) has the worst
-    value at both ends: a life of 0, otherwise an infinite value. A case that the model cannot judge has every value
-    from the worst to the best one. All other cases have the range that placeholders and fits leave.
+    A case that is not held (it skids, lifts off, yields, breaks, misses a constraint, or exceeds a
+    limit) has the worst value at both ends: a life of 0, otherwise an infinite value. A case that
+    the model cannot judge has every value from the worst to the best one. All other cases have the
+    range that placeholders and fits leave.
 
     Attributes
     ----------
@@ -89,10 +92,14 @@ class CaseRanges:
 
     @cached_property
     def middle(self) -> np.ndarray:
-        """Return the geometric middle of the range, shape (n,); the mean of both ends unless both are above 0."""
+        """Return the geometric middle of the range, shape (n,); the mean of both ends unless both
+        are above 0.
+        """
         low, high = self.low, self.high
         with np.errstate(invalid="ignore", over="ignore"):
-            between = np.where((low > 0) & (high > 0), np.sqrt(low) * np.sqrt(high), 0.5 * (low + high))
+            between = np.where(
+                (low > 0) & (high > 0), np.sqrt(low) * np.sqrt(high), 0.5 * (low + high)
+            )
         return np.asarray(np.where(low == high, low, between))
 
     @cached_property
@@ -103,7 +110,9 @@ class CaseRanges:
         missed = np.zeros(len(out), dtype=bool)
         if results.allowed is not None:
             missed = ~results.allowed
-        unsolved = (results.column("converged", 1.0) != 1) | (results.regime == REGIMES.index("failed"))
+        unsolved = (results.column("converged", 1.0) != 1) | (
+            results.regime == REGIMES.index("failed")
+        )
         masks = [
             ("value not known", np.isnan(self.value)),
             ("fatigue not known", results.without_fatigue & is_life(self.output[0])),
@@ -125,7 +134,9 @@ class CaseRanges:
 
     @property
     def _without_chance(self) -> bool:
-        """Return whether the output is a life at a failure probability for which no material has scatter."""
+        """Return whether the output is a life at a failure probability for which no material has
+        scatter.
+        """
         return self.results.without_chance and of_first_limit(self.output[0])
 
     @cached_property
@@ -140,17 +151,23 @@ class CaseRanges:
 
     @cached_property
     def open_limits(self) -> dict[str, np.ndarray]:
-        """Return the held cases in which a limit is exceeded at one end of a placeholder only, shape (n,) by limit."""
+        """Return the held cases in which a limit is exceeded at one end of a placeholder only,
+        shape (n,) by limit.
+        """
         return {name: rows & self.held for name, rows in self.results.limits_in("open").items()}
 
     @cached_property
     def open(self) -> np.ndarray:
         """Return the cases with any limit that is open, shape (n,)."""
-        return np.asarray(np.any([np.zeros(len(self.value), dtype=bool), *self.open_limits.values()], axis=0))
+        return np.asarray(
+            np.any([np.zeros(len(self.value), dtype=bool), *self.open_limits.values()], axis=0)
+        )
 
     @cached_property
     def error(self) -> np.ndarray:
-        """Return the relative error of the output by the solution, shape (n,) [1]; 0 where none is stated."""
+        """Return the relative error of the output by the solution, shape (n,) [1]; 0 where none is
+        stated.
+        """
         name = self.output[0]
         if is_life(name):
             return self._error_of_life
@@ -164,7 +181,8 @@ class CaseRanges:
     def told_error(self) -> np.ndarray:
         """Return the error that is stated, shape (n,) [1].
 
-        NaN where none is: a case that is not held, a life that another limit than fatigue ends, an output without one.
+        NaN where none is: a case that is not held, a life that another limit than fatigue ends, an
+        output without one.
         """
         name = self.output[0]
         results = self.results
@@ -182,7 +200,9 @@ class CaseRanges:
 
     @cached_property
     def _error_of_life(self) -> np.ndarray:
-        """Return the error of the fatigue life that ends a case, shape (n,) [1]; 0 where another limit ends it."""
+        """Return the error of the fatigue life that ends a case, shape (n,) [1]; 0 where another
+        limit ends it.
+        """
         results = self.results
         if "life_error_estimate" not in results.data:
             return np.zeros(len(self.value))
@@ -191,11 +211,15 @@ class CaseRanges:
         lives = flat(data, "life_cycles", results.dims)
         place = np.argmin(np.where(np.isnan(lives), np.inf, lives), axis=1)[:, None, :]
         own = np.nan_to_num(np.take_along_axis(errors, place, axis=1)[:, 0, :])
-        return np.asarray(np.where(self._by_fatigue, np.where(self.first[1], own[:, 1], own[:, 0]), 0.0))
+        return np.asarray(
+            np.where(self._by_fatigue, np.where(self.first[1], own[:, 1], own[:, 0]), 0.0)
+        )
 
     @cached_property
     def first(self) -> tuple[np.ndarray, np.ndarray]:
-        """Return the limit that ends each case, and whether it ends the guide, shape (n,) each; '' if unknown."""
+        """Return the limit that ends each case, and whether it ends the guide, shape (n,) each; ''
+        if unknown.
+        """
         name = self.output[0]
         guide = self.results.first_failing(name) == FIRST_TO_FAIL.index("guide")
         if name == FIRST_LIMIT[0]:
@@ -207,7 +231,9 @@ class CaseRanges:
         return np.full(len(self.value), word, dtype=object), guide
 
     def first_at(self, end: str) -> tuple[np.ndarray, np.ndarray]:
-        """Return what ends each case at the `_low` or `_high` end, and whether it ends the guide, shape (n,) each."""
+        """Return what ends each case at the `_low` or `_high` end, and whether it ends the guide,
+        shape (n,) each.
+        """
         if self.output[0] != FIRST_LIMIT[0] or f"life_hours_by_limit{end}" not in self.results.data:
             return self.first
         names, guide = first_at(self.results, end, self.hours_at(end))
@@ -215,7 +241,9 @@ class CaseRanges:
         return np.where(known, names, self.first[0]), np.where(known, guide, self.first[1])
 
     def hours_at(self, end: str) -> np.ndarray | None:
-        """Return the hours until each limit at an end, with the lives by fatigue moved by the tests; None without."""
+        """Return the hours until each limit at an end, with the lives by fatigue moved by the
+        tests; None without.
+        """
         tests = by_tests_of(self.results)
         if tests is None:
             return None
@@ -224,7 +252,9 @@ class CaseRanges:
 
     @cached_property
     def tested(self) -> dict[str, np.ndarray]:
-        """Return the held cases that fatigue of each fitted material ends, shape (n,) bool by its name."""
+        """Return the held cases that fatigue of each fitted material ends, shape (n,) bool by its
+        name.
+        """
         tests = by_tests_of(self.results)
         if tests is None or not is_life(self.output[0]):
             return {}
@@ -242,13 +272,16 @@ class CaseRanges:
         return np.asarray(beyond_sn_data(self.results, self.output[0]) & self.held)
 
     def judges(self, required: Required) -> bool:
-        """Return whether this output judges a requirement: it names it, or a life that comes to the first limit."""
+        """Return whether this output judges a requirement: it names it, or a life that comes to the
+        first limit.
+        """
         of_pair = self.output[0] == FIRST_LIMIT[0] and required.output in OF_PAIR
         only_least = np.isfinite(required.least) and np.isinf(required.most)
         return required.output == self.output[0] or (of_pair and only_least)
 
     def meets(self, required: Required, exact: bool = False) -> tuple[np.ndarray, np.ndarray]:
-        """Return the cases that surely meet a requirement on this output, and those that may, shape (n,) each.
+        """Return the cases that surely meet a requirement on this output, and those that may, shape
+        (n,) each.
 
         Parameters
         ----------
@@ -266,7 +299,9 @@ class CaseRanges:
 
     @cached_property
     def _shifts(self) -> dict[str, np.ndarray]:
-        """Return the shift of ln life by fatigue of each body at both ends of the band by the tests, (2, n) each."""
+        """Return the shift of ln life by fatigue of each body at both ends of the band by the
+        tests, (2, n) each.
+        """
         tests = by_tests_of(self.results)
         if tests is None:
             return {}

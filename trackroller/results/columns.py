@@ -34,7 +34,8 @@ PLAIN_RESULTS = (
     "accuracy_used",
 )
 OF_BODIES = ("validity_body", "life_to_first_limit_hours", "limiting_mechanism")
-SURFACE_SHARE = 0.01  # of the smaller semi-axis: a peak above this depth counts as lying at the surface
+# of the smaller semi-axis: a peak above this depth counts as lying at the surface
+SURFACE_SHARE = 0.01
 
 
 def _columns(ds: xr.Dataset, dims: Sequence[str], names: Iterable[str]) -> dict[str, np.ndarray]:
@@ -46,10 +47,19 @@ def _columns(ds: xr.Dataset, dims: Sequence[str], names: Iterable[str]) -> dict[
 
 def input_columns(ds: xr.Dataset, dims: Sequence[str]) -> dict[str, np.ndarray]:
     """Flatten factors and other inputs that vary over `dims` in one common order."""
-    own = [n for n, v in ds.variables.items() if v.dims == ("case",) and n not in ("case", "reason", *ds.data_vars)]
+    own = [
+        n
+        for n, v in ds.variables.items()
+        if v.dims == ("case",) and n not in ("case", "reason", *ds.data_vars)
+    ]
     own += [n for n, v in ds.coords.items() if OF_SHELF in v.attrs and n not in MAPPING_FIELDS]
-    words = [f"{n}_value" for n in PARAMETERS]  # numbers that belong to a friction coefficient given as a word
-    return _columns(ds, dims, [*(d for d in dims if d != "case"), *map(str, own), *PARAMETERS, *words, *OF_MATERIALS])
+    # numbers that belong to a friction coefficient given as a word
+    words = [f"{n}_value" for n in PARAMETERS]
+    return _columns(
+        ds,
+        dims,
+        [*(d for d in dims if d != "case"), *map(str, own), *PARAMETERS, *words, *OF_MATERIALS],
+    )
 
 
 def case_columns(ds: xr.Dataset, dims: Sequence[str]) -> dict[str, np.ndarray]:
@@ -64,17 +74,26 @@ def case_columns(ds: xr.Dataset, dims: Sequence[str]) -> dict[str, np.ndarray]:
         columns |= {f"{name}_{i}": values for i, values in enumerate(column(name).T, 1)}
     if {"peak_stress", "peak_z"} <= set(ds):
         ds = ds.assign(at_surface=at_surface(ds))
-    needed = {n: {"contact", "body"} for n in (*BODY_RESULTS, "at_surface")} | {name: {"body"} for name in OF_BODIES}
-    of_bodies = {n: column(n) for n, inner in needed.items() if n in ds and inner <= set(ds[n].dims)}
+    needed = {n: {"contact", "body"} for n in (*BODY_RESULTS, "at_surface")} | {
+        name: {"body"} for name in OF_BODIES
+    }
+    of_bodies = {
+        n: column(n) for n, inner in needed.items() if n in ds and inner <= set(ds[n].dims)
+    }
     for name, table in _of_bodies(of_bodies).items():
-        columns |= {f"{name}_{body}": values for body, values in zip(ds["body"].values, table.T, strict=True)}
+        columns |= {
+            f"{name}_{body}": values
+            for body, values in zip(ds["body"].values, table.T, strict=True)
+        }
     return columns
 
 
 def at_surface(ds: xr.Dataset) -> xr.DataArray:
-    """Say of each contact and body whether the peak stress lies at the surface (1) or below it (0), NaN if unknown.
+    """Say of each contact and body whether the peak stress lies at the surface (1) or below it (0),
+    NaN if unknown.
 
-    A peak lies at the surface down to a depth of 1 % of the smaller semi-axis, or of 1 µm if the semi-axes are unknown.
+    A peak lies at the surface down to a depth of 1 % of the smaller semi-axis, or of 1 µm if the
+    semi-axes are unknown.
     """
     limit: Any = 1e-3
     if {"semi_axis_lateral", "semi_axis_rolling"} <= set(ds):
@@ -84,7 +103,8 @@ def at_surface(ds: xr.Dataset) -> xr.DataArray:
 
 
 def _of_bodies(results: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
-    """Return flags, peak stress of the worse contact, its error and place, and the shorter life, (n, bodies) each.
+    """Return flags, peak stress of the worse contact, its error and place, and the shorter life,
+    (n, bodies) each.
 
     Parameters
     ----------
@@ -103,12 +123,18 @@ def _of_bodies(results: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
     return worse_of
 
 
-def factor_names(ds: xr.Dataset, dims: Sequence[str], design: Design, table: pd.DataFrame) -> list[str]:
+def factor_names(
+    ds: xr.Dataset, dims: Sequence[str], design: Design, table: pd.DataFrame
+) -> list[str]:
     """Name the factors that vary: dimensions of a grid, or independent factors along `case`."""
     if "case" not in dims:
         return [d for d in dims if ds.sizes[d] > 1]
-    varying = [name for name in design.factors if name in table and table[name].nunique(dropna=False) > 1]
-    return [n for n in varying if n not in MATERIAL_FIELDS] if "material_pair" in varying else varying
+    varying = [
+        name for name in design.factors if name in table and table[name].nunique(dropna=False) > 1
+    ]
+    return (
+        [n for n in varying if n not in MATERIAL_FIELDS] if "material_pair" in varying else varying
+    )
 
 
 def base_values(ds: xr.Dataset, base: Mapping[str, Any]) -> dict[str, Any]:

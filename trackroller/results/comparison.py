@@ -38,14 +38,19 @@ STRESSES = (
 )
 
 
-def compared_output(results: SolvedCases, required: Iterable[Required]) -> tuple[tuple[str, str, str], bool] | None:
+def compared_output(
+    results: SolvedCases, required: Iterable[Required]
+) -> tuple[tuple[str, str, str], bool] | None:
     """Return the output that compares the candidates of a study, and whether more of it is better.
 
-    It is the life to the first limit, or the life by fatigue, if the requirement is on a life or there is none;
-    otherwise the first output that is required; without both the peak stress. None if the study has none of them.
+    It is the life to the first limit, or the life by fatigue, if the requirement is on a life or
+    there is none; otherwise the first output that is required; without both the peak stress. None
+    if the study has none of them.
     """
     wanted = list(required)
-    life = results.life or next((one for one in (FIRST_LIMIT, *results.fatigue_lives) if one[0] in results.table), None)
+    life = results.life or next(
+        (one for one in (FIRST_LIMIT, *results.fatigue_lives) if one[0] in results.table), None
+    )
     if any(one.output in OF_PAIR for one in wanted) and life is not None:
         return life, True
     for one in wanted:
@@ -68,7 +73,8 @@ def wilson(hits: np.ndarray, size: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
     References
     ----------
-    Wilson (1927): Probable inference, the law of succession, and statistical inference. J. Am. Stat. Assoc. 22.
+    Wilson (1927): Probable inference, the law of succession, and statistical inference. J. Am.
+    Stat. Assoc. 22.
     """
     z = 1.959963984540054
     trials = np.maximum(size, 1)
@@ -123,7 +129,12 @@ class Comparison:
         if found is None or not len(results.table):
             return None
         output, rises = found
-        return cls(results, CaseRanges(results, output, rises), required, Candidates.grouped(results, output))
+        return cls(
+            results,
+            CaseRanges(results, output, rises),
+            required,
+            Candidates.grouped(results, output),
+        )
 
     # which rows belong together
 
@@ -141,11 +152,15 @@ class Comparison:
 
     @cached_property
     def idle(self) -> dict[str, str]:
-        """Return the choices that change nothing which a decision rests on: `no effect`, or `none on the NAME`."""
+        """Return the choices that change nothing which a decision rests on: `no effect`, or `none
+        on the NAME`.
+        """
         if not self.ranges.held.any():
             return {}  # equal failures do not tell whether a choice has an effect
         judged = [self.ranges, *(own for _, own in self.judges)]
-        deciding = [values for own in judged for values in (own.low, own.high, own.reason.astype(str))]
+        deciding = [
+            values for own in judged for values in (own.low, own.high, own.reason.astype(str))
+        ]
         found = {}
         for name in self.groups.choices:
             if not unchanged_by(self.results, name, deciding):
@@ -154,7 +169,9 @@ class Comparison:
             inputs = {*self.results.factors, *self.results.derived}
             columns = [table[n].to_numpy() for n in table if n not in inputs]
             word = "life" if is_life(self.ranges.output[0]) else self.ranges.output[1]
-            found[name] = "no effect" if unchanged_by(self.results, name, columns) else f"none on the {word}"
+            found[name] = (
+                "no effect" if unchanged_by(self.results, name, columns) else f"none on the {word}"
+            )
         return found
 
     @cached_property
@@ -164,10 +181,11 @@ class Comparison:
 
     @cached_property
     def place(self) -> np.ndarray:
-        """Return the number of the candidate of each case, shape (n,); -1 for cases that are not compared.
+        """Return the number of the candidate of each case, shape (n,); -1 for cases that are not
+        compared.
 
-        Not compared are cases of a less exact contact model, mixtures of a design, and all levels but the first one of
-        a choice that changes nothing.
+        Not compared are cases of a less exact contact model, mixtures of a design, and all levels
+        but the first one of a choice that changes nothing.
         """
         own = self.groups.design >= 0
         for name in self.idle:
@@ -216,12 +234,15 @@ class Comparison:
 
     @cached_property
     def pairs(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return the pairs of a candidate and a condition: candidate and condition (p,), and the pair of each case.
+        """Return the pairs of a candidate and a condition: candidate and condition (p,), and the
+        pair of each case.
 
         The pair of a case that is not compared is -1.
         """
         width = int(self.use.max()) + 1
-        found, inverse = np.unique(self.place[self.own] * width + self.use[self.own], return_inverse=True)
+        found, inverse = np.unique(
+            self.place[self.own] * width + self.use[self.own], return_inverse=True
+        )
         of_case = np.full(len(self.place), -1)
         of_case[self.own] = inverse
         return found // width, found % width, of_case
@@ -233,7 +254,9 @@ class Comparison:
         return np.asarray(bad == 0)
 
     def counted(self, pairs: np.ndarray) -> np.ndarray:
-        """Return the number of conditions of each candidate among some pairs, shape (candidates,)."""
+        """Return the number of conditions of each candidate among some pairs, shape
+        (candidates,).
+        """
         return np.bincount(self.pairs[0][pairs], minlength=self.count)
 
     @cached_property
@@ -245,16 +268,22 @@ class Comparison:
 
     @cached_property
     def matched(self) -> bool:
-        """Return whether every candidate has the same conditions, each once at each place of the placeholders."""
+        """Return whether every candidate has the same conditions, each once at each place of the
+        placeholders.
+        """
         many = len(np.unique(self.use[self.own]))
         places = len(np.unique(self.level[self.own]))
-        return bool(len(self.pairs[0]) == self.count * many and self.own.sum() == self.count * many * places)
+        return bool(
+            len(self.pairs[0]) == self.count * many and self.own.sum() == self.count * many * places
+        )
 
     @cached_property
     def reachable(self) -> np.ndarray:
-        """Return the cases in conditions that some candidate holds, shape (n,); all cases if no condition is held.
+        """Return the cases in conditions that some candidate holds, shape (n,); all cases if no
+        condition is held.
 
-        Conditions that candidates do not share count for the candidates that have them. Drawn conditions all count.
+        Conditions that candidates do not share count for the candidates that have them. Drawn
+        conditions all count.
         """
         if self.drawn or not self.conditions or not self.matched:
             return self.own
@@ -265,29 +294,38 @@ class Comparison:
 
     @property
     def unreachable(self) -> np.ndarray:
-        """Return the cases in conditions that no candidate holds, shape (n,); none if no condition is held at all."""
+        """Return the cases in conditions that no candidate holds, shape (n,); none if no condition
+        is held at all.
+        """
         return np.asarray(self.own & ~self.reachable)
 
     @cached_property
     def never_held(self) -> np.ndarray:
-        """Return the cases in conditions that no candidate holds, drawn ones included, shape (n,)."""
+        """Return the cases in conditions that no candidate holds, drawn ones included, shape
+        (n,).
+        """
         uses = np.unique(self.pairs[1][self.all_in_pair(self.ranges.held)])
         return np.asarray(self.own & ~np.isin(self.use, uses))
 
     @property
     def why_unjudged(self) -> str:
-        """Return why cases are not judged: `chance` without a life at the failure probability asked for, or `model`."""
+        """Return why cases are not judged: `chance` without a life at the failure probability asked
+        for, or `model`.
+        """
         return "chance" if self.results.without_chance else "model"
 
     # what meets the requirement
 
-    def met(self, exact: bool = False, lives: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray]:
+    def met(
+        self, exact: bool = False, lives: np.ndarray | None = None
+    ) -> tuple[np.ndarray, np.ndarray]:
         """Return the cases that surely meet all requirements, and those that may, shape (n,) each.
 
         Parameters
         ----------
         exact : whether the errors of the solution do not count
-        lives : lives of a second model that take the place of those of the pair, at both ends, shape (2, n) [h]
+        lives : lives of a second model that take the place of those of the pair, at both ends,
+            shape (2, n) [h]
         """
         sure = self.ranges.held & ~self.ranges.open
         may = np.where(self.ranges.judged, self.ranges.held, True)
@@ -300,9 +338,11 @@ class Comparison:
         return sure, may
 
     def hits(self) -> np.ndarray:
-        """Return whether each case meets all requirements by its value alone, or how probably, shape (n,) [1].
+        """Return whether each case meets all requirements by its value alone, or how probably,
+        shape (n,) [1].
 
-        The scatter of a material makes a life a probability. Without a requirement a case that is held is a hit.
+        The scatter of a material makes a life a probability. Without a requirement a case that is
+        held is a hit.
         """
         hits = self.ranges.held.astype(float)
         for one, own in self.judges:
@@ -319,14 +359,17 @@ class Comparison:
 
     @cached_property
     def wanted_share(self) -> float:
-        """Return the share of the conditions that has to meet the requirement [1]; NaN if none is given."""
+        """Return the share of the conditions that has to meet the requirement [1]; NaN if none is
+        given.
+        """
         shares = [one.probability for one in self.required if np.isfinite(one.probability)]
         return max(shares, default=np.nan)
 
     # numbers of each candidate
 
     def smallest(self, values: np.ndarray, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return the worst value of each candidate among some rows, and its case, shape (candidates,) each.
+        """Return the worst value of each candidate among some rows, and its case, shape
+        (candidates,) each.
 
         The value is NaN and the case -1 for a candidate without such a row.
         """
@@ -339,12 +382,18 @@ class Comparison:
         return np.where(case < 0, np.nan, values[case]), case
 
     def median(self, values: np.ndarray, rows: np.ndarray) -> np.ndarray:
-        """Return the median of each candidate among some rows, shape (candidates,); NaN without a row."""
+        """Return the median of each candidate among some rows, shape (candidates,); NaN without a
+        row.
+        """
         chosen = np.flatnonzero(rows & self.own & ~np.isnan(values))
         order = chosen[np.lexsort((values[chosen], self.place[chosen]))]
         number = np.bincount(self.place[order], minlength=self.count)
         start = np.cumsum(number) - number
-        lower = order[np.minimum(start + np.maximum(number - 1, 0) // 2, max(len(order) - 1, 0))] if len(order) else []
+        lower = (
+            order[np.minimum(start + np.maximum(number - 1, 0) // 2, max(len(order) - 1, 0))]
+            if len(order)
+            else []
+        )
         upper = order[np.minimum(start + number // 2, max(len(order) - 1, 0))] if len(order) else []
         if not len(order):
             return np.full(self.count, np.nan)
@@ -356,7 +405,9 @@ class Comparison:
         """Return the choices of each candidate, in the order of their numbers."""
         numbers, first = np.unique(self.place, return_index=True)
         rows = first[numbers >= 0]
-        own: dict[str, Any] = {name: self.results.table[name].to_numpy()[rows] for name in self.choices}
+        own: dict[str, Any] = {
+            name: self.results.table[name].to_numpy()[rows] for name in self.choices
+        }
         return pd.DataFrame(own, index=range(len(rows)))
 
     @cached_property
@@ -372,7 +423,9 @@ class Comparison:
 
     @cached_property
     def rankable(self) -> bool:
-        """Return whether the compared output ranks the candidates: a stress does among one pair of materials."""
+        """Return whether the compared output ranks the candidates: a stress does among one pair of
+        materials.
+        """
         if is_life(self.ranges.output[0]) or self.required:
             return True
         return self.ranges.output in STRESSES and len(set(self.materials)) == 1
@@ -385,23 +438,30 @@ class Comparison:
         hits : cases, bool, or the probability that each case is a hit, shape (n,)
         """
         total = np.bincount(self.place[self.own], minlength=self.count)
-        sums = np.bincount(self.place[self.own], weights=hits[self.own].astype(float), minlength=self.count)
+        sums = np.bincount(
+            self.place[self.own], weights=hits[self.own].astype(float), minlength=self.count
+        )
         return np.asarray(sums / np.maximum(total, 1))
 
     @cached_property
     def scatter(self) -> np.ndarray:
-        """Return the standard deviation of log10 life by the material that ends each case, shape (n,) [1]."""
+        """Return the standard deviation of log10 life by the material that ends each case, shape
+        (n,) [1].
+        """
         out = np.zeros(len(self.place))
         if not is_life(self.ranges.output[0]):
             return out
         own = material_deviations(self.results)
         names, guide = self.ranges.first
         if own:
-            out = np.where(guide, own.get("guide", 0.0), own.get("roller", 0.0)) * (names == "fatigue")
+            out = np.where(guide, own.get("guide", 0.0), own.get("roller", 0.0)) * (
+                names == "fatigue"
+            )
         return np.asarray(out, dtype=float)
 
     def tenth_part(self, number: int) -> tuple[float, float, float]:
-        """Return the life that nine of ten drawn conditions of a candidate reach, with its 95 % interval.
+        """Return the life that nine of ten drawn conditions of a candidate reach, with its 95 %
+        interval.
 
         The interval is NaN below the number of rows at which an order statistic reaches 95 %.
         """
@@ -411,21 +471,27 @@ class Comparison:
         return (value, low, high) if len(rows) >= ENOUGH else (value, np.nan, np.nan)
 
     def middle_interval(self, number: int) -> tuple[float, float]:
-        """Return the 95 % interval of the median of the drawn conditions of a candidate, by order statistics."""
+        """Return the 95 % interval of the median of the drawn conditions of a candidate, by order
+        statistics.
+        """
         rows = self.rows[number]
-        ranked = np.sort(np.where(self.ranges.held[rows], self.ranges.middle[rows], self.ranges.worst_value))
+        ranked = np.sort(
+            np.where(self.ranges.held[rows], self.ranges.middle[rows], self.ranges.worst_value)
+        )
         below = int(np.floor(0.5 * len(ranked) - 0.98 * np.sqrt(len(ranked))))
         if below < 1:
             return np.nan, np.nan
         return float(ranked[below - 1]), float(ranked[len(ranked) - below])
 
     def ratios(self, number: int, leader: int) -> np.ndarray:
-        """Return how much longer one candidate lasts than another one, over the conditions that both hold.
+        """Return how much longer one candidate lasts than another one, over the conditions that
+        both hold.
 
         Returns
         -------
-        Ratios, shape (2, k), at the low and at the high end of the placeholders if both have the same materials,
-        otherwise twice those of the geometric middles. More than 1 is better whatever the output.
+        Ratios, shape (2, k), at the low and at the high end of the placeholders if both have the
+        same materials, otherwise twice those of the geometric middles. More than 1 is better
+        whatever the output.
         """
         ends = [self.ranges.middle, self.ranges.middle]
         if self.materials[number] == self.materials[leader]:
@@ -443,7 +509,9 @@ class Comparison:
         return np.where(mine == theirs, 1.0, found)
 
     def _of_condition(self, number: int) -> tuple[np.ndarray, np.ndarray]:
-        """Return the conditions and places of placeholders that a candidate holds, and the case of each."""
+        """Return the conditions and places of placeholders that a candidate holds, and the case of
+        each.
+        """
         rows = self.rows[number]
         rows = rows[self.ranges.held[rows] & self.reachable[rows]]
         width = int(self.level.max()) + 1
@@ -453,8 +521,9 @@ class Comparison:
     def error_of_ratio(self, number: int, leader: int) -> float:
         """Return the error of a ratio of the outputs of two candidates, as a factor less 1 [1].
 
-        It was measured for lives by fatigue and peak stresses on the rungs. Elsewhere, also where fatigue ends one of
-        both only, the errors of both candidates count as independent; outputs without a stated error have none.
+        It was measured for lives by fatigue and peak stresses on the rungs. Elsewhere, also where
+        fatigue ends one of both only, the errors of both candidates count as independent; outputs
+        without a stated error have none.
         """
         rows = [self._of_condition(one)[1] for one in (number, leader)]
         errors = [float(np.median(self.ranges.error[own])) if len(own) else 0.0 for own in rows]
@@ -464,22 +533,29 @@ class Comparison:
 
     @cached_property
     def _measured_error(self) -> float | None:
-        """Return the measured error of a ratio at the rung of the study; None where it was not measured."""
+        """Return the measured error of a ratio at the rung of the study; None where it was not
+        measured.
+        """
         name = self.ranges.output[0]
         data = self.results.data
         stated = data.get("life_cycles" if is_life(name) else "peak_stress")
         if stated is None or "expected_relative_error" not in stated.attrs:
             return None  # solved patches, falling friction, tolerances and settings of a user
         if "contact_model" not in data.attrs:
-            return None  # the model is a choice of the study: errors of different models are not alike
-        friction = self.results.table.get("friction_coefficient", self.results.base.get("friction_coefficient", 0.0))
+            # the model is a choice of the study: errors of different models are not alike
+            return None
+        friction = self.results.table.get(
+            "friction_coefficient", self.results.base.get("friction_coefficient", 0.0)
+        )
         if np.max(friction) > ORDINARY_FRICTION:
             return None
         quantity = "life" if is_life(name) else "peak_stress"
         return ratio_error(str(data.attrs["accuracy"]), str(data.attrs["contact_model"]), quantity)
 
     def hours_by_limit(self, end: str) -> np.ndarray | None:
-        """Return the hours until each limit of each body, second models included, (n, limit, 2) [h]; None without."""
+        """Return the hours until each limit of each body, second models included, (n, limit, 2)
+        [h]; None without.
+        """
         name = f"life_hours_by_limit{end}"
         if name not in self.results.data:
             return None

@@ -1,4 +1,6 @@
-"""Cases that meet the key `constraints` of a study file: indices, lives and sentences use no others."""
+"""Cases that meet the key `constraints` of a study file: indices, lives and sentences use no
+others.
+"""
 
 from __future__ import annotations
 
@@ -19,7 +21,11 @@ Column = tuple[np.ndarray, str, str]  # values (n,), units, long name
 
 
 def quantity_of(
-    ds: xr.Dataset, dims: tuple[str, ...], name: str, base: Mapping[str, Any], factors: Iterable[str] = ()
+    ds: xr.Dataset,
+    dims: tuple[str, ...],
+    name: str,
+    base: Mapping[str, Any],
+    factors: Iterable[str] = (),
 ) -> Column:
     """Return a factor, a parameter, the regime or an output of every case.
 
@@ -42,17 +48,27 @@ def quantity_of(
     if name == "regime":
         return np.array(REGIMES, dtype=object)[regimes(ds, dims)], "", "regime"
     given = name in ds.variables
-    if name in PARAMETERS or name in MATERIAL_FIELDS or (given and (name in ds.coords or name in factors)):
+    if (
+        name in PARAMETERS
+        or name in MATERIAL_FIELDS
+        or (given and (name in ds.coords or name in factors))
+    ):
         rows = int(np.prod([ds.sizes[d] for d in dims]))
         values = readable(flat(ds, name, dims) if given else _constant(base, name, rows))
         known = parameter_of(name)
-        return values, known.units if known else "", known.long_name if known else name.replace("_", " ")
+        return (
+            values,
+            known.units if known else "",
+            known.long_name if known else name.replace("_", " "),
+        )
     try:
         output = outputs(ds, dims, [name], REGIMES[:3], scale="natural", unlimited=True)[0]
     except InputError as error:
         close = nearest(name, REGIMES)
         remedy = f"Did you mean '{close}'?" if close else error.remedy
-        raise InputError("pareto or constraints", name, error.allowed, remedy, error.wrong) from None
+        raise InputError(
+            "pareto or constraints", name, error.allowed, remedy, error.wrong
+        ) from None
     return output.values, output.units, output.long_name
 
 
@@ -62,7 +78,9 @@ def _constant(base: Mapping[str, Any], name: str, rows: int) -> np.ndarray:
     return np.full(rows, np.nan if value is None else value)
 
 
-def meeting(constraints: Iterable[str], values: Mapping[str, np.ndarray], rows: int) -> dict[str, np.ndarray]:
+def meeting(
+    constraints: Iterable[str], values: Mapping[str, np.ndarray], rows: int
+) -> dict[str, np.ndarray]:
     """Return for each constraint which cases meet it.
 
     Parameters

@@ -18,7 +18,14 @@ from trackroller.study.outputs import flat
 MODEL = "contact_model"
 RESULTS = ("regime", *CONTACT_RESULTS, "friction_energy_balance", "peak_stress")
 GOOD = 0.05  # error of a design below which its model is good enough [1]
-FORCES = ("normal_force", "lateral_force", "driving_force", "spin_moment", "semi_axis_lateral", "semi_axis_rolling")
+FORCES = (
+    "normal_force",
+    "lateral_force",
+    "driving_force",
+    "spin_moment",
+    "semi_axis_lateral",
+    "semi_axis_rolling",
+)
 ENERGY = "friction_energy_per_distance"
 
 
@@ -31,12 +38,14 @@ def pairs(results: SolvedCases) -> xr.Dataset | None:
 
     Returns
     -------
-    Dataset over `contact_model` (the cheapest first, the reference last) and `design`. Cases whose inputs agree except
-    for the model are one design. The data set holds the designs that the reference and at least one other model
-    solved. Variables: the results that are compared, NaN (regime -1) where a design lacks a model, with `life`, the
-    life that the study shows. Coordinates: the inputs that vary, and the friction coefficient as a number. Attributes:
-    `reference`, `left` (number of cases without a partner), `factors` (the other factors), and `same`: the cheaper
-    models whose cases the reference solved in the same way, as `kalker` does by its table at accuracy preview.
+    Dataset over `contact_model` (the cheapest first, the reference last) and `design`. Cases whose
+    inputs agree except for the model are one design. The data set holds the designs that the
+    reference and at least one other model solved. Variables: the results that are compared, NaN
+    (regime -1) where a design lacks a model, with `life`, the life that the study shows.
+    Coordinates: the inputs that vary, and the friction coefficient as a number. Attributes:
+    `reference`, `left` (number of cases without a partner), `factors` (the other factors), and
+    `same`: the cheaper models whose cases the reference solved in the same way, as `kalker` does by
+    its table at accuracy preview.
     """
     ds = results.data
     if MODEL not in ds.variables or "regime" not in ds:
@@ -53,14 +62,23 @@ def pairs(results: SolvedCases) -> xr.Dataset | None:
         values[rows < 0] = -1.0 if name == "regime" else np.nan
         data[name] = ((MODEL, "design", *(d for d in ds[name].dims if d not in dims)), values)
     if results.life is not None:
-        data["life"] = (MODEL, "design"), np.where(rows < 0, np.nan, results.column(results.life[0])[rows])
+        data["life"] = (
+            (MODEL, "design"),
+            np.where(rows < 0, np.nan, results.column(results.life[0])[rows]),
+        )
     inputs = table.drop(columns=MODEL).iloc[rows[-1]]
-    given = inputs.get("friction_coefficient_value", inputs.get("friction_coefficient"))  # a word has its number beside
-    inputs["friction_coefficient"] = results.base["friction_coefficient"] if given is None else pd.to_numeric(given)
+    # a word has its number beside
+    given = inputs.get("friction_coefficient_value", inputs.get("friction_coefficient"))
+    inputs["friction_coefficient"] = (
+        results.base["friction_coefficient"] if given is None else pd.to_numeric(given)
+    )
     coords = {str(name): ("design", inputs[name].to_numpy()) for name in inputs}
     coords |= {name: (name, ds[name].values) for name in ("contact", "body") if name in ds}
     attrs = {"reference": models[-1], "left": int(len(table) - (rows >= 0).sum())}
-    attrs |= {"factors": tuple(f for f in results.factors if f != MODEL), "same": _same(results, rows, models)}
+    attrs |= {
+        "factors": tuple(f for f in results.factors if f != MODEL),
+        "same": _same(results, rows, models),
+    }
     return xr.Dataset(data, coords | {MODEL: models}, attrs)
 
 
@@ -70,16 +88,21 @@ def _same(results: SolvedCases, rows: np.ndarray, models: list[str]) -> tuple[st
         return ()
     used = flat(results.data, "contact_model_used", results.dims)[rows]
     alike = [((used[i] == used[-1]) | (rows[i] < 0)).all() for i in range(len(models) - 1)]
-    return tuple(model for model, equal in zip(models[:-1], alike, strict=True) if equal and rows.size)
+    return tuple(
+        model for model, equal in zip(models[:-1], alike, strict=True) if equal and rows.size
+    )
 
 
 def designs(paired: xr.Dataset) -> pd.DataFrame:
-    """Return the designs of a comparison as a table: one row a design, one column a factor but the contact model."""
+    """Return the designs of a comparison as a table: one row a design, one column a factor but the
+    contact model.
+    """
     return pd.DataFrame({name: paired[name].values for name in paired.attrs["factors"]})
 
 
 def _matched(table: pd.DataFrame, models: list[str]) -> np.ndarray:
-    """Return the row of each model and design, shape (models, designs), -1 where the design lacks it.
+    """Return the row of each model and design, shape (models, designs), -1 where the design lacks
+    it.
 
     The designs stand in the order of their rows.
     """
@@ -108,7 +131,11 @@ def _largest(value: xr.DataArray) -> xr.DataArray:
 
 def _apart(value: xr.DataArray, ref: xr.DataArray) -> xr.DataArray:
     """Return the relative difference; 0 where both values are unlimited."""
-    return abs(value / ref - 1.0).where(value != ref, 0.0 * (ref == ref)).where(ref.notnull() & value.notnull())
+    return (
+        abs(value / ref - 1.0)
+        .where(value != ref, 0.0 * (ref == ref))
+        .where(ref.notnull() & value.notnull())
+    )
 
 
 def _relative(name: str) -> Callable[[xr.Dataset, xr.Dataset], xr.DataArray]:
@@ -120,23 +147,37 @@ def _of_capacity(ds: xr.Dataset, ref: xr.Dataset) -> xr.DataArray:
     arm = np.sqrt(ref["semi_axis_lateral"] * ref["semi_axis_rolling"])
     sizes = [
         abs(ds[n] - ref[n]) / s
-        for n, s in (("lateral_force", capacity), ("driving_force", capacity), ("spin_moment", capacity * arm))
+        for n, s in (
+            ("lateral_force", capacity),
+            ("driving_force", capacity),
+            ("spin_moment", capacity * arm),
+        )
     ]
     return _largest(xr.concat(sizes, "force").max("force"))
 
 
 def _work(name: str) -> Callable[[xr.Dataset, xr.Dataset], xr.DataArray]:
-    return lambda ds, ref: abs(ds[name].sum("contact", skipna=False) / ref[ENERGY].sum("contact", skipna=False) - 1.0)
+    return lambda ds, ref: abs(
+        ds[name].sum("contact", skipna=False) / ref[ENERGY].sum("contact", skipna=False) - 1.0
+    )
 
 
 def _stick(ds: xr.Dataset, ref: xr.Dataset) -> xr.DataArray:
-    """Return the difference of the shares; NaN for full sliding, which has no adhesion area by assumption."""
+    """Return the difference of the shares; NaN for full sliding, which has no adhesion area by
+    assumption.
+    """
     known = str(ds["contact_model"].item()) != "sliding"
     return _largest(abs(ds["stick_area_fraction"] - ref["stick_area_fraction"])).where(known)
 
 
 QUANTITIES = (
-    Quantity("normal_force", "normal forces", "Normal force", _relative("normal_force"), ("normal_force",)),
+    Quantity(
+        "normal_force",
+        "normal forces",
+        "Normal force",
+        _relative("normal_force"),
+        ("normal_force",),
+    ),
     Quantity(
         "friction_force",
         "friction forces and spin moment (over mu F_N)",
@@ -144,7 +185,13 @@ QUANTITIES = (
         _of_capacity,
         FORCES,
     ),
-    Quantity("friction_energy", "friction energy (local product)", "Friction energy", _work(ENERGY), (ENERGY,)),
+    Quantity(
+        "friction_energy",
+        "friction energy (local product)",
+        "Friction energy",
+        _work(ENERGY),
+        (ENERGY,),
+    ),
     Quantity(
         "friction_energy_balance",
         "friction energy from the resultants",
@@ -152,18 +199,22 @@ QUANTITIES = (
         _work("friction_energy_balance"),
         (ENERGY, "friction_energy_balance"),
     ),
-    Quantity("peak_stress", "peak stress", "Peak stress", _relative("peak_stress"), ("peak_stress",)),
+    Quantity(
+        "peak_stress", "peak stress", "Peak stress", _relative("peak_stress"), ("peak_stress",)
+    ),
     Quantity("life", "life", "Life", _relative("life"), ("life",)),
-    Quantity("stick", "adhesion area (share of the patch)", "Stick", _stick, ("stick_area_fraction",)),
+    Quantity(
+        "stick", "adhesion area (share of the patch)", "Stick", _stick, ("stick_area_fraction",)
+    ),
 )
 
 
 def errors(paired: xr.Dataset) -> xr.Dataset:
     """Return the error of each cheaper model against the reference where both roll.
 
-    `paired`: dataset of `trackroller.results.contact_models`. Errors are relative; those of friction forces are over
-    mu F_N and that of the spin moment over mu F_N sqrt(a b), that of stick is a difference of shares. The larger error
-    of both contacts and bodies counts.
+    `paired`: dataset of `trackroller.results.contact_models`. Errors are relative; those of
+    friction forces are over mu F_N and that of the spin moment over mu F_N sqrt(a b), that of stick
+    is a difference of shares. The larger error of both contacts and bodies counts.
     """
     reference = str(paired.attrs["reference"])
     ref, parts = paired.sel(contact_model=reference), []
@@ -171,9 +222,19 @@ def errors(paired: xr.Dataset) -> xr.Dataset:
         one = paired.sel(contact_model=model)
         rolls = (one["regime"] == 0) & (ref["regime"] == 0)
         with np.errstate(divide="ignore", invalid="ignore"):
-            by_name = {q.name: q.error(one, ref).where(rolls) for q in QUANTITIES if all(n in paired for n in q.needs)}
-        parts.append(xr.Dataset(by_name).drop_vars("contact_model", errors="ignore").assign_coords(contact_model=model))
-    out = xr.concat(parts, "contact_model", coords="minimal", compat="override").transpose("contact_model", "design")
+            by_name = {
+                q.name: q.error(one, ref).where(rolls)
+                for q in QUANTITIES
+                if all(n in paired for n in q.needs)
+            }
+        parts.append(
+            xr.Dataset(by_name)
+            .drop_vars("contact_model", errors="ignore")
+            .assign_coords(contact_model=model)
+        )
+    out = xr.concat(parts, "contact_model", coords="minimal", compat="override").transpose(
+        "contact_model", "design"
+    )
     for q in QUANTITIES:
         if q.name in out:
             out[q.name].attrs = {"long_name": f"error of the {q.words}", "units": "1"}
@@ -197,5 +258,7 @@ def compared(one: xr.Dataset) -> int:
 
 
 def spread(error: np.ndarray) -> tuple[float, float, float]:
-    """Return the median, the 90th percentile and the largest error; each is the error of one case."""
+    """Return the median, the 90th percentile and the largest error; each is the error of one
+    case.
+    """
     return tuple(float(np.percentile(error, p, method="nearest")) for p in (50, 90, 100))  # type: ignore[return-value]

@@ -21,7 +21,12 @@ from trackroller.results.answer_parts import (
     lost_by_missing_input,
     not_given_words,
 )
-from trackroller.results.candidate_table import candidate_columns, candidate_table, names_of, states_of
+from trackroller.results.candidate_table import (
+    candidate_columns,
+    candidate_table,
+    names_of,
+    states_of,
+)
 from trackroller.results.comparison import EQUAL, Comparison
 from trackroller.results.effect_curves import Effects
 from trackroller.results.first_ends import ends_by_factor
@@ -76,7 +81,8 @@ class Decider:
     def score(self) -> np.ndarray:
         """Return what ranks the candidates, more is better, shape (m,).
 
-        It is the tenth part of drawn conditions, otherwise the geometric middle of the range at the worst condition.
+        It is the tenth part of drawn conditions, otherwise the geometric middle of the range at the
+        worst condition.
         """
         name = "tenth" if self.own.drawn and is_life(self.own.ranges.output[0]) else "middle"
         values = self.table[name].to_numpy(dtype=float)
@@ -85,9 +91,11 @@ class Decider:
 
     @cached_property
     def goal(self) -> np.ndarray:
-        """Return the one goal of the study beside its requirement, more is better, shape (m,); 0 without one.
+        """Return the one goal of the study beside its requirement, more is better, shape (m,); 0
+        without one.
 
-        A candidate of which the goal is not known, such as a roller without a price, is the worst one.
+        A candidate of which the goal is not known, such as a roller without a price, is the worst
+        one.
         """
         goals = self.own.results.config.pareto
         if len(goals) != 1 or not self.own.required:
@@ -103,19 +111,27 @@ class Decider:
         return np.where(np.isposinf(out), -np.inf, out)
 
     def best_first(self, among: Iterable[int]) -> list[int]:
-        """Return some candidates, the best one first: by the goal, the score, the median, then the number held."""
+        """Return some candidates, the best one first: by the goal, the score, the median, then the
+        number held.
+        """
         numbers = np.array(list(among), dtype=int)
-        median = self.own.ranges.sign * np.nan_to_num(self.table["median"].to_numpy(dtype=float), nan=-np.inf)
+        median = self.own.ranges.sign * np.nan_to_num(
+            self.table["median"].to_numpy(dtype=float), nan=-np.inf
+        )
         keys = (self.table["holds"].to_numpy(), median, self.score, self.goal)
         order = np.lexsort(tuple(-key[numbers] for key in keys))
         return [int(one) for one in numbers[order]]
 
     def nearest_first(self, among: Iterable[int]) -> list[int]:
-        """Return some candidates: those that hold most conditions first, then meet most, then with the largest low."""
+        """Return some candidates: those that hold most conditions first, then meet most, then with
+        the largest low.
+        """
         numbers = np.array(list(among), dtype=int)
         worse = self.table["low" if self.own.ranges.rises else "high"].to_numpy(dtype=float)
         low = self.own.ranges.sign * np.nan_to_num(worse, nan=self.own.ranges.worst_value)
-        median = self.own.ranges.sign * np.nan_to_num(self.table["median"].to_numpy(dtype=float), nan=-np.inf)
+        median = self.own.ranges.sign * np.nan_to_num(
+            self.table["median"].to_numpy(dtype=float), nan=-np.inf
+        )
         keys = (median, low, self.table["meets"].to_numpy(), self.table["holds"].to_numpy())
         order = np.lexsort(tuple(-key[numbers] for key in keys))
         return [int(one) for one in numbers[order]]
@@ -144,7 +160,11 @@ class Decider:
         if groups[0]:
             tied = [one for one in groups[0][1:RIVALS] if self._tied(groups[0][0], one)]
             named = [groups[0][0], *tied]
-            return Decision("a_or_b" if tied else "build", [*named, *(n for n in order if n not in named)], named)
+            return Decision(
+                "a_or_b" if tied else "build",
+                [*named, *(n for n in order if n not in named)],
+                named,
+            )
         if groups[1]:
             return self._open(order, groups[1])
         return Decision("none", order, [])
@@ -159,7 +179,9 @@ class Decider:
         order = [leader, *(n for n in order if n != leader)]
         if states_of(self.own, self.table, exact=True)[leader] != "open":
             return Decision("solve_finer", order, [leader], "error")
-        least = max((one.least for one in self.own.required if one.output in OF_PAIR), default=np.nan)
+        least = max(
+            (one.least for one in self.own.required if one.output in OF_PAIR), default=np.nan
+        )
         found = self.turning.of_open_limit(leader) or self.turning.decides(leader, least)
         return Decision("measure", order, [leader], measure=found or {})
 
@@ -185,14 +207,19 @@ class Decider:
         leader, *rivals = ranked
         rivals = rivals[:RIVALS]
         named = [leader, *(one for one in rivals if not self._beats(leader, one))]
-        order = [*named, *(n for n in ranked if n not in named), *(n for n in order if n not in ranked)]
+        order = [
+            *named,
+            *(n for n in ranked if n not in named),
+            *(n for n in order if n not in ranked),
+        ]
         found = self.turning.of_span(leader, rivals) or self.turning.leads(leader, rivals)
         if found:
             return Decision("measure", order, [leader], measure=found)
         return Decision("build" if len(named) == 1 else "a_or_b", order, named)
 
     def _beats(self, one: int, other: int) -> bool:
-        """Return whether a candidate is never worse than another one by more than the error, and somewhere better.
+        """Return whether a candidate is never worse than another one by more than the error, and
+        somewhere better.
 
         Where ratios cross, the worst condition decides.
         """
@@ -207,7 +234,9 @@ class Decider:
         return bool(mine > theirs + margin + EQUAL * abs(theirs))
 
     def _tied(self, one: int, other: int) -> bool:
-        """Return whether two candidates are equal within the error in every condition, and by the goal."""
+        """Return whether two candidates are equal within the error in every condition, and by the
+        goal.
+        """
         if self.goal[one] != self.goal[other]:
             return False
         ratios = self.own.ratios(one, other)
@@ -267,7 +296,9 @@ def _missing_input(own: Comparison, found: Decision) -> dict[str, Any]:
 
 
 def _meets_without(own: Comparison, lost: np.ndarray) -> bool:
-    """Return whether some candidate may meet the requirement in the drawn conditions without the lost ones."""
+    """Return whether some candidate may meet the requirement in the drawn conditions without the
+    lost ones.
+    """
     if not own.drawn:
         return False  # the states of candidates leave out the conditions that none holds
     rows = own.own & ~lost
@@ -291,7 +322,9 @@ def with_ratios(own: Comparison, shown: pd.DataFrame) -> pd.DataFrame:
 
 
 def _headline(own: Comparison, table: pd.DataFrame, found: Decision) -> dict[str, Any]:
-    """Return the numbers and names of the headline: the named candidates, and what a reader must know of them."""
+    """Return the numbers and names of the headline: the named candidates, and what a reader must
+    know of them.
+    """
     one = table.iloc[found.order[0]]
     told: dict[str, Any] = {
         "names": names_of(own, found.named) if found.named else [],
@@ -311,7 +344,8 @@ def _headline(own: Comparison, table: pd.DataFrame, found: Decision) -> dict[str
 def leading(own: Comparison, one: pd.Series) -> dict[str, Any]:
     """Return what a headline says of one candidate, a row of `candidate_table`."""
     told: dict[str, Any] = {
-        key: plain(one[key]) for key in ("low", "high", "worst", "ends", "ends_high", "body", "body_high", "error")
+        key: plain(one[key])
+        for key in ("low", "high", "worst", "ends", "ends_high", "body", "body_high", "error")
     }
     told["extrapolated"] = bool(one["extrapolated"])
     told["elsewhere"] = bool(one["holds"] < one["of"])
@@ -352,12 +386,16 @@ def lost_conditions(own: Comparison, rows: np.ndarray) -> dict[str, Any]:
 
 def causes_text(own: Comparison, rows: np.ndarray) -> str:
     """Return the causes by which some cases are not held, the most frequent one first."""
-    words = pd.Series(own.ranges.reason[rows]).map(lambda word: limit_word(str(word).removeprefix("limit ")))
+    words = pd.Series(own.ranges.reason[rows]).map(
+        lambda word: limit_word(str(word).removeprefix("limit "))
+    )
     return " or ".join(words.value_counts().index)
 
 
 def _level_reached(own: Comparison, table: pd.DataFrame) -> dict[str, Any]:
-    """Return between which levels of the single numeric choice all conditions meet the requirement; {} without."""
+    """Return between which levels of the single numeric choice all conditions meet the requirement;
+    {} without.
+    """
     if len(own.choices) != 1 or not own.required or not own.results.numeric(own.choices[0]):
         return {}
     levels = own.members[own.choices[0]].to_numpy(dtype=float)

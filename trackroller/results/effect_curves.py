@@ -1,4 +1,6 @@
-"""How an output changes with each factor of a study: one curve a factor, by like cases or by a fit of a sample."""
+"""How an output changes with each factor of a study: one curve a factor, by like cases or by a fit
+of a sample.
+"""
 
 from __future__ import annotations
 
@@ -22,16 +24,20 @@ from trackroller.study.design.entries import OPTION_FACTORS
 
 FEWEST_ROWS = 30  # smallest number of cases that are fitted
 TOLD = 0.9  # share of the variance that a fit must predict before its effects are told
-DEGREES = ((8, 0), (5, 0), (3, 0), (2, 0), (1, 0))  # of a factor alone, none with another one; the best one wins
-SPANNED = 2.0, 20.0  # a number that spans so many times its smallest size is fitted by its logarithm
+# of a factor alone, none with another one; the best one wins
+DEGREES = ((8, 0), (5, 0), (3, 0), (2, 0), (1, 0))
+# a number that spans so many times its smallest size is fitted by its logarithm
+SPANNED = 2.0, 20.0
 PLACES = 24  # points of a fitted curve
 FLAT = 1.02  # height of a curve below which it counts as flat
 TURNS = 1.1  # change in the other direction from which on a curve is a hump or a dip
-HALF = 0.5  # of the height of a curve, above which a smaller change in the other direction makes it one
+# of the height of a curve, above which a smaller change in the other direction makes it one
+HALF = 0.5
 CLIFF = 0.7  # share of the whole change that lies in one of at least three steps
 BAND = (0.1, 0.9)  # quantiles of the cases between which the band of a curve lies
 SPLIT = 1.25  # ratio between two groups of pairs from which on they are told apart
-FEWEST_PAIRS = 3  # like cases at all levels, or cases of a class, from which on a curve is drawn by them
+# like cases at all levels, or cases of a class, from which on a curve is drawn by them
+FEWEST_PAIRS = 3
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,7 +70,9 @@ class Effects:
 
     @cached_property
     def y(self) -> np.ndarray:
-        """Return the output on the scale on which effects add up, shape (n,): its logarithm if effects are ratios."""
+        """Return the output on the scale on which effects add up, shape (n,): its logarithm if
+        effects are ratios.
+        """
         with np.errstate(divide="ignore", invalid="ignore"):
             return np.log(self.ranges.value) if self.by_ratio else self.ranges.value
 
@@ -100,7 +108,11 @@ class Effects:
         matrix[key, place] = self.y[rows]
         seen = ~np.isnan(matrix).all(axis=0)
         whole = ~np.isnan(matrix[:, seen]).any(axis=1)
-        if seen.sum() < 2 or whole.sum() < min(FEWEST_PAIRS, max(len(matrix), 1)) or whole.sum() * seen.sum() < 2:
+        if (
+            seen.sum() < 2
+            or whole.sum() < min(FEWEST_PAIRS, max(len(matrix), 1))
+            or whole.sum() * seen.sum() < 2
+        ):
             return None
         if len(rows) > 3 * seen.sum() and whole.sum() < 0.05 * len(matrix):
             return None
@@ -112,7 +124,9 @@ class Effects:
         return self._curve(name, kept, np.median(full, axis=0), ends, shape, full.size, left)
 
     def _by_fit(self, name: str) -> Curve | None:
-        """Return the curve of a factor by the fit of the sample; None where the fit predicts too little."""
+        """Return the curve of a factor by the fit of the sample; None where the fit predicts too
+        little.
+        """
         if self.fit is None or name not in self.fit.parts:
             return None
         part, own = self.fit.parts[name], self.fit.values[name]
@@ -123,14 +137,18 @@ class Effects:
             step = np.unique(np.linspace(0, len(first) - 1, PLACES).astype(int))
             at = first[step]
         else:
-            at = np.array([int(np.flatnonzero(own == level)[0]) for level in dict.fromkeys(own.tolist())])
+            at = np.array(
+                [int(np.flatnonzero(own == level)[0]) for level in dict.fromkeys(own.tolist())]
+            )
         levels = [own[i] for i in at]
         curve = part[at] + middle
         band = np.stack([part[at] + end for end in ends])
         return self._curve(name, levels, curve, band, self._shape(name, curve, None), len(own), 0)
 
     def _by_classes(self, name: str) -> Curve | None:
-        """Return the median of the cases in each level, or in classes of equally many cases; None of single cases."""
+        """Return the median of the cases in each level, or in classes of equally many cases; None
+        of single cases.
+        """
         if self.rows.sum() < 2:
             return None
         parts = groups(self.results.table, name, self.rows, BINS)
@@ -140,22 +158,37 @@ class Effects:
             return None
         middle = np.array([np.median(inside[k]) for k in kept])
         ends = np.array([np.quantile(inside[k], BAND) for k in kept]).T
-        levels = [parts.low[k] if parts.low[k] == parts.high[k] else float(parts.at[k]) for k in kept]
-        return self._curve(name, levels, middle, ends, self._shape(name, middle, None), int(self.rows.sum()), 0)
+        levels = [
+            parts.low[k] if parts.low[k] == parts.high[k] else float(parts.at[k]) for k in kept
+        ]
+        return self._curve(
+            name, levels, middle, ends, self._shape(name, middle, None), int(self.rows.sum()), 0
+        )
 
     def _curve(
-        self, name: str, levels: list[Any], middle: np.ndarray, ends: np.ndarray, shape: str, rows: int, left: int
+        self,
+        name: str,
+        levels: list[Any],
+        middle: np.ndarray,
+        ends: np.ndarray,
+        shape: str,
+        rows: int,
+        left: int,
     ) -> Curve:
         known = parameter_of(name)
         numbers = self.results.numeric(name)
         own = np.array(levels, dtype=float) if numbers else np.zeros(0)
-        height = float(np.exp(middle.max() - middle.min()) if self.by_ratio else middle.max() - middle.min())
+        height = float(
+            np.exp(middle.max() - middle.min()) if self.by_ratio else middle.max() - middle.min()
+        )
         return Curve(
             factor=name,
             title=long_name_of(name),
             units="" if known is None or known.unit == "-" else known.units,
             role=self.results.roles.get(name, ""),
-            levels=tuple(level.item() if isinstance(level, np.generic) else level for level in levels),
+            levels=tuple(
+                level.item() if isinstance(level, np.generic) else level for level in levels
+            ),
             middle=self.back(middle),
             low=self.back(ends[0]),
             high=self.back(ends[1]),
@@ -171,7 +204,9 @@ class Effects:
         """Return the shape of a curve in one word."""
         span = float(middle.max() - middle.min())
         least = np.log(FLAT) if self.by_ratio else 0.01 * max(float(np.abs(middle).max()), 1e-300)
-        if pairs is not None and _two_groups(pairs, np.log(SPLIT) if self.by_ratio else 0.25 * max(span, 1e-300)):
+        if pairs is not None and _two_groups(
+            pairs, np.log(SPLIT) if self.by_ratio else 0.25 * max(span, 1e-300)
+        ):
             return "groups"
         if span <= least:
             return "flat"
@@ -182,7 +217,10 @@ class Effects:
         inner = len(middle) - 1
         if 0 < top < inner and min(middle[top] - middle[0], middle[top] - middle[-1]) > turn:
             return "hump"
-        if 0 < bottom < inner and min(middle[0] - middle[bottom], middle[-1] - middle[bottom]) > turn:
+        if (
+            0 < bottom < inner
+            and min(middle[0] - middle[bottom], middle[-1] - middle[bottom]) > turn
+        ):
             return "dip"
         steps = np.abs(np.diff(middle))
         if len(steps) >= 3 and steps.max() > CLIFF * steps.sum():
@@ -191,25 +229,38 @@ class Effects:
 
     @cached_property
     def fit(self) -> _Fitted | None:
-        """Return the fit of one function of each factor; None where it predicts less than `TOLD` of the variance."""
+        """Return the fit of one function of each factor; None where it predicts less than `TOLD` of
+        the variance.
+        """
         good = np.flatnonzero(self.rows)
         if len(good) > MAX_ROWS:
             good = good[np.linspace(0, len(good) - 1, MAX_ROWS).astype(int)]
         table, y = self.results.table.iloc[good], self.y[good]
-        names = [n for n in self.results.factors if n not in OPTION_FACTORS and table[n].nunique() > 1]
+        names = [
+            n for n in self.results.factors if n not in OPTION_FACTORS and table[n].nunique() > 1
+        ]
         if len(y) < FEWEST_ROWS or not names or constant(y):
             return None
         ordered = np.array([self.results.ordered(name) for name in names])
         pairs = zip(names, ordered, strict=True)
-        columns = [_scaled(table[name]) if rises else codes(table, (name,)) for name, rises in pairs]
-        drawn = [name for name, own in zip(names, columns, strict=True) if len(np.unique(own)) > MOST_LEVELS]
+        columns = [
+            _scaled(table[name]) if rises else codes(table, (name,)) for name, rises in pairs
+        ]
+        drawn = [
+            name
+            for name, own in zip(names, columns, strict=True)
+            if len(np.unique(own)) > MOST_LEVELS
+        ]
         most = (codes(table, drawn).max() + 1) / ROWS_PER_TERM / len(drawn) if drawn else np.inf
         degrees = tuple(one for one in DEGREES if one[0] <= most) or DEGREES[-1:]
         found = best_fit(y, np.stack(columns, axis=1), ordered, degrees, ranked=False)
         if found is None or found.share < TOLD:
             return None
         weights = np.linalg.lstsq(found.table, y, rcond=None)[0]
-        parts = {name: np.where(found.term == j, found.table, 0.0) @ weights for j, name in enumerate(names)}
+        parts = {
+            name: np.where(found.term == j, found.table, 0.0) @ weights
+            for j, name in enumerate(names)
+        }
         values = {name: table[name].to_numpy() for name in names}
         return _Fitted(found.share, found.table @ weights, parts, values)
 
@@ -233,7 +284,9 @@ class _Fitted:
 
 
 def _scaled(values: pd.Series) -> np.ndarray:
-    """Return a number, or its logarithm: of a number that spans its smallest size several times, or is spread so."""
+    """Return a number, or its logarithm: of a number that spans its smallest size several times, or
+    is spread so.
+    """
     own = values.to_numpy(dtype=float)
     sizes = np.abs(own)
     one_sign = (own > 0).all() or (own < 0).all()
@@ -250,7 +303,8 @@ def _size(height: float, by_ratio: bool) -> float:
 
 
 def _two_groups(pairs: np.ndarray, apart: float) -> bool:
-    """Return whether the changes between the ends of like cases fall into two groups with a gap between them.
+    """Return whether the changes between the ends of like cases fall into two groups with a gap
+    between them.
 
     Parameters
     ----------
@@ -259,7 +313,8 @@ def _two_groups(pairs: np.ndarray, apart: float) -> bool:
 
     Notes
     -----
-    Each group holds at least three pairs and a fifth of them, and the gap is wider than the widest group.
+    Each group holds at least three pairs and a fifth of them, and the gap is wider than the widest
+    group.
     """
     change = np.sort(pairs[:, -1] - pairs[:, 0])
     least = max(3, int(np.ceil(0.2 * len(change))))

@@ -20,7 +20,9 @@ UNKNOWN = "not known"
 
 
 def end_of_case(ranges: CaseRanges) -> np.ndarray:
-    """Return what ends each case in words, shape (n,): a limit of a body, or why the case is not held or judged."""
+    """Return what ends each case in words, shape (n,): a limit of a body, or why the case is not
+    held or judged.
+    """
     life = ranges.results.life
     if not is_life(ranges.output[0]) and life is not None:
         return end_of_case(CaseRanges(ranges.results, life, True))
@@ -48,8 +50,8 @@ def ends_by_factor(results: SolvedCases, ranges: CaseRanges) -> pd.DataFrame:
 
     Returns
     -------
-    Columns `factor` (its words) and `level`, then one column for each end, the most frequent one first. The first row
-    holds all cases. Cases of a less exact contact model are left out.
+    Columns `factor` (its words) and `level`, then one column for each end, the most frequent one
+    first. The first row holds all cases. Cases of a less exact contact model are left out.
     """
     rows = results.of_one_model()
     ends = end_of_case(ranges)[rows]
@@ -62,7 +64,10 @@ def ends_by_factor(results: SolvedCases, ranges: CaseRanges) -> pd.DataFrame:
         for place, level in enumerate(levels):
             here = index == place
             if here.any():
-                found.append({"factor": long_name_of(name), "level": _words(name, level)} | _counts(ends[here], order))
+                found.append(
+                    {"factor": long_name_of(name), "level": _words(name, level)}
+                    | _counts(ends[here], order)
+                )
     return pd.DataFrame(found)
 
 

@@ -1,4 +1,6 @@
-"""What limits the result of one case: validity flags in words, and known errors of the contact models."""
+"""What limits the result of one case: validity flags in words, and known errors of the contact
+models.
+"""
 
 from __future__ import annotations
 
@@ -34,12 +36,16 @@ def not_judged(ds: xr.Dataset) -> list[str]:
 
 
 def bodies_of(flag: str, by_body: bool) -> tuple[str, ...]:
-    """Return the bodies that a flag is counted for: both, or '' for a flag of the pair or flags that no body has."""
+    """Return the bodies that a flag is counted for: both, or '' for a flag of the pair or flags
+    that no body has.
+    """
     return BODIES if by_body and VALIDITY[flag].of_body else ("",)
 
 
 def of_body(flag: str, body: str) -> str:
-    """Name the body that a flag holds for, as the words of the flag go on; an empty text without a body."""
+    """Name the body that a flag holds for, as the words of the flag go on; an empty text without a
+    body.
+    """
     return f"{'at' if flag == 'half_space' else 'of'} the {body}" if body else ""
 
 
@@ -61,11 +67,18 @@ def flags_of(ds: xr.Dataset) -> list[Flag]:
         Result of one case.
     """
     bits, flags = int(ds["validity"]), []
-    by_body = dict(zip(ds["body"].values, ds["validity_body"].values, strict=True)) if "validity_body" in ds else {}
+    by_body = (
+        dict(zip(ds["body"].values, ds["validity_body"].values, strict=True))
+        if "validity_body" in ds
+        else {}
+    )
     for name, flag in VALIDITY.items():
-        lifeless = name == "deep_life" and int(ds["regime"]) != _ROLLING  # there is no life to extrapolate
+        # there is no life to extrapolate
+        lifeless = name == "deep_life" and int(ds["regime"]) != _ROLLING
         if bits & validity_bit(name) and not lifeless:
-            own = [body for body, mask in by_body.items() if flag.of_body and mask & validity_bit(name)]
+            own = [
+                body for body, mask in by_body.items() if flag.of_body and mask & validity_bit(name)
+            ]
             words = f"{flag.words} {of_body(name, ' and the '.join(own))}".rstrip()
             flags.append(Flag(name, f"{words[0].upper()}{words[1:]}.", flag.remedy))
     residual = float(ds["energy_residual"]) if "energy_residual" in ds else 0.0
@@ -74,7 +87,13 @@ def flags_of(ds: xr.Dataset) -> list[Flag]:
         text = f"Friction energy and power differ from the work put in by {100 * residual:.0f} %."
         flags.append(Flag("energy_residual", text, exact))
     if {"run_in_distance", "groove_depth"} & set(ds) and ds.attrs.get("contact_model") == "sliding":
-        flags.append(Flag("wear_of_sliding", f"Known error of full sliding: {SLIDING_WEAR}.", exact))
-    if "energy_residual" not in ds and ds.attrs.get("contact_model") == "sliding" and int(ds["regime"]) == _ROLLING:
+        flags.append(
+            Flag("wear_of_sliding", f"Known error of full sliding: {SLIDING_WEAR}.", exact)
+        )
+    if (
+        "energy_residual" not in ds
+        and ds.attrs.get("contact_model") == "sliding"
+        and int(ds["regime"]) == _ROLLING
+    ):
         flags.append(Flag("full_sliding", f"Known error of full sliding: {SLIDING_ERROR}.", exact))
     return flags

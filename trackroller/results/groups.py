@@ -1,4 +1,6 @@
-"""Levels of a factor, and groups of cases along it: one group a level, or groups of equal size of many levels."""
+"""Levels of a factor, and groups of cases along it: one group a level, or groups of equal size of
+many levels.
+"""
 
 from __future__ import annotations
 
@@ -29,7 +31,9 @@ def numeric(values: pd.Series) -> bool:
 
 
 def ordered(values: pd.Series) -> bool:
-    """Return whether the levels of a factor have an order; materials, few drives and few curves have none."""
+    """Return whether the levels of a factor have an order; materials, few drives and few curves
+    have none.
+    """
     spoken = values.name in NAMED and len(levels(values)) <= MOST_LEVELS
     return numeric(values) and not spoken and bool(np.isfinite(values).all())
 
@@ -59,10 +63,11 @@ class Groups:
 
 
 def spaced_by_ratio(values: np.ndarray, least: float) -> bool:
-    """Return whether positive numbers spread by a factor above `least`, closer to evenly by ratio than by difference.
+    """Return whether positive numbers spread by a factor above `least`, closer to evenly by ratio
+    than by difference.
 
-    The median of such numbers lies nearer to the geometric than to the arithmetic mean of their ends, as on a
-    logarithmic axis. Uniform numbers belong on a linear axis.
+    The median of such numbers lies nearer to the geometric than to the arithmetic mean of their
+    ends, as on a logarithmic axis. Uniform numbers belong on a linear axis.
     """
     finite = values[np.isfinite(values)]
     if not finite.size or finite.min() <= 0 or finite.max() <= least * finite.min():
@@ -71,12 +76,16 @@ def spaced_by_ratio(values: np.ndarray, least: float) -> bool:
     return bool(middle < 0.5 * ((low * high) ** 0.5 + 0.5 * (low + high)))
 
 
-def classes(table: pd.DataFrame, name: str, rows: np.ndarray, most: int | None) -> tuple[np.ndarray, list[Any]]:
-    """Sort rows into the factor's own levels, or into `most` classes of equally many rows where it has many levels.
+def classes(
+    table: pd.DataFrame, name: str, rows: np.ndarray, most: int | None
+) -> tuple[np.ndarray, list[Any]]:
+    """Sort rows into the factor's own levels, or into `most` classes of equally many rows where it
+    has many levels.
 
     Returns
     -------
-    Index of the class of each of the chosen rows, shape (rows.sum(),), and per class its level or its ends (low, high).
+    Index of the class of each of the chosen rows, shape (rows.sum(),), and per class its level or
+    its ends (low, high).
     """
     values, known = table[name].to_numpy()[rows], levels(table[name])
     if most is None or not numeric(table[name]) or len(known) <= MOST_LEVELS:
@@ -85,22 +94,31 @@ def classes(table: pd.DataFrame, name: str, rows: np.ndarray, most: int | None) 
     edges = np.unique(np.quantile(values, np.linspace(0, 1, most + 1), method="nearest"))
     index = np.clip(np.searchsorted(edges, values, side="right") - 1, 0, max(len(edges) - 2, 0))
     kinds, index = np.unique(index, return_inverse=True)
-    return index, [(float(values[index == k].min()), float(values[index == k].max())) for k in range(len(kinds))]
+    return index, [
+        (float(values[index == k].min()), float(values[index == k].max()))
+        for k in range(len(kinds))
+    ]
 
 
-def groups(table: pd.DataFrame, name: str, rows: np.ndarray | None = None, most: int = BINS) -> Groups:
+def groups(
+    table: pd.DataFrame, name: str, rows: np.ndarray | None = None, most: int = BINS
+) -> Groups:
     """Sort the chosen cases (all if `rows` is not given) into groups along a factor."""
     rows = np.ones(len(table), dtype=bool) if rows is None else rows
     index, ends = classes(table, name, rows, most)
     low, high = zip(*(end if isinstance(end, tuple) else (end, end) for end in ends), strict=True)
     at, own = np.arange(len(ends), dtype=float), table[name].to_numpy()[rows]
     if in_order := ordered(table[name]):
-        at = np.array([np.median(own[index == k]) if (index == k).any() else np.nan for k in range(len(ends))])
+        at = np.array(
+            [np.median(own[index == k]) if (index == k).any() else np.nan for k in range(len(ends))]
+        )
     return Groups(name, index, low, high, at, in_order)
 
 
 def drives(table: pd.DataFrame) -> Groups:
-    """Sort the cases into free rolling, driven and braked ones; each level is a group where there are up to three."""
+    """Sort the cases into free rolling, driven and braked ones; each level is a group where there
+    are up to three.
+    """
     if len(levels(table[DRIVE])) <= 3:
         return groups(table, DRIVE)
     force = table[DRIVE].to_numpy(dtype=float)
@@ -126,9 +144,15 @@ class Product:
 
 
 def confined(
-    table: pd.DataFrame, names: Sequence[str], hit: np.ndarray, among: np.ndarray, most: int, whole: bool = False
+    table: pd.DataFrame,
+    names: Sequence[str],
+    hit: np.ndarray,
+    among: np.ndarray,
+    most: int,
+    whole: bool = False,
 ) -> list[Product]:
-    """Return at most `most` products of levels of two factors that together hold every case of an event.
+    """Return at most `most` products of levels of two factors that together hold every case of an
+    event.
 
     Parameters
     ----------
@@ -136,12 +160,13 @@ def confined(
     names : factors with few levels; of equal descriptions that by the first ones counts
     hit, among : the cases of the event, and all cases that count, shape (n,) bool
     most : number of products
-    whole : whether the event must occur in all cases of the products, otherwise in at least half of them
+    whole : whether the event must occur in all cases of the products, otherwise in at least half of
+        them
 
     Returns
     -------
-    The products with as few other cases as possible, those with the event in all cases first; nothing if no two
-    factors confine the event better than one of them.
+    The products with as few other cases as possible, those with the event in all cases first;
+    nothing if no two factors confine the event better than one of them.
     """
     coded = {name: pd.factorize(table[name][among]) for name in names}
     best: list[Product] = []
@@ -150,7 +175,9 @@ def confined(
         (a, firsts), (b, others) = coded[one], coded[other]
         shape = len(firsts), len(others)
         cell = a * shape[1] + b
-        of, hits = (np.bincount(cell, w, shape[0] * shape[1]).reshape(shape) for w in (np.ones(len(a)), own))
+        of, hits = (
+            np.bincount(cell, w, shape[0] * shape[1]).reshape(shape) for w in (np.ones(len(a)), own)
+        )
         there, full = hits > 0, (hits > 0) & (hits == of)
         inside = of[there].sum()
         alone = min(of[there.any(axis=1)].sum(), of[:, there.any(axis=0)].sum())

@@ -1,8 +1,9 @@
 """Let the sample of a study grow by doublings until its intervals are narrow, the key `until`.
 
-A step solves all cases of the sample, looks at the intervals, and doubles every replicate; an inner/outer design grows
-at the design points whose intervals are too wide. Each step is a design of the
-study whose cases go through plan and chunks. A run that was stopped therefore repeats its looks from the stored cases.
+A step solves all cases of the sample, looks at the intervals, and doubles every replicate; an
+inner/outer design grows at the design points whose intervals are too wide. Each step is a design of
+the study whose cases go through plan and chunks. A run that was stopped therefore repeats its looks
+from the stored cases.
 """
 
 from __future__ import annotations
@@ -43,7 +44,9 @@ class Growing:
         self.looks: list[dict[str, Any]] = []
 
     def advance(self) -> str:
-        """Look at every solved step; return why the study stops, '' if its step has cases to solve."""
+        """Look at every solved step; return why the study stops, '' if its step has cases to
+        solve.
+        """
         while True:
             ledger = Ledger(StudyCases(self.study), self.folder)
             if (ledger.state_number < 0).any():
@@ -51,9 +54,14 @@ class Growing:
             seen = look(solved_results(ledger))
             self.looks.append(seen)
             widest = ", ".join(f"{name} ± {_text(seen, name)}" for name in self.until.of)
-            self.tell(f"look {len(self.looks)}: {seen['cases']} cases, widest 95 % interval: {widest}")
+            self.tell(
+                f"look {len(self.looks)}: {seen['cases']} cases, widest 95 % interval: {widest}"
+            )
             if unsure := seen.get("unsure"):
-                self.tell(f"wider than wanted at {len(unsure)} of {len(self.study.drawn.points)} design points")
+                self.tell(
+                    f"wider than wanted at {len(unsure)} of {len(self.study.drawn.points)} "
+                    "design points"
+                )
             larger = doubled(self.study, unsure)
             if why := self._why(larger, ledger):
                 self.tell(f"stopped: {why}")
@@ -65,7 +73,9 @@ class Growing:
         seen, until = self.looks[-1], self.until
         widths = seen["half_width"].values()
         if seen["empty"]:
-            return f"no case gives a valid {' or '.join(seen['empty'])}, so nothing is left to decide"
+            return (
+                f"no case gives a valid {' or '.join(seen['empty'])}, so nothing is left to decide"
+            )
         if self._is_decided():
             return "every share is clear of the share that the requirement wants"
         if all(width is not None and width <= until.half_width for width in widths):
@@ -86,7 +96,9 @@ class Growing:
         return ""
 
     def _is_decided(self) -> bool:
-        """Return whether the last look tells of every design point whether it meets every requirement of `until`."""
+        """Return whether the last look tells of every design point whether it meets every
+        requirement of `until`.
+        """
         decided = self.looks[-1].get("decided", {})
         points = len(self.study.drawn.points) if self.study.config.method.points else 0
         return bool(points) and all(decided.get(name, 0) == points for name in self.until.of)
@@ -117,7 +129,8 @@ def grow_study(study: Study, results: Path | str = "results", **how: Any) -> Led
     Returns
     -------
     Ledger
-        The ledger of the last step. The attribute `until` of `study.nc` holds the looks and why it stopped (JSON).
+        The ledger of the last step. The attribute `until` of `study.nc` holds the looks and why it
+        stopped (JSON).
 
     Raises
     ------
@@ -142,7 +155,8 @@ def next_step(study: Study, results: Path | str, tell: Tell) -> dict[str, Any]:
     Returns
     -------
     dict
-        `stopped`, why the study stops ('' if it goes on), and `chunks`, the names of the chunks that are not solved.
+        `stopped`, why the study stops ('' if it goes on), and `chunks`, the names of the chunks
+        that are not solved.
     """
     growing = Growing(study, study_folder(study.name, results).create(), tell)
     if why := growing.advance():

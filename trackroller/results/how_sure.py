@@ -1,4 +1,6 @@
-"""How surely a requirement is met: the answer to a study of one candidate, or to one that asks for shares."""
+"""How surely a requirement is met: the answer to a study of one candidate, or to one that asks for
+shares.
+"""
 
 from __future__ import annotations
 
@@ -32,8 +34,8 @@ def answer_how_sure(results: SolvedCases) -> Answer:
 
     Notes
     -----
-    `kind` is `share` for drawn conditions, `count` for listed ones, and `cannot_tell` where no case can be judged. Of
-    several candidates the one with the largest share stands first.
+    `kind` is `share` for drawn conditions, `count` for listed ones, and `cannot_tell` where no case
+    can be judged. Of several candidates the one with the largest share stands first.
     """
     own = Comparison.of(results)
     assert own is not None
@@ -41,7 +43,10 @@ def answer_how_sure(results: SolvedCases) -> Answer:
     order = _order(own, table)
     shown = with_ratios(own, table.iloc[order].reset_index(drop=True))
     one = shown.iloc[0]
-    told: dict[str, Any] = {"names": names_of(own, order[:1]) if own.count > 1 else [], **leading(own, one)}
+    told: dict[str, Any] = {
+        "names": names_of(own, order[:1]) if own.count > 1 else [],
+        **leading(own, one),
+    }
     if not own.drawn:
         told |= {"meets": int(one["meets"]), "of": int(one["of"])}
     kind = "share" if own.drawn else "count"
@@ -68,7 +73,9 @@ def answer_how_sure(results: SolvedCases) -> Answer:
 
 
 def _order(own: Comparison, table: Any) -> list[int]:
-    """Return the candidates by the share or the number of conditions that meet the requirement, the largest first."""
+    """Return the candidates by the share or the number of conditions that meet the requirement, the
+    largest first.
+    """
     decider = Decider(own, table)
     share = table["share"] if own.drawn else table["meets"] / table["of"]
     return [int(n) for n in np.lexsort((-decider.score, -share.to_numpy(dtype=float)))]
@@ -76,4 +83,7 @@ def _order(own: Comparison, table: Any) -> list[int]:
 
 def _values(own: Comparison, order: list[int]) -> list[np.ndarray]:
     """Return the output of the conditions of each candidate, in rising order."""
-    return [np.sort(np.where(own.ranges.held, own.ranges.middle, own.ranges.worst_value)[own.rows[n]]) for n in order]
+    return [
+        np.sort(np.where(own.ranges.held, own.ranges.middle, own.ranges.worst_value)[own.rows[n]])
+        for n in order
+    ]

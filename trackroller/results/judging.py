@@ -25,7 +25,8 @@ from trackroller.roller.requirement import Requirement
 from trackroller.study.file.search import judged_by
 from trackroller.study.outputs import flat
 
-SAFE_B10 = "B10 of {} over all conditions"  # a condition in which it does not roll, or has no known life, counts as 0
+# a condition in which it does not roll, or has no known life, counts as 0
+SAFE_B10 = "B10 of {} over all conditions"
 SHARE_ROUNDING = 1e-9  # of a share of conditions
 OPTIMUM = "optimum"  # attribute of study.nc with what the search found (JSON)
 
@@ -39,15 +40,19 @@ class Judged:
     genes : shape (n, choices)
     values : goals in their units, shape (n, goals); NaN where no condition gives a value
     costs : the same with smaller as better
-    violation : share of the conditions in which the design is not valid [1], shape (n,); 0 where B10 or a probability
-        counts these conditions, and where the requirement allows so many to fail
+    violation : share of the conditions in which the design is not valid [1], shape (n,); 0 where
+        B10 or a probability counts these conditions, and where the requirement allows so many to
+        fail
     reasons : cases by what they break, of all designs together
     goals : what each column of `values` is, with `min` or `max`
     short : how far a design is from the requirement of the study, see `shortfall`; shape (n,),
         0 everywhere without one
-    life : shortest life over the conditions, of a range its low end; shape (n,), 0 everywhere without lives
-    share : smallest share of the conditions that surely meets a requirement [1], shape (n,); NaN without one
-    required : output of each requirement at its worst condition, of a range its worse end; shape (n, requirements)
+    life : shortest life over the conditions, of a range its low end; shape (n,), 0 everywhere
+        without lives
+    share : smallest share of the conditions that surely meets a requirement [1], shape (n,); NaN
+        without one
+    required : output of each requirement at its worst condition, of a range its worse end; shape
+        (n, requirements)
     """
 
     genes: np.ndarray
@@ -63,7 +68,8 @@ class Judged:
 
     @property
     def missed(self) -> np.ndarray:
-        """What a design misses, shape (n,): conditions in which it is not valid, and the requirement; 0 for nothing.
+        """What a design misses, shape (n,): conditions in which it is not valid, and the
+        requirement; 0 for nothing.
 
         A design that misses less is better, whatever its goals.
         """
@@ -76,7 +82,10 @@ class Judged:
 
     def __add__(self, other: Judged) -> Judged:
         """Return the designs of both."""
-        counts = {k: self.reasons.get(k, 0) + other.reasons.get(k, 0) for k in {**self.reasons, **other.reasons}}
+        counts = {
+            k: self.reasons.get(k, 0) + other.reasons.get(k, 0)
+            for k in {**self.reasons, **other.reasons}
+        }
         both: dict[str, Any] = {
             name: np.concatenate((getattr(self, name), getattr(other, name))) for name in _BY_DESIGN
         }
@@ -127,7 +136,9 @@ def judge(results: SolvedCases, genes: np.ndarray | None = None) -> Judged:
 
 
 def _beyond_spare(results: SolvedCases, lost: np.ndarray) -> np.ndarray:
-    """Return shares of conditions in which designs are not valid; 0 where the requirement allows so many to fail."""
+    """Return shares of conditions in which designs are not valid; 0 where the requirement allows so
+    many to fail.
+    """
     wanted = _to_meet(results).values()
     if not wanted or not all(own.in_shares for own in wanted):
         return lost
@@ -136,7 +147,9 @@ def _beyond_spare(results: SolvedCases, lost: np.ndarray) -> np.ndarray:
 
 
 def _shortest(results: SolvedCases) -> np.ndarray:
-    """Return the shortest life of each design over its conditions, of a range its low end, shape (designs,)."""
+    """Return the shortest life of each design over its conditions, of a range its low end, shape
+    (designs,).
+    """
     shape = results.design.meta["design_points"], results.design.meta["inner_samples"]
     life = life_of_search(results)
     if life is None:
@@ -145,13 +158,17 @@ def _shortest(results: SolvedCases) -> np.ndarray:
 
 
 def _smallest_share(results: SolvedCases) -> np.ndarray:
-    """Return the smallest share of the conditions in which each design surely meets a requirement; NaN without one."""
+    """Return the smallest share of the conditions in which each design surely meets a requirement;
+    NaN without one.
+    """
     nothing = np.full(results.design.meta["design_points"], np.nan)
     return np.asarray(np.fmin.reduce([nothing, *(own.sure for own in shares_of(results))]))
 
 
 def _required_values(results: SolvedCases) -> np.ndarray:
-    """Return the output of each requirement at its worst condition, shape (designs, requirements)."""
+    """Return the output of each requirement at its worst condition, shape (designs,
+    requirements).
+    """
     shape = results.design.meta["design_points"], results.design.meta["inner_samples"]
     columns = [np.zeros((shape[0], 0))]
     for _, own in judges_of(results):
@@ -162,7 +179,9 @@ def _required_values(results: SolvedCases) -> np.ndarray:
 
 
 def _values(results: SolvedCases) -> tuple[np.ndarray, np.ndarray]:
-    """Return the goals of each design, (designs, goals), and where all goals of a case are known, (designs, cases)."""
+    """Return the goals of each design, (designs, goals), and where all goals of a case are known,
+    (designs, cases).
+    """
     design = results.design
     shape = design.meta["design_points"], design.meta["inner_samples"]
     valid, goals = results.held.reshape(shape), goals_of_search(results)
@@ -187,24 +206,32 @@ def required(results: SolvedCases) -> bool:
 def _to_meet(results: SolvedCases) -> dict[str, Requirement]:
     """Return what the designs of a search have to meet.
 
-    An output whose probability is a goal has to meet its requirement in as many conditions as possible, unless the
-    requirement says in how many.
+    An output whose probability is a goal has to meet its requirement in as many conditions as
+    possible, unless the requirement says in how many.
     """
-    chances = {judged_by(goal)[1] for goal in goals_of_search(results) if judged_by(goal)[0] == "probability"}
+    chances = {
+        judged_by(goal)[1]
+        for goal in goals_of_search(results)
+        if judged_by(goal)[0] == "probability"
+    }
     wanted = requirements_of(results)
     return {name: own for name, own in wanted.items() if own.in_shares or name not in chances}
 
 
 @made_once
 def judges_of(results: SolvedCases) -> list[tuple[Required, CaseRanges]]:
-    """Return each requirement that the designs of a search have to meet, with the output that judges it."""
+    """Return each requirement that the designs of a search have to meet, with the output that
+    judges it.
+    """
     own = Comparison.of(results)
     wanted = _to_meet(results)
     return [] if own is None else [pair for pair in own.judges if pair[0].output in wanted]
 
 
 def life_of_search(results: SolvedCases) -> CaseRanges | None:
-    """Return the life that orders designs with the same goals, with its range; None in a study without lives."""
+    """Return the life that orders designs with the same goals, with its range; None in a study
+    without lives.
+    """
     return None if results.life is None else CaseRanges(results, results.life, True)
 
 
@@ -215,7 +242,8 @@ class Shares:
     Attributes
     ----------
     required : the requirement
-    sure, may : shares of the conditions that surely meet it, and that may meet it [1], shape (designs,)
+    sure, may : shares of the conditions that surely meet it, and that may meet it [1], shape
+        (designs,)
     wanted : share that is enough [1]
     """
 
@@ -233,7 +261,8 @@ class Shares:
 def shares_of(results: SolvedCases, exact: bool = False) -> list[Shares]:
     """Return the share of the conditions in which each design meets each requirement of a search.
 
-    All conditions have to meet a requirement without a probability; nine of ten where a goal is a B10.
+    All conditions have to meet a requirement without a probability; nine of ten where a goal is a
+    B10.
     """
     design = results.design
     shape = design.meta["design_points"], design.meta["inner_samples"]
@@ -249,7 +278,8 @@ def shares_of(results: SolvedCases, exact: bool = False) -> list[Shares]:
 
 
 def shortfall(results: SolvedCases, exact: bool = False) -> np.ndarray:
-    """Return how far each design of a search is from the requirement of the study, shape (designs,).
+    """Return how far each design of a search is from the requirement of the study, shape
+    (designs,).
 
     Parameters
     ----------
@@ -258,8 +288,9 @@ def shortfall(results: SolvedCases, exact: bool = False) -> np.ndarray:
 
     Returns
     -------
-    0 where the design meets every requirement; 1 where a range or an error leaves that open, 2 where it misses one,
-    plus a part below 1 by the share of the conditions that lacks, then by the life. 0 for all without a requirement.
+    0 where the design meets every requirement; 1 where a range or an error leaves that open, 2
+    where it misses one, plus a part below 1 by the share of the conditions that lacks, then by the
+    life. 0 for all without a requirement.
     """
     count = results.design.meta["design_points"]
     shares = shares_of(results, exact)
@@ -273,7 +304,9 @@ def shortfall(results: SolvedCases, exact: bool = False) -> np.ndarray:
 
 
 def _life_gap(results: SolvedCases) -> np.ndarray:
-    """Return how much the shortest life of each design lacks of the required one, 0 to 1, shape (designs,)."""
+    """Return how much the shortest life of each design lacks of the required one, 0 to 1, shape
+    (designs,).
+    """
     gap = np.zeros(results.design.meta["design_points"])
     for one, own in judges_of(results):
         if is_life(own.output[0]) and one.least > 0:
@@ -282,14 +315,18 @@ def _life_gap(results: SolvedCases) -> np.ndarray:
 
 
 def _met(results: SolvedCases, output: str) -> np.ndarray:
-    """Return which cases are in a regime, or are valid and meet a target of the study, shape (n,)."""
+    """Return which cases are in a regime, or are valid and meet a target of the study, shape
+    (n,).
+    """
     if output in REGIMES:
         return np.asarray(results.regime == REGIMES.index(output))
     return np.asarray(results.held & results.meets(output))
 
 
 def _over_conditions(raw: np.ndarray, good: np.ndarray, kind: str, way: str) -> np.ndarray:
-    """Return a statistic of a result over the conditions of each design, shape (n, conditions) -> (n,)."""
+    """Return a statistic of a result over the conditions of each design, shape (n, conditions) ->
+    (n,).
+    """
     if kind == "b10":
         return np.array([b10(lives)[0] for lives in np.where(good, raw, 0.0)])
     out = np.full(len(raw), np.nan)
@@ -305,32 +342,46 @@ def _over_conditions(raw: np.ndarray, good: np.ndarray, kind: str, way: str) -> 
 def _reasons(results: SolvedCases, known: np.ndarray) -> dict[str, int]:
     """Count the cases that do not count, by what they break."""
     counts = {word: int((results.regime == i).sum()) for i, word in enumerate(REGIMES) if i}
-    counts |= {flag: int((results.rolling & results.flagged(flag)).sum()) for flag in results.flags if flag in OUTSIDE}
+    counts |= {
+        flag: int((results.rolling & results.flagged(flag)).sum())
+        for flag in results.flags
+        if flag in OUTSIDE
+    }
     if results.allowed is not None:
         counts["constraints"] = int((results.inside & ~results.allowed).sum())
-    counts |= {name: int((results.valid & rows).sum()) for name, rows in results.limits_in("exceeded").items()}
+    counts |= {
+        name: int((results.valid & rows).sum())
+        for name, rows in results.limits_in("exceeded").items()
+    }
     counts["no value of a goal"] = int((results.held & ~known).sum())
     return {word: n for word, n in counts.items() if n}
 
 
 def recommended(best: Judged) -> int:
-    """Return the design of a front that is nearest to the best of all goals, each normalised over the front.
+    """Return the design of a front that is nearest to the best of all goals, each normalised over
+    the front.
 
-    Only the designs that miss least count. Lives count by their logarithm, because they span decades. Of equal designs,
-    the first goal decides, then the longer life.
+    Only the designs that miss least count. Lives count by their logarithm, because they span
+    decades. Of equal designs, the first goal decides, then the longer life.
     """
     shares = _normalised(best.costs)
-    return int(np.lexsort((-best.life, shares[:, 0], np.round((shares**2).sum(axis=1), 9), best.missed))[0])
+    return int(
+        np.lexsort((-best.life, shares[:, 0], np.round((shares**2).sum(axis=1), 9), best.missed))[0]
+    )
 
 
 def best_in(best: Judged, goal: int) -> int:
-    """Return the design of a front that is best in one goal; of equal ones the other goals decide, then the life."""
+    """Return the design of a front that is best in one goal; of equal ones the other goals decide,
+    then the life.
+    """
     others = np.delete(best.costs, goal, axis=1).T
     return int(np.lexsort((-best.life, *others, best.costs[:, goal], best.missed))[0])
 
 
 def _normalised(costs: np.ndarray) -> np.ndarray:
-    """Return costs from 0 (best) to 1 (worst) by goal; goals that span a decade by their logarithm."""
+    """Return costs from 0 (best) to 1 (worst) by goal; goals that span a decade by their
+    logarithm.
+    """
     out = np.zeros(costs.shape)
     for j, values in enumerate(costs.T):
         finite = values[np.isfinite(values)]
@@ -340,12 +391,16 @@ def _normalised(costs: np.ndarray) -> np.ndarray:
         if (np.sign(finite) == sign).all() and size.max() > 10 * size.min() > 0:
             values, finite = (sign * np.log(np.abs(v)) for v in (values, finite))
         low, high = finite.min(), finite.max()
-        out[:, j] = (np.clip(np.nan_to_num(values, nan=high), low, high) - low) / (high - low or 1.0)
+        out[:, j] = (np.clip(np.nan_to_num(values, nan=high), low, high) - low) / (
+            high - low or 1.0
+        )
     return out
 
 
 def spread(costs: np.ndarray, count: int) -> np.ndarray:
-    """Return the indices of at most `count` designs along a front: the least crowded ones, its ends first."""
+    """Return the indices of at most `count` designs along a front: the least crowded ones, its ends
+    first.
+    """
     left = np.arange(len(costs))
     while len(left) > count:
         left = np.delete(left, np.argmin(crowding(costs[left])))
@@ -381,7 +436,9 @@ def goal_column(results: SolvedCases, goal: str) -> Column:
 
 
 def ends_of_goal(results: SolvedCases, goal: str) -> tuple[np.ndarray, np.ndarray] | None:
-    """Return both ends of the range of a life that is a goal, shape (designs,) each; None if it has no range."""
+    """Return both ends of the range of a life that is a goal, shape (designs,) each; None if it has
+    no range.
+    """
     kind, output = judged_by(goal)
     if not is_life(output) or kind == "probability" or f"{output}_low" not in results.data:
         return None
@@ -391,16 +448,22 @@ def ends_of_goal(results: SolvedCases, goal: str) -> tuple[np.ndarray, np.ndarra
     for end in ("_low", "_high"):
         own = flat(results.data, f"{output}{end}", results.dims).astype(float)
         lives = np.where(np.isnan(own), raw, own).reshape(shape)
-        ends.append(_over_conditions(lives, valid & ~np.isnan(lives), kind, goals_of_search(results)[goal]))
+        ends.append(
+            _over_conditions(lives, valid & ~np.isnan(lives), kind, goals_of_search(results)[goal])
+        )
     return ends[0], ends[1]
 
 
 def beyond_data(results: SolvedCases, goal: str) -> np.ndarray:
-    """Return for which designs a life that is a goal rests on a life beyond the S-N data, shape (n,)."""
+    """Return for which designs a life that is a goal rests on a life beyond the S-N data, shape
+    (n,).
+    """
     kind, output = judged_by(goal)
     shape = results.design.meta["design_points"], results.design.meta["inner_samples"]
     if not is_life(output) or kind == "probability":
         return np.zeros(shape[0], dtype=bool)
     lives = results.quantity(output)[0].astype(float).reshape(shape)
-    counted = results.held.reshape(shape) & ((kind == "mean") | (lives <= goal_column(results, goal)[0][:, None]))
+    counted = results.held.reshape(shape) & (
+        (kind == "mean") | (lives <= goal_column(results, goal)[0][:, None])
+    )
     return np.asarray((counted & beyond_sn_data(results, output).reshape(shape)).any(axis=1))

@@ -1,4 +1,6 @@
-"""Label sensitivity indices, and record which rows were used, which were left out and which factors correlate."""
+"""Label sensitivity indices, and record which rows were used, which were left out and which factors
+correlate.
+"""
 
 from __future__ import annotations
 
@@ -36,10 +38,15 @@ def note(column: Output, used: int, total: int, unit: str) -> str:
         return "constant or never usable: no index can be given"
     text = f"{used:,} of {total:,} {unit} used"
     if column.excluded:
-        text += "; rows left out: " + ", ".join(f"{n:,} {why}" for why, n in column.excluded.items())
+        text += "; rows left out: " + ", ".join(
+            f"{n:,} {why}" for why, n in column.excluded.items()
+        )
         further = total - used - sum(column.excluded.values())
         if unit == "cells" and further > 0:
-            text += f", and {further:,} at the same levels, because indices of a grid need every combination of levels"
+            text += (
+                f", and {further:,} at the same levels, because indices of a grid need every "
+                "combination of levels"
+            )
     if used < RELIABLE * total:
         text += "; the indices describe the cases used, not the whole range of the factors"
     return text
@@ -55,44 +62,69 @@ def first_order_sums(result: xr.Dataset, drawn: bool) -> dict[str, Any]:
 
     Returns
     -------
-    Variables first_order_sum [1] and first_order_sum_note along `output`; the note is empty for a sum of up to 100 %.
-    Negative estimates count as 0. Empty without estimated first-order indices; those of a grid are exact.
+    Variables first_order_sum [1] and first_order_sum_note along `output`; the note is empty for a
+    sum of up to 100 %. Negative estimates count as 0. Empty without estimated first-order indices;
+    those of a grid are exact.
 
     Notes
     -----
-    First-order indices of independent factors add up to 100 % at most. Estimates exceed it if factors are correlated,
-    by sampling errors (the root of the sum of squares of the half widths), or because rows are left out: the remaining
-    rows are no sample of independent factors.
+    First-order indices of independent factors add up to 100 % at most. Estimates exceed it if
+    factors are correlated, by sampling errors (the root of the sum of squares of the half widths),
+    or because rows are left out: the remaining rows are no sample of independent factors.
     """
     name = "S1" if "S1" in result else "first"
     if "main_share" in result or name not in result:
         return {}
     total = result[name].clip(min=0.0).sum("factor").values
-    error = np.sqrt((((result[f"{name}_high"] - result[f"{name}_low"]) / 2) ** 2).sum("factor").values)
+    error = np.sqrt(
+        (((result[f"{name}_high"] - result[f"{name}_low"]) / 2) ** 2).sum("factor").values
+    )
     tied = (
         [str(n) for n in result["factor_name"].values[result["correlated"].values == 1]]
         if "correlated" in result
         else []
     )
     rows = zip(total, error, result["used_share"].values, strict=True)
-    notes = np.array([_excess(*row, tied, drawn) if row[0] > 1.005 else "" for row in rows], dtype=object)
+    notes = np.array(
+        [_excess(*row, tied, drawn) if row[0] > 1.005 else "" for row in rows], dtype=object
+    )
     return {
-        "first_order_sum": ("output", total, {"long_name": "sum of the first-order indices", "units": "1"}),
-        "first_order_sum_note": ("output", notes, {"long_name": "why the first-order indices exceed 100 % together"}),
+        "first_order_sum": (
+            "output",
+            total,
+            {"long_name": "sum of the first-order indices", "units": "1"},
+        ),
+        "first_order_sum_note": (
+            "output",
+            notes,
+            {"long_name": "why the first-order indices exceed 100 % together"},
+        ),
     }
 
 
 def _excess(total: float, error: float, used: float, tied: list[str], drawn: bool) -> str:
-    """Return the reason why first-order indices add up to more than 100 %, see `first_order_sums`."""
-    text = f"The first-order indices add up to {100 * total:.0f} %, those of independent factors to 100 % at most: "
+    """Return the reason why first-order indices add up to more than 100 %, see
+    `first_order_sums`.
+    """
+    text = (
+        f"The first-order indices add up to {100 * total:.0f} %, those of independent factors "
+        "to 100 % at most: "
+    )
     if tied:
-        return text + f"{' and '.join(tied)} are correlated, and each index holds influence of the others."
+        return (
+            text
+            + f"{' and '.join(tied)} are correlated, and each index holds influence of the others."
+        )
     if total - 1 > error and used < 1:
-        left = f"{100 * (1 - used):.0f} % of the rows are left out, and in the others the factors may be dependent."
+        left = (
+            f"{100 * (1 - used):.0f} % of the rows are left out, and in the others the factors "
+            "may be dependent."
+        )
         return text + left
     if total - 1 > error and not drawn:
         return (
-            text + f"the excess is above the sampling error of ± {100 * error:.0f} %, so the factors may be dependent."
+            text + f"the excess is above the sampling error of ± {100 * error:.0f} %, so the "
+            "factors may be dependent."
         )
     return text + f"the sum of so small a sample has a 95 % interval of ± {100 * error:.0f} %."
 
@@ -108,7 +140,8 @@ def treatment(regime: np.ndarray, keep: Iterable[str], allowed: np.ndarray | Non
 
     Returns
     -------
-    How many cases each regime has, which regimes were left out, and how many cases miss a constraint.
+    How many cases each regime has, which regimes were left out, and how many cases miss a
+    constraint.
     """
     counts = {name: int((regime == i).sum()) for i, name in enumerate(REGIMES)}
     words = dict(zip(REGIMES, REGIME_LABELS, strict=True))
@@ -132,10 +165,16 @@ def correlated(design: Design) -> str:
         f"{factor_name(one)} and {factor_name(other)} are correlated (rank correlation {rho:.2f})"
         for one, other, rho in correlated_pairs(design)
     ]
-    return f"; {', '.join(warnings)}: the index of each includes the influence of both" if warnings else ""
+    return (
+        f"; {', '.join(warnings)}: the index of each includes the influence of both"
+        if warnings
+        else ""
+    )
 
 
-def labelled(design: Design, columns: list[Output], results: list[Estimates], at: np.ndarray) -> xr.Dataset:
+def labelled(
+    design: Design, columns: list[Output], results: list[Estimates], at: np.ndarray
+) -> xr.Dataset:
     """Join the results of all outputs.
 
     Parameters
@@ -179,7 +218,8 @@ def stacked(method: Method, results: list[Estimates], dims: tuple[str, ...]) -> 
     ----------
     method : declares the words of each estimate, and whether it has the unit of the output
     results : estimates of each output
-    dims : dimensions of an estimate, `output` first; one with fewer dimensions takes the first of them
+    dims : dimensions of an estimate, `output` first; one with fewer dimensions takes the first of
+        them
 
     Returns
     -------
@@ -197,11 +237,16 @@ def stacked(method: Method, results: list[Estimates], dims: tuple[str, ...]) -> 
         index = index_of(method, root)
         attrs = {"units": "1", "long_name": index.words + name[len(root) :].replace("_", " ")}
         if index.sized:
-            attrs |= {"units": "", "comment": "in the unit of the output; on the scale log10 in powers of ten"}
+            attrs |= {
+                "units": "",
+                "comment": "in the unit of the output; on the scale log10 in powers of ten",
+            }
         out[name] = (axes, values, attrs)
     return out
 
 
 def factor_name(name: str) -> str:
-    """Return the long name of a parameter or of a field of a carriage, or the name of another factor with spaces."""
+    """Return the long name of a parameter or of a field of a carriage, or the name of another
+    factor with spaces.
+    """
     return long_name_of(name)

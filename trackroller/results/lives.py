@@ -9,7 +9,8 @@ from trackroller.damage import LIMITS
 from trackroller.parameters import BODIES
 from trackroller.roller.requirement import LIVES_OF_PAIR
 
-# limits that stand beside the verdict: second models of an end that another limit has, and those without a verdict
+# limits that stand beside the verdict: second models of an end that another limit has, and those
+# without a verdict
 BESIDE = tuple(name for name, limit in LIMITS.items() if limit.beside or limit.verdict is None)
 
 LIVES = (
@@ -25,12 +26,15 @@ DATA_END = 1e8  # overrollings; no S-N curve of the database was measured beyond
 
 
 def past_data(cycles: ArrayLike, knee: ArrayLike = np.inf) -> np.ndarray:
-    """Return where lives [overrollings] exceed those at the fatigue limit, `knee`, or the end of the S-N data."""
+    """Return where lives [overrollings] exceed those at the fatigue limit, `knee`, or the end of
+    the S-N data.
+    """
     return np.asarray(np.asarray(cycles) > np.minimum(knee, DATA_END))
 
 
 def lacks_a_body(hours: np.ndarray, limits: list[str], name: str) -> np.ndarray:
-    """Return the cases in which a second model lacks the life of a body whose fatigue is known, shape (n,) bool.
+    """Return the cases in which a second model lacks the life of a body whose fatigue is known,
+    shape (n,) bool.
 
     Parameters
     ----------

@@ -1,4 +1,6 @@
-"""Look at the intervals of a sample that grows, the key `until`, and read the looks back from a solved study."""
+"""Look at the intervals of a sample that grows, the key `until`, and read the looks back from a
+solved study.
+"""
 
 from __future__ import annotations
 
@@ -22,7 +24,9 @@ UNTIL = "until"  # attribute of study.nc with the looks and the reason for stopp
 
 
 def looks_of(results: SolvedCases) -> dict[str, Any] | None:
-    """Return the looks at a grown sample from the attribute of its results; None for another study."""
+    """Return the looks at a grown sample from the attribute of its results; None for another
+    study.
+    """
     text = results.data.attrs.get(UNTIL)
     return json.loads(text) if isinstance(text, str) else None
 
@@ -38,10 +42,11 @@ def look(results: SolvedCases) -> dict[str, Any]:
     Returns
     -------
     dict
-        `cases`, and by output `half_width` (None: no interval yet) and `at`, the factor or design point with the widest
-        interval; `constant` names outputs that do not vary, so that they have no index, and `empty` those without a
-        valid case. `decided` counts the design points whose share is clear of the share that a requirement wants: their
-        interval counts as 0. `unsure` numbers the design points with a wider interval than wanted (inner_outer).
+        `cases`, and by output `half_width` (None: no interval yet) and `at`, the factor or design
+        point with the widest interval; `constant` names outputs that do not vary, so that they have
+        no index, and `empty` those without a valid case. `decided` counts the design points whose
+        share is clear of the share that a requirement wants: their interval counts as 0. `unsure`
+        numbers the design points with a wider interval than wanted (inner_outer).
     """
     design, until = results.design, results.config.until
     assert until is not None
@@ -75,9 +80,13 @@ def look(results: SolvedCases) -> dict[str, Any]:
 
 
 def _of_indices(results: SolvedCases, name: str) -> tuple[np.ndarray, np.ndarray]:
-    """Return an output (n,) and the half widths of its headline indices; those of effects over the output's range."""
+    """Return an output (n,) and the half widths of its headline indices; those of effects over the
+    output's range.
+    """
     design, given = results.design, results.config.analysis
-    y = outputs(results.data, design.factors, [name], given.keep, scale=given.scale, allowed=results.allowed)[0].values
+    y = outputs(
+        results.data, design.factors, [name], given.keep, scale=given.scale, allowed=results.allowed
+    )[0].values
     estimates = design.method.replicated(y, design, design.samples)
     scale = float(np.nanmax(y) - np.nanmin(y)) if design.method.effects and not constant(y) else 1.0
     widths = [estimates[f"{index}_high"] - estimates[index] for index in design.method.narrowed]
@@ -95,27 +104,40 @@ def _of_points(results: SolvedCases, name: str) -> tuple[np.ndarray, np.ndarray]
         values = hits = (regimes(results.data, results.dims) == REGIMES.index(output)).astype(float)
     else:
         column = outputs(
-            results.data, design.factors, [output], unlimited=True, scale="natural", allowed=results.allowed
+            results.data,
+            design.factors,
+            [output],
+            unlimited=True,
+            scale="natural",
+            allowed=results.allowed,
         )[0]
         values, scatter = results.with_breaks(column), own.get(scattering_body(output))
         if kind != "probability":
             scatter = np.zeros(design.size) if scatter is None else scatter
-            halves = [log_b10(values[r], scatter[r], np.arange(r.stop - r.start) % copies, copies)[1] for r in points]
+            halves = [
+                log_b10(values[r], scatter[r], np.arange(r.stop - r.start) % copies, copies)[1]
+                for r in points
+            ]
             return values, np.where([np.isnan(values[rows]).all() for rows in points], 0.0, halves)
         hits = hits_of(column, results.config.requirement[output], scatter)
     return values, _shares(results, hits)[1]
 
 
 def _shares(results: SolvedCases, hits: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the share of hits at each design point and the half width of its interval, shape (points,) each."""
+    """Return the share of hits at each design point and the half width of its interval, shape
+    (points,) each.
+    """
     copies, points = int(results.design.meta["replicates"]), results.design.points
-    found = [share(hits[rows], np.arange(rows.stop - rows.start) % copies, copies) for rows in points]
+    found = [
+        share(hits[rows], np.arange(rows.stop - rows.start) % copies, copies) for rows in points
+    ]
     shares, widths = np.array(found, dtype=float).T
     return shares, widths
 
 
 def _decided(results: SolvedCases, name: str, widths: np.ndarray) -> np.ndarray:
-    """Return the design points whose share is clear of the share that a requirement wants, shape (points,) bool.
+    """Return the design points whose share is clear of the share that a requirement wants, shape
+    (points,) bool.
 
     More cases would not change whether they meet it.
     """
@@ -124,9 +146,14 @@ def _decided(results: SolvedCases, name: str, widths: np.ndarray) -> np.ndarray:
     if kind != "probability" or own is None or not own.in_shares:
         return np.zeros(len(widths), dtype=bool)
     design = results.design
-    column = outputs(results.data, design.factors, [output], unlimited=True, scale="natural", allowed=results.allowed)[
-        0
-    ]
+    column = outputs(
+        results.data,
+        design.factors,
+        [output],
+        unlimited=True,
+        scale="natural",
+        allowed=results.allowed,
+    )[0]
     scatter = material_deviations(results).get(scattering_body(output))
     shares = _shares(results, hits_of(column, own, scatter))[0]
     return np.asarray(np.abs(shares - own.probability) > widths)
@@ -137,5 +164,8 @@ def _names(results: SolvedCases) -> list[str]:
     design = results.design
     if not design.method.points:
         return list(map(factor_name, design.factors))
-    named = [[in_words(n, design.columns[n][rows.start]) for n in design.meta["outer"]] for rows in design.points]
+    named = [
+        [in_words(n, design.columns[n][rows.start]) for n in design.meta["outer"]]
+        for rows in design.points
+    ]
     return [", ".join(row) or "all" for row in named]

@@ -1,7 +1,8 @@
-"""The margins of one solved roller: each limit with its value, what is permitted, its use and its range of lives.
+"""The margins of one solved roller: each limit with its value, what is permitted, its use and its
+range of lives.
 
-Beside the limits of the room `damage` stand the pressure at which a body yields, and what lifts a contact off, makes
-the roller skid or locks it.
+Beside the limits of the room `damage` stand the pressure at which a body yields, and what lifts a
+contact off, makes the roller skid or locks it.
 """
 
 from __future__ import annotations
@@ -52,15 +53,18 @@ class Margin:
     used, used_low, used_high : float
         Load over the load at the limit [1], with the ends of its range; NaN if it is not known.
     hours, low, high : float
-        Life to the limit and the ends of its range [h]; NaN if the limit has no life, or if the life is not known.
+        Life to the limit and the ends of its range [h]; NaN if the limit has no life, or if the
+        life is not known.
     state : str
         One of `trackroller.damage.verdict.STATES`.
     breaks : bool
         Whether the body breaks at once by this limit.
     timed, beside : bool
-        Whether the limit has a life, known or not, and whether it is a second model of an end that another limit has.
+        Whether the limit has a life, known or not, and whether it is a second model of an end that
+        another limit has.
     beyond, guessed : bool
-        Whether the life lies beyond the S-N data, and whether the limit rests on placeholders of a material.
+        Whether the life lies beyond the S-N data, and whether the limit rests on placeholders of a
+        material.
     lifeless : bool
         Whether the body has no fatigue life, because it breaks at once or the roller skids.
     """
@@ -90,12 +94,16 @@ class Margin:
 
     @property
     def ends(self) -> bool:
-        """Return whether the limit ends a life: it has known hours and stands beside no other, or the body breaks."""
+        """Return whether the limit ends a life: it has known hours and stands beside no other, or
+        the body breaks.
+        """
         return self.breaks or (self.timed and not self.beside and not math.isnan(self.hours))
 
     @property
     def reached(self) -> float:
-        """Return the hours until the limit is reached: 0 if the body breaks, infinity if they are not known."""
+        """Return the hours until the limit is reached: 0 if the body breaks, infinity if they are
+        not known.
+        """
         if self.breaks:
             return 0.0
         return math.inf if math.isnan(self.hours) else self.hours
@@ -107,7 +115,9 @@ class Margin:
 
 
 def overrollings(inputs: Mapping[str, Any], body: str) -> float:
-    """Return the overrollings of a point of a body [1/h]; NaN if the overrollings of the guide are not given."""
+    """Return the overrollings of a point of a body [1/h]; NaN if the overrollings of the guide are
+    not given.
+    """
     if body == "guide":
         rate = inputs.get("guide_overrollings_per_hour")
         return math.nan if rate is None else float(rate)
@@ -117,16 +127,20 @@ def overrollings(inputs: Mapping[str, Any], body: str) -> float:
 
 
 def worst_contact(ds: xr.Dataset, body: str, fit: StoredFit) -> tuple[float, float]:
-    """Return the stress of a body that enters its line [MPa], and its overrollings to failure, at its worse contact.
+    """Return the stress of a body that enters its line [MPa], and its overrollings to failure, at
+    its worse contact.
 
-    A result without stresses gives the stress by the line of the fit, from which its overrollings follow.
+    A result without stresses gives the stress by the line of the fit, from which its overrollings
+    follow.
     """
     cycles = float(ds["life_cycles"].sel(body=body).min("contact"))
     for name in ("fatigue_stress", "peak_stress"):
         if name in ds:
             return float(ds[name].sel(body=body).max("contact")), cycles
     best = fit.line.best
-    return math.exp(fit.line.reference + float((best.level - math.log(cycles)) / best.slope)), cycles
+    return math.exp(
+        fit.line.reference + float((best.level - math.log(cycles)) / best.slope)
+    ), cycles
 
 
 def overload_of(ds: xr.Dataset, body: str, material: Material) -> float:
@@ -138,7 +152,9 @@ def overload_of(ds: xr.Dataset, body: str, material: Material) -> float:
 
 
 def lifeless_bodies(ds: xr.Dataset, materials: Mapping[str, Material]) -> dict[str, str]:
-    """Return why each body has no fatigue life: `BROKEN` or `SKIDS`; an empty text if it has one."""
+    """Return why each body has no fatigue life: `BROKEN` or `SKIDS`; an empty text if it has
+    one.
+    """
     regime = REGIMES[int(ds["regime"])]
     found = {}
     for body, material in materials.items():
@@ -153,7 +169,8 @@ def lifeless_bodies(ds: xr.Dataset, materials: Mapping[str, Material]) -> dict[s
 def margins(
     ds: xr.Dataset, ranges: Limits, inputs: Mapping[str, Any], materials: Mapping[str, Material]
 ) -> list[Margin]:
-    """Return the margins of a solved case in the order in which their limits may be reached; exceeded ones come first.
+    """Return the margins of a solved case in the order in which their limits may be reached;
+    exceeded ones come first.
 
     The limit that the headline names leads those that are kept.
 
@@ -169,23 +186,34 @@ def margins(
         Material of each body.
     """
     out: list[Margin] = []
-    for margin in (*_of_limits(ds, inputs, materials), *_of_pressure(ds, materials), *_of_loads(ranges, inputs)):
-        if out and str(margin) == str(replace(out[-1], body=margin.body)):  # as texts, because NaN equals nothing
+    for margin in (
+        *_of_limits(ds, inputs, materials),
+        *_of_pressure(ds, materials),
+        *_of_loads(ranges, inputs),
+    ):
+        # as texts, because NaN equals nothing
+        if out and str(margin) == str(replace(out[-1], body=margin.body)):
             out[-1] = replace(margin, body=BOTH)
         else:
             out.append(margin)
     first = First.of(out)
     leader = first.margins[0] if first is not None else None
-    return sorted(out, key=lambda margin: (margin.state != "exceeded", margin is not leader, *_order(margin)))
+    return sorted(
+        out, key=lambda margin: (margin.state != "exceeded", margin is not leader, *_order(margin))
+    )
 
 
 def _order(margin: Margin) -> tuple[float, bool, float]:
-    """Return by what margins are ordered: the low end of the life, a second model behind others, and the use."""
+    """Return by what margins are ordered: the low end of the life, a second model behind others,
+    and the use.
+    """
     low = 0.0 if margin.breaks else math.inf if math.isnan(margin.low) else margin.low
     return low, margin.beside, 0.0 if math.isnan(margin.used) else -margin.used
 
 
-def _of_limits(ds: xr.Dataset, inputs: Mapping[str, Any], materials: Mapping[str, Material]) -> list[Margin]:
+def _of_limits(
+    ds: xr.Dataset, inputs: Mapping[str, Any], materials: Mapping[str, Material]
+) -> list[Margin]:
     """Return the margins of the limits of a result, for the bodies that they concern."""
     lifeless = lifeless_bodies(ds, materials)
     if "utilisation" not in ds:
@@ -218,9 +246,14 @@ def _of_limits(ds: xr.Dataset, inputs: Mapping[str, Any], materials: Mapping[str
 
 
 def _of_fatigue_alone(
-    ds: xr.Dataset, inputs: Mapping[str, Any], materials: Mapping[str, Material], lifeless: Mapping[str, str]
+    ds: xr.Dataset,
+    inputs: Mapping[str, Any],
+    materials: Mapping[str, Material],
+    lifeless: Mapping[str, str],
 ) -> list[Margin]:
-    """Return the margins of fatigue, and of a body that breaks, of a result with lives and without limits."""
+    """Return the margins of fatigue, and of a body that breaks, of a result with lives and without
+    limits.
+    """
     if "pair_life_hours" not in ds:
         return []
     limit = LIMITS["fatigue"]
@@ -229,21 +262,38 @@ def _of_fatigue_alone(
     for body, material in materials.items():
         hours = float(ds[f"{body}_life_hours"])
         breaks = lifeless[body] == BROKEN
-        margin = Margin(limit.name, limit.word, limit.title, body, hours=hours, low=hours, high=hours, timed=True)
-        margin = replace(margin, state="exceeded" if breaks else "unknown" if math.isnan(hours) else "kept")
+        margin = Margin(
+            limit.name,
+            limit.word,
+            limit.title,
+            body,
+            hours=hours,
+            low=hours,
+            high=hours,
+            timed=True,
+        )
+        margin = replace(
+            margin, state="exceeded" if breaks else "unknown" if math.isnan(hours) else "kept"
+        )
         if lifeless[body]:
             margin = replace(margin, timed=False, breaks=breaks, lifeless=not breaks)
         elif body in tested and math.isfinite(hours):
             margin = _by_tests(ds, margin, tested[body], overrollings(inputs, body))
         else:
             cycles = float(ds["life_cycles"].sel(body=body).min())
-            margin = replace(margin, beyond=bool(past_data(cycles, material.cycles_at_fatigue_limit)))
+            margin = replace(
+                margin, beyond=bool(past_data(cycles, material.cycles_at_fatigue_limit))
+            )
         out.append(margin)
     return out
 
 
 def _of_body(
-    ds: xr.Dataset, limit: Limit, body: str, places: Mapping[str, list[Any]], inputs: Mapping[str, Any]
+    ds: xr.Dataset,
+    limit: Limit,
+    body: str,
+    places: Mapping[str, list[Any]],
+    inputs: Mapping[str, Any],
 ) -> Margin:
     """Return the numbers of a limit for a body."""
     here = {"limit": limit.name, "body": body}
@@ -282,15 +332,21 @@ def _of_body(
     )
 
 
-def _ends_of_use(limit: Limit, used: float, hours: float, low: float, high: float) -> tuple[float, float]:
-    """Return the ends of the range of a use [1]; a use of wear is a required travel over the life, any other is one."""
+def _ends_of_use(
+    limit: Limit, used: float, hours: float, low: float, high: float
+) -> tuple[float, float]:
+    """Return the ends of the range of a use [1]; a use of wear is a required travel over the life,
+    any other is one.
+    """
     if limit.name != "wear" or not (math.isfinite(used * hours) and low > 0):
         return used, used
     return used * hours / high, used * hours / low
 
 
 def _given_bound(limit: Limit, inputs: Mapping[str, Any]) -> tuple[float, str, str]:
-    """Return the given value that a limit with a life needs, such as the permissible wear depth, its unit and words."""
+    """Return the given value that a limit with a life needs, such as the permissible wear depth,
+    its unit and words.
+    """
     for parameter in limit.parameters:
         value = inputs.get(parameter.name)
         if parameter.name in limit.requires and value is not None and not math.isnan(float(value)):
@@ -306,19 +362,27 @@ def _by_tests(ds: xr.Dataset, margin: Margin, fit: StoredFit, rate: float) -> Ma
 
 
 def is_guessed(ds: xr.Dataset, limit: str, material: str) -> bool:
-    """Return whether a limit of a body rests on placeholders; both bodies share the heat of a contact."""
+    """Return whether a limit of a body rests on placeholders; both bodies share the heat of a
+    contact.
+    """
     of = [one.material for one in placeholders_of(ds) if one.limit == limit]
     return bool(of) if limit == heat.LIMIT.name else material in of
 
 
 def _at(ds: xr.Dataset, name: str, places: Mapping[str, list[Any]], **labels: str) -> np.ndarray:
-    """Return the values of a variable at labels; xarray's own selection takes fifty times as long."""
+    """Return the values of a variable at labels; xarray's own selection takes fifty times as
+    long.
+    """
     variable = ds.variables[name]
-    return variable.values[tuple(places[d].index(labels[d]) if d in labels else slice(None) for d in variable.dims)]
+    return variable.values[
+        tuple(places[d].index(labels[d]) if d in labels else slice(None) for d in variable.dims)
+    ]
 
 
 def _of_pressure(ds: xr.Dataset, materials: Mapping[str, Material]) -> list[Margin]:
-    """Return the margins of the largest pressure to the pressure that the validity flag `yield` allows."""
+    """Return the margins of the largest pressure to the pressure that the validity flag `yield`
+    allows.
+    """
     pressure = float(ds["max_pressure"].max()) if "max_pressure" in ds else math.nan
     if math.isnan(pressure):
         return []
@@ -342,8 +406,20 @@ def _of_loads(ranges: Limits, inputs: Mapping[str, Any]) -> list[Margin]:
     """Return the margins of the pair to lift-off, full slip and self-locking."""
     out = []
     for name, word, title, field, (low, high) in (
-        ("lift_off", "lift-off", "lift-off of a contact by the axial force", "axial_force", ranges.axial_force),
-        ("full_slip", "full slip", "full slip by the motor force", "motor_force", ranges.motor_force),
+        (
+            "lift_off",
+            "lift-off",
+            "lift-off of a contact by the axial force",
+            "axial_force",
+            ranges.axial_force,
+        ),
+        (
+            "full_slip",
+            "full slip",
+            "full slip by the motor force",
+            "motor_force",
+            ranges.motor_force,
+        ),
     ):
         if math.isnan(low + high):
             continue
@@ -356,7 +432,12 @@ def _of_loads(ranges: Limits, inputs: Mapping[str, Any]) -> list[Margin]:
     now = float(inputs["friction_coefficient"])
     for name, word, title, bound in (
         ("self_locking", "self-locking", "self-locking by friction", ranges.self_locking_friction),
-        ("lift_off_friction", "lift-off by friction", "lift-off of a contact by friction", ranges.lift_off_friction),
+        (
+            "lift_off_friction",
+            "lift-off by friction",
+            "lift-off of a contact by friction",
+            ranges.lift_off_friction,
+        ),
     ):
         if math.isnan(bound):
             continue
@@ -370,7 +451,8 @@ def _of_loads(ranges: Limits, inputs: Mapping[str, Any]) -> list[Margin]:
 
 @dataclass(frozen=True)
 class First:
-    """What ends a life first: the limits that may come first within their ranges, and the life with its range.
+    """What ends a life first: the limits that may come first within their ranges, and the life with
+    its range.
 
     Attributes
     ----------
@@ -387,12 +469,16 @@ class First:
     @classmethod
     def of(cls, listed: Iterable[Margin]) -> First | None:
         """Return what comes first of some limits; None where no life is known."""
-        ending = sorted((margin for margin in listed if margin.ends), key=lambda margin: margin.reached)
+        ending = sorted(
+            (margin for margin in listed if margin.ends), key=lambda margin: margin.reached
+        )
         if not ending:
             return None
         low = min(0.0 if margin.breaks else margin.low for margin in ending)
         high = min(0.0 if margin.breaks else margin.high for margin in ending)
-        return cls(tuple(m for m in ending if m is ending[0] or m.low <= high * (1.0 + TIED)), low, high)
+        return cls(
+            tuple(m for m in ending if m is ending[0] or m.low <= high * (1.0 + TIED)), low, high
+        )
 
     @property
     def breaks(self) -> bool:

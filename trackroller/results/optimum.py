@@ -1,12 +1,12 @@
 """Search for the best designs of a study, `design: optimise`.
 
-The search draws a generation of designs, solves each of them at all its conditions, judges it by the goals and draws
-the next generation. Every generation is a design of the study whose cases go through plan and chunks, so a search that
-was stopped repeats its generations from the stored cases.
+The search draws a generation of designs, solves each of them at all its conditions, judges it by
+the goals and draws the next generation. Every generation is a design of the study whose cases go
+through plan and chunks, so a search that was stopped repeats its generations from the stored cases.
 
-A ladder of models saves time: the search uses the table of Kalker's tractions where the options allow it. The model of
-the study then decides among the designs on the best fronts, the recommended one is polished with it, and every reported
-optimum is solved again with the accuracy `reference`.
+A ladder of models saves time: the search uses the table of Kalker's tractions where the options
+allow it. The model of the study then decides among the designs on the best fronts, the recommended
+one is polished with it, and every reported optimum is solved again with the accuracy `reference`.
 """
 
 from __future__ import annotations
@@ -23,7 +23,13 @@ import numpy as np
 from trackroller.errors import InputError
 from trackroller.files import sha256
 from trackroller.methods.factor import Factor
-from trackroller.methods.optimise import first_generation, genes_of, next_generation, nondominated_ranks, survivors
+from trackroller.methods.optimise import (
+    first_generation,
+    genes_of,
+    next_generation,
+    nondominated_ranks,
+    survivors,
+)
 from trackroller.parameters import PARAMETERS
 from trackroller.results.judging import OPTIMUM, Judged, best_in, judge, recommended, spread
 from trackroller.results.stored_study import solved_results
@@ -80,7 +86,9 @@ class _Search:
 
 
 def cheaper(study: Study) -> Study:
-    """Return the study with the table of Kalker's tractions where its options allow that, otherwise the study."""
+    """Return the study with the table of Kalker's tractions where its options allow that, otherwise
+    the study.
+    """
     if study.config.contact_model != ELEMENTS:
         return study
     try:
@@ -110,7 +118,8 @@ def search_designs(study: Study, results: Path | str = "results", **how: Any) ->
     Returns
     -------
     Ledger
-        The ledger of the gathered designs. The attribute `optimum` of `study.nc` holds the optima (JSON).
+        The ledger of the gathered designs. The attribute `optimum` of `study.nc` holds the optima
+        (JSON).
 
     Raises
     ------
@@ -134,7 +143,9 @@ def search_designs(study: Study, results: Path | str = "results", **how: Any) ->
 
 
 def _evolve(search: _Search, study: Study, tell: Tell) -> tuple[Judged, dict[str, Any]]:
-    """Return all designs of the search and facts about it; stop at the budget or when no design is left."""
+    """Return all designs of the search and facts about it; stop at the budget or when no design is
+    left.
+    """
     budget, choices = study.config.budget, _choices(study)
     genes, known, number, why = genes_of(choices), None, 0, "every design is solved"
     drawn = first_generation(genes, min(budget.generation, budget.designs), study.config.seed)
@@ -149,12 +160,17 @@ def _evolve(search: _Search, study: Study, tell: Tell) -> tuple[Judged, dict[str
         first = nondominated_ranks(known.costs, known.missed) == 0
         number += 1
         valid = int((known.violation == 0).sum())
-        tell(f"generation {number}: {len(known.genes)} designs, {valid} valid in all conditions, {first.sum()} best")
+        tell(
+            f"generation {number}: {len(known.genes)} designs, {valid} valid in all conditions, "
+            f"{first.sum()} best"
+        )
         if len(known.genes) >= budget.designs:
             why = f"the budget of {budget.designs} design{'s' * (budget.designs != 1)} is spent"
             break
         many = min(budget.generation, budget.designs - len(known.genes))
-        drawn = next_generation(genes, known.genes, known.costs, known.missed, many, (study.config.seed, number))
+        drawn = next_generation(
+            genes, known.genes, known.costs, known.missed, many, (study.config.seed, number)
+        )
     assert known is not None
     return known, {"model": study.config.contact_model, "designs": len(known.genes), "stopped": why}
 
@@ -172,11 +188,21 @@ def _reported(search: _Search, decided: Judged, facts: dict[str, Any], tell: Tel
     best = designs.take(front)
     chosen = recommended(best)
     corners = [best_in(best, goal) for goal in range(best.costs.shape[1])]
-    shown = np.union1d(spread(best.costs, REPORTED), [chosen, *corners]) if usable else np.empty(0, int)
-    exact = {"accuracy": "reference"} | ({"contact_model": ELEMENTS} if study.config.contact_model == TABLE else {})
-    checked = search.judged(_with(study, **exact), best.genes[shown]) if usable else best.take(shown)
+    shown = (
+        np.union1d(spread(best.costs, REPORTED), [chosen, *corners]) if usable else np.empty(0, int)
+    )
+    exact = {"accuracy": "reference"} | (
+        {"contact_model": ELEMENTS} if study.config.contact_model == TABLE else {}
+    )
+    checked = (
+        search.judged(_with(study, **exact), best.genes[shown]) if usable else best.take(shown)
+    )
     around = _neighbours(choices, best.genes[chosen]) if usable else []
-    moved = search.judged(study, np.array([genes for *_, genes in around])) if around else best.take(np.empty(0, int))
+    moved = (
+        search.judged(study, np.array([genes for *_, genes in around]))
+        if around
+        else best.take(np.empty(0, int))
+    )
     beside = f"{len(designs.genes) - len(decided.genes)} polished designs, {len(around)} neighbours"
     beside = f"solved beside the budget: {beside}, {len(shown)} optima at reference"
     tell(beside if usable else "no design is valid, so there is no optimum to check")
@@ -215,12 +241,15 @@ def _reported(search: _Search, decided: Judged, facts: dict[str, Any], tell: Tel
     return ledger
 
 
-def _with_corners(search: _Search, decided: Judged, choices: Mapping[str, Factor]) -> tuple[Judged, dict[str, bool]]:
+def _with_corners(
+    search: _Search, decided: Judged, choices: Mapping[str, Factor]
+) -> tuple[Judged, dict[str, bool]]:
     """Add designs about the recommended one, then about the best one in each of several goals.
 
     Returns
     -------
-    All designs, and whether no step improves the design any more: by goal, and `""` for the recommended one.
+    All designs, and whether no step improves the design any more: by goal, and `""` for the
+    recommended one.
     """
     reached = {}
     decided, reached[""] = _polished(search, decided, choices, None)
@@ -238,14 +267,19 @@ def _with_corners(search: _Search, decided: Judged, choices: Mapping[str, Factor
 def _is_spent(search: _Search, decided: Judged) -> bool:
     """Return whether the hours of the budget are spent."""
     hours = search.study.config.budget.hours
-    return hours is not None and search.ledger(search.of(search.study, decided.genes)).hours >= hours
+    return (
+        hours is not None and search.ledger(search.of(search.study, decided.genes)).hours >= hours
+    )
 
 
-def _polished(search: _Search, decided: Judged, choices: Mapping[str, Factor], goal: int | None) -> tuple[Judged, bool]:
-    """Add designs about the best one in a goal, or about the recommended one, from the best one found so far.
+def _polished(
+    search: _Search, decided: Judged, choices: Mapping[str, Factor], goal: int | None
+) -> tuple[Judged, bool]:
+    """Add designs about the best one in a goal, or about the recommended one, from the best one
+    found so far.
 
-    The ends of each range come first, then steps that fall. A step is taken again from the design that it has found,
-    some times at most.
+    The ends of each range come first, then steps that fall. A step is taken again from the design
+    that it has found, some times at most.
 
     Returns
     -------
@@ -283,18 +317,27 @@ def _ends(choices: Mapping[str, Factor], middle: np.ndarray) -> list[np.ndarray]
     for j, factor in enumerate(choices.values()):
         places = [0.0, _top(factor)]
         if not factor.ordered:
-            places = list(np.arange(len(factor.levels), dtype=float)) if len(factor.levels) <= MOST_CATEGORIES else []
+            places = (
+                list(np.arange(len(factor.levels), dtype=float))
+                if len(factor.levels) <= MOST_CATEGORIES
+                else []
+            )
         found += [_moved(middle, j, place) for place in places]
     return found
 
 
 def _steps(choices: Mapping[str, Factor], middle: np.ndarray, step: float) -> list[np.ndarray]:
-    """Return the designs a step beside one in each ordered choice; a listed choice moves to its next level."""
+    """Return the designs a step beside one in each ordered choice; a listed choice moves to its
+    next level.
+    """
     found = []
     for j, factor in enumerate(choices.values()):
         size = 1.0 if factor.discrete else step
         if factor.ordered:
-            found += [_moved(middle, j, float(np.clip(middle[j] + way, 0, _top(factor)))) for way in (-size, size)]
+            found += [
+                _moved(middle, j, float(np.clip(middle[j] + way, 0, _top(factor))))
+                for way in (-size, size)
+            ]
     return found
 
 
@@ -305,19 +348,29 @@ def _moved(genes: np.ndarray, place: int, value: float) -> np.ndarray:
     return other
 
 
-def _neighbours(choices: Mapping[str, Factor], genes: np.ndarray) -> list[tuple[str, str, np.ndarray]]:
+def _neighbours(
+    choices: Mapping[str, Factor], genes: np.ndarray
+) -> list[tuple[str, str, np.ndarray]]:
     """Return the designs that a tolerance makes of one: choice, change in words and genes."""
     out = []
     for j, (name, factor) in enumerate(choices.items()):
         if factor.discrete:
             continue
         low, high = factor.numbers
-        size = TOLERANCE if name in PARAMETERS and PARAMETERS[name].unit == "mm" else abs(high - low) / 100
+        size = (
+            TOLERANCE
+            if name in PARAMETERS and PARAMETERS[name].unit == "mm"
+            else abs(high - low) / 100
+        )
         value = float(factor.from_unit(genes[j : j + 1])[0])
         for side in (-1, 1):
             to = np.clip(value + side * size, min(low, high), max(low, high))
             moved = genes.copy()
-            moved[j] = (to - low) / (high - low) if factor.kind == "uniform" else np.log(to / low) / np.log(high / low)
+            moved[j] = (
+                (to - low) / (high - low)
+                if factor.kind == "uniform"
+                else np.log(to / low) / np.log(high / low)
+            )
             if moved[j] != genes[j]:
                 out.append((name, f"{to - value:+.3g}", moved))
     return out

@@ -29,7 +29,8 @@ COLUMNS = (
 
 
 def output_ranges(results: SolvedCases, ranges: CaseRanges) -> pd.DataFrame:
-    """Return one row an output with its range over the cases that are held, the columns of `COLUMNS`.
+    """Return one row an output with its range over the cases that are held, the columns of
+    `COLUMNS`.
 
     Parameters
     ----------
@@ -48,10 +49,19 @@ def _row(results: SolvedCases, ranges: CaseRanges) -> dict[str, Any]:
     """Return the range of one output with its cases."""
     rows = np.flatnonzero(results.of_one_model(ranges.held) & ~np.isnan(ranges.value))
     _, words, units = ranges.output
-    row: dict[str, Any] = {"output": words, "name": ranges.output[0], "units": units, "cases": len(rows)}
+    row: dict[str, Any] = {
+        "output": words,
+        "name": ranges.output[0],
+        "units": units,
+        "cases": len(rows),
+    }
     if not len(rows):
         empty = {"smallest": np.nan, "median": np.nan, "largest": np.nan, "error": np.nan}
-        return row | empty | {"at_smallest": "", "at_largest": "", "row_smallest": -1, "row_largest": -1}
+        return (
+            row
+            | empty
+            | {"at_smallest": "", "at_largest": "", "row_smallest": -1, "row_largest": -1}
+        )
     values = ranges.value[rows]
     least, most = int(rows[values.argmin()]), int(rows[values.argmax()])
     names = list(results.labels) or list(results.factors)  # labels name the rows of a table

@@ -1,4 +1,6 @@
-"""Pareto set of a study: the designs that no other design beats in every goal, under constraints."""
+"""Pareto set of a study: the designs that no other design beats in every goal, under
+constraints.
+"""
 
 from __future__ import annotations
 
@@ -27,12 +29,18 @@ from trackroller.study.outputs import regimes
 
 
 def given_pareto(results: SolvedCases) -> xr.Dataset | None:
-    """Return the Pareto set for the goals that a study or a search gives; None without goals of its own."""
-    return study_pareto(results) if goals_of_front(results) or results.config.method.proposes else None
+    """Return the Pareto set for the goals that a study or a search gives; None without goals of its
+    own.
+    """
+    return (
+        study_pareto(results) if goals_of_front(results) or results.config.method.proposes else None
+    )
 
 
 def goals_of_front(results: SolvedCases) -> dict[str, str]:
-    """Return the goals of the key `pareto`; {} for a single goal, which ranks what meets the requirement."""
+    """Return the goals of the key `pareto`; {} for a single goal, which ranks what meets the
+    requirement.
+    """
     given = dict(results.config.pareto)
     if len(given) > 1:
         return given
@@ -51,10 +59,11 @@ def study_pareto(results: SolvedCases) -> xr.Dataset | None:
     Returns
     -------
     xarray.Dataset or None
-        Without the key `pareto` the goals are those of `SolvedCases.goals`. Designs that share their conditions:
-        see `pareto_of_candidates`. An inner/outer design with the key: see `pareto_of_points`, and without it None.
-        Otherwise see `pareto`; rows that differ in conditions have the attribute `kind` = `case`, and there is no set
-        without the key, because the conditions cannot be chosen.
+        Without the key `pareto` the goals are those of `SolvedCases.goals`. Designs that share
+        their conditions: see `pareto_of_candidates`. An inner/outer design with the key: see
+        `pareto_of_points`, and without it None. Otherwise see `pareto`; rows that differ in
+        conditions have the attribute `kind` = `case`, and there is no set without the key, because
+        the conditions cannot be chosen.
     """
     config = results.config
     given = goals_of_front(results)
@@ -130,25 +139,27 @@ def pareto(
     results : SolvedCases
         A solved study.
     objectives : mapping of str to str
-        Output, numeric factor or parameter, and `min` or `max` for each, such as {"roller_life_hours": "max",
-        "friction_power": "min"}.
+        Output, numeric factor or parameter, and `min` or `max` for each, such as
+        {"roller_life_hours": "max", "friction_power": "min"}.
     constraints : iterable of str
-        Comparisons over outputs, factors, parameters and `regime`, such as "max_pressure < 1200", "regime != full_slip"
-        or "slip < 0.1 or slip > 0.2". A row with an undefined value does not meet them. Only rolling rows are
-        allowed, unless a constraint names `regime`.
+        Comparisons over outputs, factors, parameters and `regime`, such as "max_pressure < 1200",
+        "regime != full_slip" or "slip < 0.1 or slip > 0.2". A row with an undefined value does not
+        meet them. Only rolling rows are allowed, unless a constraint names `regime`.
 
     Returns
     -------
     xarray.Dataset
-        Dimension `row`: all rows that meet regime and constraints. Variables: the factors, the objectives, the
-        constrained outputs, and `optimal`, which is 1 for the rows of the Pareto set. The attribute `excluded` counts
-        the rows that each constraint excluded. In a study with several contact models, only the rows of the most exact
-        model are compared (attribute `model`).
+        Dimension `row`: all rows that meet regime and constraints. Variables: the factors, the
+        objectives, the constrained outputs, and `optimal`, which is 1 for the rows of the Pareto
+        set. The attribute `excluded` counts the rows that each constraint excluded. In a study with
+        several contact models, only the rows of the most exact model are compared (attribute
+        `model`).
 
     Raises
     ------
     InputError
-        If a name is unknown, a constraint is not a comparison, or there are fewer than two objectives.
+        If a name is unknown, a constraint is not a comparison, or there are fewer than two
+        objectives.
     """
     if len(objectives) < 2:
         raise InputError("pareto", dict(objectives), "at least two outputs, each with min or max")
@@ -162,9 +173,15 @@ def pareto(
     limited = {name: results.constrained(name) for name in wanted}
     own, model = _own_rows(design)
     kept = np.isin(regime, [REGIMES.index(name) for name in keep])
-    undefined = np.isnan(np.stack([columns[name][0].astype(float) for name in objectives])).any(axis=0)
+    undefined = np.isnan(np.stack([columns[name][0].astype(float) for name in objectives])).any(
+        axis=0
+    )
     allowed, excluded = _allowed(undefined, limited, constraints, own, kept)
-    shown = {n: readable(c)[allowed] for n, c in design.columns.items() if not (model and n == "contact_model")}
+    shown = {
+        n: readable(c)[allowed]
+        for n, c in design.columns.items()
+        if not (model and n == "contact_model")
+    }
     attrs: dict[str, Any] = {
         "constraints": "; ".join(constraints),
         "factors": ", ".join(n for n in design.factors if n in shown),
@@ -174,7 +191,9 @@ def pareto(
         "study": results.study.merged(),
     }
     attrs["excluded"] = "; ".join(f"{n} by {why}" for why, n in excluded.items() if n) or "nothing"
-    kept_columns = {name: (value[allowed], units, words) for name, (value, units, words) in columns.items()}
+    kept_columns = {
+        name: (value[allowed], units, words) for name, (value, units, words) in columns.items()
+    }
     return front_of(shown, kept_columns, objectives, np.flatnonzero(allowed), **attrs)
 
 
@@ -211,7 +230,11 @@ def front_of(
 
 
 def _allowed(
-    undefined: np.ndarray, values: Mapping[str, Any], constraints: list[str], own: np.ndarray, kept: np.ndarray
+    undefined: np.ndarray,
+    values: Mapping[str, Any],
+    constraints: list[str],
+    own: np.ndarray,
+    kept: np.ndarray,
 ) -> tuple[np.ndarray, dict[str, int]]:
     """Return the mask of allowed rows and the number of rows that each reason excluded."""
     allowed = own.copy()
@@ -227,7 +250,9 @@ def _allowed(
 
 
 def _own_rows(design: Design) -> tuple[np.ndarray, str]:
-    """Return the rows of the most exact of several contact models and its name; without several models, all rows."""
+    """Return the rows of the most exact of several contact models and its name; without several
+    models, all rows.
+    """
     column = design.columns.get("contact_model")
     named = np.full(design.size, "") if column is None else column.astype(str)
     models = [m for m in EXACTNESS if (named == m).any()]
@@ -251,9 +276,15 @@ def pareto_of_points(table: xr.Dataset, objectives: Mapping[str, str]) -> xr.Dat
     InputError : a statistic is not in the analysis
     """
     columns = {name: _of_points(table, name) for name in objectives}
-    known = ~np.isnan(np.stack([column[0].astype(float) for column in columns.values()])).any(axis=0)
+    known = ~np.isnan(np.stack([column[0].astype(float) for column in columns.values()])).any(
+        axis=0
+    )
     outer = [name for name in str(table.attrs["outer_factors"]).split(", ") if name]
-    attrs: dict[str, Any] = {"rows": len(known), "kind": "design point", "study": table.attrs.get("study", "")}
+    attrs: dict[str, Any] = {
+        "rows": len(known),
+        "kind": "design point",
+        "study": table.attrs.get("study", ""),
+    }
     kept = {name: (values[known], units, words) for name, (values, units, words) in columns.items()}
     factors = {name: readable(table[name].values)[known] for name in outer}
     return front_of(factors, kept, objectives, np.flatnonzero(known), **attrs)
@@ -266,7 +297,11 @@ def _of_points(table: xr.Dataset, name: str) -> Column:
         known = parameter_of(name)
         return table[name].values, known.units if known else "", known.long_name if known else name
     if kind == "probability" and output in REGIMES:
-        estimates, words, units = table["probability"].sel(regime=output), REGIME_LABELS[REGIMES.index(output)], "1"
+        estimates, words, units = (
+            table["probability"].sel(regime=output),
+            REGIME_LABELS[REGIMES.index(output)],
+            "1",
+        )
     elif kind == "probability":
         if output not in table["target"].values:
             raise InputError("pareto", name, f"a target: {', '.join(table['target'].values)}")
@@ -275,15 +310,24 @@ def _of_points(table: xr.Dataset, name: str) -> Column:
         words = f"meeting the target for {part['target_name'].item()}"
     else:
         if output not in table["output"].values or kind not in table:
-            raise InputError("pareto", name, f"an analysed output: {', '.join(map(str, table['output'].values))}")
+            raise InputError(
+                "pareto", name, f"an analysed output: {', '.join(map(str, table['output'].values))}"
+            )
         part = table.sel(output=output)
-        estimates, words, units = part[kind], str(part["output_name"].item()), str(part["output_units"].item())
-    named = {"b10": "B10 of {}", "b10_safe": SAFE_B10}.get(kind, f"{kind} of {{}}".replace("_", " "))
+        estimates, words, units = (
+            part[kind],
+            str(part["output_name"].item()),
+            str(part["output_units"].item()),
+        )
+    named = {"b10": "B10 of {}", "b10_safe": SAFE_B10}.get(
+        kind, f"{kind} of {{}}".replace("_", " ")
+    )
     return estimates.values, units, named.format(words)
 
 
 def pareto_of_candidates(candidates: Candidates, objectives: Mapping[str, str]) -> xr.Dataset:
-    """Find the designs that no other design beats in every goal and in the number of conditions that it holds.
+    """Find the designs that no other design beats in every goal and in the number of conditions
+    that it holds.
 
     Parameters
     ----------
@@ -295,24 +339,33 @@ def pareto_of_candidates(candidates: Candidates, objectives: Mapping[str, str]) 
     Returns
     -------
     xarray.Dataset
-        Dimension `row`, the case with the worst first goal of each design that is valid in a condition. Variables: the
-        choices; each goal at the worst of the design's valid cases; `valid_in`, the number of these cases; `optimal`;
-        `beyond_` and the name of a life, 1 where it lies beyond the S-N data.
+        Dimension `row`, the case with the worst first goal of each design that is valid in a
+        condition. Variables: the choices; each goal at the worst of the design's valid cases;
+        `valid_in`, the number of these cases; `optimal`; `beyond_` and the name of a life, 1 where
+        it lies beyond the S-N data.
     """
     results = candidates.results
     columns = {name: results.quantity(name) for name in objectives}
-    worst = {name: candidates.worst_cases(columns[name][0].astype(float), way) for name, way in objectives.items()}
+    worst = {
+        name: candidates.worst_cases(columns[name][0].astype(float), way)
+        for name, way in objectives.items()
+    }
     held = candidates.valid_in
     kept = np.flatnonzero(np.all([cases >= 0 for cases in worst.values()], axis=0) & (held > 0))
     row = next(iter(worst.values()))[kept]
     factors = {name: results.table[name].to_numpy()[row] for name in candidates.choices}
-    goals = {name: (values[worst[name][kept]], units, words) for name, (values, units, words) in columns.items()}
+    goals = {
+        name: (values[worst[name][kept]], units, words)
+        for name, (values, units, words) in columns.items()
+    }
     goals["valid_in"] = (held[kept].astype(float), "1", "conditions in which it is valid")
     attrs = {
         "constraints": "; ".join(results.config.constraints),
         "rows": len(held),
         "conditions": candidates.possible,
-        "model": str(results.held_level("contact_model")) if "contact_model" in results.factors else "",
+        "model": str(results.held_level("contact_model"))
+        if "contact_model" in results.factors
+        else "",
         "judged": "each goal at the worst of the conditions in which the design is valid",
         "study": results.data.attrs.get("study", ""),
     }
@@ -320,31 +373,54 @@ def pareto_of_candidates(candidates: Candidates, objectives: Mapping[str, str]) 
     return front.assign(_beyond(results, {name: cases[kept] for name, cases in worst.items()}))
 
 
-def _beyond(results: SolvedCases, cases: Mapping[str, np.ndarray]) -> dict[str, tuple[str, np.ndarray]]:
-    """Return for each life among the goals whether it lies beyond the S-N data in the cases that are compared."""
+def _beyond(
+    results: SolvedCases, cases: Mapping[str, np.ndarray]
+) -> dict[str, tuple[str, np.ndarray]]:
+    """Return for each life among the goals whether it lies beyond the S-N data in the cases that
+    are compared.
+    """
     lives = {name: rows for name, rows in cases.items() if is_life(name)}
-    return {f"beyond_{n}": ("row", beyond_sn_data(results, n)[rows].astype(np.int8)) for n, rows in lives.items()}
+    return {
+        f"beyond_{n}": ("row", beyond_sn_data(results, n)[rows].astype(np.int8))
+        for n, rows in lives.items()
+    }
 
 
 def pareto_of_search(results: SolvedCases) -> xr.Dataset:
     """Return the Pareto set of the gathered designs of a search, see `pareto`.
 
-    The dimension `row` numbers the designs. Only the designs are compared that are valid in the most conditions, and
-    that meet the target of the study if any of them does.
+    The dimension `row` numbers the designs. Only the designs are compared that are valid in the
+    most conditions, and that meet the target of the study if any of them does.
     """
     judged, goals, design = judge(results), goals_of_search(results), results.design
     least = judged.violation.min()
     missed = judged.missed if (judged.missed == 0).any() else judged.violation
     kept = np.flatnonzero((missed == least) & (least < 1))
     tried = codes(results.table.iloc[:: design.meta["inner_samples"]], design.meta["outer"])
-    kept = kept[np.unique(tried[kept], return_index=True)[1]]  # a design that was solved twice counts once
+    # a design that was solved twice counts once
+    kept = kept[np.unique(tried[kept], return_index=True)[1]]
     first = kept * design.meta["inner_samples"]
     factors = {name: readable(design.columns[name][first]) for name in design.meta["outer"]}
-    columns = {n: (values[kept], units, words) for n in goals for values, units, words in [goal_column(results, n)]}
-    attrs: dict[str, Any] = {"rows": int(tried.max()) + 1, "kind": "design point", "study": results.study.merged()}
+    columns = {
+        n: (values[kept], units, words)
+        for n in goals
+        for values, units, words in [goal_column(results, n)]
+    }
+    attrs: dict[str, Any] = {
+        "rows": int(tried.max()) + 1,
+        "kind": "design point",
+        "study": results.study.merged(),
+    }
     attrs["constraints"] = "; ".join(results.config.constraints)
-    lives = [name for name in goals if is_life(judged_by(name)[1]) and judged_by(name)[0] != "probability"]
-    beyond = {f"beyond_{name}": ("row", beyond_data(results, name)[kept].astype(np.int8)) for name in lives}
+    lives = [
+        name
+        for name in goals
+        if is_life(judged_by(name)[1]) and judged_by(name)[0] != "probability"
+    ]
+    beyond = {
+        f"beyond_{name}": ("row", beyond_data(results, name)[kept].astype(np.int8))
+        for name in lives
+    }
     return front_of(factors, columns, goals, kept, **attrs).assign(beyond)
 
 

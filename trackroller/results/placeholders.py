@@ -1,4 +1,6 @@
-"""Values of materials that nobody has measured, on which the limits of a result rest: a table and warnings."""
+"""Values of materials that nobody has measured, on which the limits of a result rest: a table and
+warnings.
+"""
 
 from __future__ import annotations
 
@@ -28,7 +30,8 @@ COLUMNS = (
 
 
 def placeholders_part(ds: xr.Dataset) -> Part:
-    """Return the placeholders of the materials of a result, and what the database says against other values.
+    """Return the placeholders of the materials of a result, and what the database says against
+    other values.
 
     Parameters
     ----------
@@ -36,13 +39,29 @@ def placeholders_part(ds: xr.Dataset) -> Part:
         Result of one case, of a spectrum, or of a roller that wears.
     """
     rows = [
-        _row(one.material, one.name, "yes", one.note, LIMITS[one.limit].word, one.low, one.high, one.units)
+        _row(
+            one.material,
+            one.name,
+            "yes",
+            one.note,
+            LIMITS[one.limit].word,
+            one.low,
+            one.high,
+            one.units,
+        )
         for one in placeholders_of(ds)
     ]
     stored = json.loads(str(ds.attrs.get("materials", "{}")))
     rows += [row for values in stored.values() for row in _notes(values)]
-    table = pd.DataFrame(rows, columns=[name for one in COLUMNS for name in (one.name, one.until) if name])
-    return Part("placeholders", "Values that nobody has measured", table.drop_duplicates(ignore_index=True), COLUMNS)
+    table = pd.DataFrame(
+        rows, columns=[name for one in COLUMNS for name in (one.name, one.until) if name]
+    )
+    return Part(
+        "placeholders",
+        "Values that nobody has measured",
+        table.drop_duplicates(ignore_index=True),
+        COLUMNS,
+    )
 
 
 def _row(
@@ -68,7 +87,9 @@ def _row(
 
 
 def _notes(values: dict[str, Any]) -> Iterator[dict[str, Any]]:
-    """Yield what the database says against the values of one material, a row each, and what polymers need."""
+    """Yield what the database says against the values of one material, a row each, and what
+    polymers need.
+    """
     name = str(values.get("name", ""))
     notes, guesses = values.get("notes", {}), [str(one) for one in values.get("guesses", ())]
     for key in dict.fromkeys((*notes, *guesses)):
@@ -84,7 +105,9 @@ def _is_polymer(values: dict[str, Any]) -> bool:
 
 
 def guess_cautions(part: Part, what: str = "") -> Iterator[Caution]:
-    """Yield one warning for each material in the table: how many guesses it has, limits on them, and whether notes."""
+    """Yield one warning for each material in the table: how many guesses it has, limits on them,
+    and whether notes.
+    """
     for material, rows in part.table.groupby("material", sort=False):
         guesses = rows[rows["guessed"] == "yes"]
         texts = []

@@ -26,8 +26,11 @@ def levels_of(table: pd.DataFrame, names: Sequence[str], row: int) -> dict[str, 
     return {name: plain(table[name].iloc[row]) for name in names}
 
 
-def places_of(table: pd.DataFrame, names: Sequence[str], hit: np.ndarray, among: np.ndarray) -> tuple[Levels, ...]:
-    """Return the levels that hold together exactly in some rows, or two such products; nothing if no levels do.
+def places_of(
+    table: pd.DataFrame, names: Sequence[str], hit: np.ndarray, among: np.ndarray
+) -> tuple[Levels, ...]:
+    """Return the levels that hold together exactly in some rows, or two such products; nothing if
+    no levels do.
 
     Parameters
     ----------
@@ -58,7 +61,9 @@ def _without_every_level(product: Levels, table: pd.DataFrame) -> Levels:
     return {name: own for name, own in product.items() if len(own) < table[name].nunique()}
 
 
-def _without_needless(table: pd.DataFrame, restricted: Levels, hit: np.ndarray, among: np.ndarray) -> Levels:
+def _without_needless(
+    table: pd.DataFrame, restricted: Levels, hit: np.ndarray, among: np.ndarray
+) -> Levels:
     """Return the levels without those of factors that the other ones restrict already."""
     kept = dict(restricted)
     for name in list(restricted):
@@ -72,7 +77,9 @@ def _without_needless(table: pd.DataFrame, restricted: Levels, hit: np.ndarray, 
 
 
 def number_text(value: float) -> str:
-    """Return a number as a person wrote it, with up to six digits; a drawn number, which has more, with four."""
+    """Return a number as a person wrote it, with up to six digits; a drawn number, which has more,
+    with four.
+    """
     text = f"{value:.6g}"
     digits = 6 if float(text) == value else 4
     return f"{value:,.{digits}g}".replace("-", "−").replace("inf", "∞")
@@ -90,13 +97,19 @@ def level_text(name: str, value: Any) -> str:
 
 
 def case_text(table: pd.DataFrame, names: Sequence[str], row: int) -> str:
-    """Return the levels of some factors in one row as a text: 'motor force −20 N, friction coefficient 0.05'."""
+    """Return the levels of some factors in one row as a text: 'motor force −20 N, friction
+    coefficient 0.05'.
+    """
     levels_here = levels_of(table, names, row).items()
-    return ", ".join(f"{long_name_of(name)} {level_text(name, level)}" for name, level in levels_here)
+    return ", ".join(
+        f"{long_name_of(name)} {level_text(name, level)}" for name, level in levels_here
+    )
 
 
 def places_text(places: Sequence[Levels], table: pd.DataFrame) -> str:
-    """Return some places as a text, with numbers that follow each other in a table as 'first to last'."""
+    """Return some places as a text, with numbers that follow each other in a table as 'first to
+    last'.
+    """
     return "; ".join(_place_text(place, table) for place in places)
 
 
@@ -126,7 +139,9 @@ def _runs(own: tuple[Any, ...], known: list[Any]) -> list[list[Any]]:
 
 
 def _run_texts(name: str, run: list[Any]) -> list[str]:
-    """Return the texts of levels that follow each other: all of few, otherwise the first and the last number."""
+    """Return the texts of levels that follow each other: all of few, otherwise the first and the
+    last number.
+    """
     texts = [level_text(name, value) for value in run]
     if len(texts) > 2 and not isinstance(run[0], str):
         return [f"{texts[0]} to {texts[-1]}"]

@@ -24,7 +24,8 @@ SENSITIVITY = ("saltelli", "morris", "central_composite", "box_behnken", "placke
 
 
 def question_of(results: SolvedCases) -> str:
-    """Return which of `trackroller.results.answer.QUESTIONS` a study asks; the key `question` of its file decides.
+    """Return which of `trackroller.results.answer.QUESTIONS` a study asks; the key `question` of
+    its file decides.
 
     Parameters
     ----------
@@ -33,9 +34,10 @@ def question_of(results: SolvedCases) -> str:
 
     Notes
     -----
-    The first that applies: best (a search), which model (several contact models; each has its own decision), what
-    matters (a method of sensitivity analysis, or a random sample whose candidates share no conditions), decide (two
-    candidates or more), how sure (one candidate with a requirement), how it behaves.
+    The first that applies: best (a search), which model (several contact models; each has its own
+    decision), what matters (a method of sensitivity analysis, or a random sample whose candidates
+    share no conditions), decide (two candidates or more), how sure (one candidate with a
+    requirement), how it behaves.
     """
     if results.config.question:
         return str(results.config.question)
@@ -60,12 +62,16 @@ def question_of(results: SolvedCases) -> str:
 
 
 def _shared(own: Comparison) -> bool:
-    """Return whether candidates of a sample repeat, so that each has conditions that compare with those of others."""
+    """Return whether candidates of a sample repeat, so that each has conditions that compare with
+    those of others.
+    """
     return own.groups.matched or own.count == 1 or bool(own.groups.size.min() > 1)
 
 
 def _about_another_output(results: SolvedCases) -> bool:
-    """Return whether a study without a requirement asks for outputs that rank no design, such as a force."""
+    """Return whether a study without a requirement asks for outputs that rank no design, such as a
+    force.
+    """
     named = [name for name in results.config.analysis.outputs or () if name not in REGIMES]
     return bool(named) and not required_of(results) and not any(_ranks(name) for name in named)
 

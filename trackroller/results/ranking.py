@@ -28,14 +28,21 @@ class Rank(NamedTuple):
 
 
 def estimate(part: xr.Dataset, name: str) -> np.ndarray:
-    """Return a value of an analysis and the bounds of its interval, shape (3, ...), NaN for bounds that are missing."""
+    """Return a value of an analysis and the bounds of its interval, shape (3, ...), NaN for bounds
+    that are missing.
+    """
     value = part[name].values.astype(float)
-    bounds = (part[f"{name}_{end}"].values if f"{name}_{end}" in part else np.full_like(value, np.nan) for end in ENDS)
+    bounds = (
+        part[f"{name}_{end}"].values if f"{name}_{end}" in part else np.full_like(value, np.nan)
+        for end in ENDS
+    )
     return np.stack([value, *bounds])
 
 
 def method_of(sens: xr.Dataset) -> Method | None:
-    """Return the design of experiments behind an analysis; None if the analysis does not name one."""
+    """Return the design of experiments behind an analysis; None if the analysis does not name
+    one.
+    """
     return METHODS.get(str(sens.attrs.get("method")))
 
 
@@ -51,7 +58,9 @@ def robust_design(sens: xr.Dataset) -> bool:
 
 
 def headline(sens: xr.Dataset) -> str:
-    """Name the index that ranks the factors of a design: ST, mu_star, main_share, effect or first."""
+    """Name the index that ranks the factors of a design: ST, mu_star, main_share, effect or
+    first.
+    """
     method = method_of(sens)
     index = method.headline if method is not None else "first"
     if "first" in sens and (index not in sens or not np.isfinite(sens[index]).any()):
@@ -60,11 +69,18 @@ def headline(sens: xr.Dataset) -> str:
 
 
 def order(sens: xr.Dataset, output: str, index: str = "") -> list[Rank]:
-    """Sort the factors of an output by falling size of an index, by default the headline; leave out NaN."""
+    """Sort the factors of an output by falling size of an index, by default the headline; leave out
+    NaN.
+    """
     index = index or headline(sens)
     part = sens.sel(output=output)
     names = part["factor_name"].values if "factor_name" in part.coords else part["factor"].values
-    rows = zip(map(str, part["factor"].values), map(str, names), *estimate(part, index).tolist(), strict=True)
+    rows = zip(
+        map(str, part["factor"].values),
+        map(str, names),
+        *estimate(part, index).tolist(),
+        strict=True,
+    )
     signed = index_words(sens, index).signed
     ranks = [rank for rank in map(Rank._make, rows) if np.isfinite(rank.value)]
     return sorted(ranks, key=lambda r: -abs(r.value) if signed else -r.value)
@@ -86,10 +102,12 @@ def ranked_factors(sens: xr.Dataset | None, output: str, among: Sequence[str]) -
 
     Returns
     -------
-    Factor and size [share of variance, or unit of the output]. Without an index of the output: 0 for every factor, in
-    the order of the study file, because no factor is known to decide.
+    Factor and size [share of variance, or unit of the output]. Without an index of the output: 0
+    for every factor, in the order of the study file, because no factor is known to decide.
     """
     size = dict.fromkeys(among, 0.0)
     if sens is not None and not robust_design(sens) and output in sens["output"].values:
-        size |= {rank.factor: abs(rank.value) for rank in order(sens, output) if rank.factor in size}
+        size |= {
+            rank.factor: abs(rank.value) for rank in order(sens, output) if rank.factor in size
+        }
     return dict(sorted(size.items(), key=lambda item: -item[1]))

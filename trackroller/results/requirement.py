@@ -13,7 +13,8 @@ from trackroller.roller.requirement import Requirement
 
 
 def requirements_of(results: SolvedCases) -> dict[str, Requirement]:
-    """Return what a study requires by output: its key `requirement`, and the travel that its base requires.
+    """Return what a study requires by output: its key `requirement`, and the travel that its base
+    requires.
 
     The travel is a life to the first limit, as on the sheet of one roller.
     """
@@ -35,7 +36,9 @@ def required_of(results: SolvedCases) -> tuple[Required, ...]:
 
 
 def _hours_of_travel(results: SolvedCases) -> float:
-    """Return the required travel in hours; 0 without one, without limits, and where travel or velocity varies."""
+    """Return the required travel in hours; 0 without one, without limits, and where travel or
+    velocity varies.
+    """
     if FIRST_LIMIT[0] not in results.table:
         return 0.0
     travel = number_or_nan(results.base.get("required_travel"))

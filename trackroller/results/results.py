@@ -1,4 +1,6 @@
-"""The results of a study, as a user holds them: the solved cases and what analysis makes of them."""
+"""The results of a study, as a user holds them: the solved cases and what analysis makes of
+them.
+"""
 
 from __future__ import annotations
 
@@ -28,7 +30,8 @@ class Results(SolvedCases):
     """The results of a study, which analysis, figures and report take.
 
     `trackroller.run` and `trackroller.open_study` return them. `trackroller.report(results, path)`,
-    `trackroller.explore(results, path)` and `trackroller.workbook(results, path)` show them; each is a method, too.
+    `trackroller.explore(results, path)` and `trackroller.workbook(results, path)` show them; each
+    is a method, too.
 
     Parameters
     ----------
@@ -39,17 +42,18 @@ class Results(SolvedCases):
     data : xarray.Dataset
         The results, over the factors of a grid or along `case`, with every input as a coordinate.
     known_indices : xarray.Dataset, optional
-        Sensitivity indices that were computed before. A data set without variables stands for a study that has none.
-        By default they are computed when they are needed.
+        Sensitivity indices that were computed before. A data set without variables stands for a
+        study that has none. By default they are computed when they are needed.
     materials_file : Path, optional
-        Materials file of the study as its folder keeps it, with the fits of its materials beside it. By default the
-        user's.
+        Materials file of the study as its folder keeps it, with the fits of its materials beside
+        it. By default the user's.
 
     Examples
     --------
     >>> from pathlib import Path
     >>> import trackroller as tr
-    >>> text = "{name: friction, factors: {friction_coefficient: {values: [0.1, 0.2]}}, contact_model: sliding}"
+    >>> factors = "{friction_coefficient: {values: [0.1, 0.2]}}"
+    >>> text = f"{{name: friction, factors: {factors}, contact_model: sliding}}"
     >>> characters = Path("friction.yaml").write_text(text)
     >>> results = tr.run("friction.yaml", progress=False)
     >>> results.data.sizes["friction_coefficient"], results.indices().attrs["method"]
@@ -57,11 +61,14 @@ class Results(SolvedCases):
     """
 
     def __repr__(self) -> str:
-        """Return ten lines on the study: cases, factors, regimes, the life that counts, and what to take next."""
+        """Return ten lines on the study: cases, factors, regimes, the life that counts, and what to
+        take next.
+        """
         return summary_of(self)
 
     def indices(self) -> xr.Dataset:
-        """Return the sensitivity indices of every output, see `trackroller.results.sensitivity.analyse`.
+        """Return the sensitivity indices of every output, see
+        `trackroller.results.sensitivity.analyse`.
 
         Raises
         ------
@@ -85,21 +92,28 @@ class Results(SolvedCases):
         """
         if not self.design.method.points:
             remedy = "Take indices() for this study, or give the study design: inner_outer."
-            raise InputError("design", self.design.method.name, "design inner_outer, which has design points", remedy)
+            raise InputError(
+                "design",
+                self.design.method.name,
+                "design inner_outer, which has design points",
+                remedy,
+            )
         return self.indices()
 
     def pareto(
         self, objectives: Mapping[str, str] | None = None, constraints: Iterable[str] | None = None
     ) -> xr.Dataset | None:
-        """Return the Pareto set of the designs, or of the cases where goals or constraints are given.
+        """Return the Pareto set of the designs, or of the cases where goals or constraints are
+        given.
 
         Parameters
         ----------
         objectives : mapping of str to str, optional
-            Outputs or factors, each with `min` or `max`. Default: the key `pareto` of the study file, otherwise the
-            longest life with the lowest friction or pressure.
+            Outputs or factors, each with `min` or `max`. Default: the key `pareto` of the study
+            file, otherwise the longest life with the lowest friction or pressure.
         constraints : iterable of str, optional
-            Comparisons that an allowed design must meet. Default: the key `constraints` of the study file.
+            Comparisons that an allowed design must meet. Default: the key `constraints` of the
+            study file.
 
         Returns
         -------
@@ -122,7 +136,8 @@ class Results(SolvedCases):
         Returns
         -------
         Candidates or None
-            See `trackroller.results.candidates.candidates_of`; None without a valid case that can be judged.
+            See `trackroller.results.candidates.candidates_of`; None without a valid case that can
+            be judged.
         """
         return candidates_of(self, free)
 
@@ -144,7 +159,8 @@ class Results(SolvedCases):
         Returns
         -------
         ByTests or None
-            See `trackroller.results.by_tests.ByTests`; None without a material that was fitted to tests.
+            See `trackroller.results.by_tests.ByTests`; None without a material that was fitted to
+            tests.
         """
         return by_tests_of(self)
 
@@ -159,23 +175,31 @@ class Results(SolvedCases):
         Returns
         -------
         pandas.DataFrame
-            Rows of `trackroller.results.candidates.Candidates.table`; empty for a study without a valid case.
+            Rows of `trackroller.results.candidates.Candidates.table`; empty for a study without a
+            valid case.
 
         Raises
         ------
         InputError
-            If no design repeats, as in most random samples, so that designs cannot be compared; or if the study has no
-            lives, and no stresses of one material that rank its designs.
+            If no design repeats, as in most random samples, so that designs cannot be compared; or
+            if the study has no lives, and no stresses of one material that rank its designs.
         """
         candidates = self.candidates()
         if candidates is None:
             return pd.DataFrame()
         if not candidates.comparable:
-            remedy = "Give the choices as lists and the conditions as distributions with design: inner_outer."
-            raise InputError("design", self.design.method.name, "designs that share their conditions", remedy)
+            remedy = (
+                "Give the choices as lists and the conditions as distributions with design: "
+                "inner_outer."
+            )
+            raise InputError(
+                "design", self.design.method.name, "designs that share their conditions", remedy
+            )
         if not candidates.ranks:
             remedy = "Add life to outputs, and run the study again."
-            raise InputError("outputs", list(self.config.outputs), "lives, or stresses of one material", remedy)
+            raise InputError(
+                "outputs", list(self.config.outputs), "lives, or stresses of one material", remedy
+            )
         return candidates.table.head(count).copy()
 
     def to_table(self) -> pd.DataFrame:
@@ -188,7 +212,9 @@ class Results(SolvedCases):
         if duty is None:
             return table
         lives = [name for name in map(str, table) if is_life(name) and declared(name).units == "h"]
-        return table.assign(**{name.replace("hours", "years"): years(table[name], duty) for name in lives})
+        return table.assign(
+            **{name.replace("hours", "years"): years(table[name], duty) for name in lives}
+        )
 
 
 for _name, _method in SHOWN.items():

@@ -1,8 +1,8 @@
 """Robust design: the life at each design point if friction, fit and load scatter.
 
-An inner/outer array design (`inner_outer`) has a grid of design points (outer array) and the same sample of the
-scattering factors (inner array) at each of them. Differences between design points are therefore not chance (common
-random numbers).
+An inner/outer array design (`inner_outer`) has a grid of design points (outer array) and the same
+sample of the scattering factors (inner array) at each of them. Differences between design points
+are therefore not chance (common random numbers).
 """
 
 from __future__ import annotations
@@ -44,18 +44,20 @@ def robustness(
     results : SolvedCases
         Solved study with an inner/outer array design.
     log_life_scatter : mapping of str to numpy.ndarray
-        For each body the standard deviation of log10 life of the material itself [1], shape (n,), besides the scatter
-        of the study: see `material_deviations`.
+        For each body the standard deviation of log10 life of the material itself [1], shape (n,),
+        besides the scatter of the study: see `material_deviations`.
 
     Returns
     -------
     xarray.Dataset
-        Dimension `point`, with the factors of the outer array as coordinates. `percentile_value` (output, point,
-        percentile); `mean` and `standard_deviation` (output, point) over the rolling cases. For each life `b10` with
-        `b10_low` and `b10_high`, the life that 90 % of the rolling cases reach, and `b10_safe`, where every case in
-        full slip, in lift-off or failed counts as life 0. A body above its tensile strength has the life 0 in both;
-        `beyond_data`, the shortest life beyond the S-N data, NaN without one. `probability` (regime, point)
-        with intervals. The key `requirement` adds the variables of `trackroller.results.targets.targets`.
+        Dimension `point`, with the factors of the outer array as coordinates. `percentile_value`
+        (output, point, percentile); `mean` and `standard_deviation` (output, point) over the
+        rolling cases. For each life `b10` with `b10_low` and `b10_high`, the life that 90 % of the
+        rolling cases reach, and `b10_safe`, where every case in full slip, in lift-off or failed
+        counts as life 0. A body above its tensile strength has the life 0 in both; `beyond_data`,
+        the shortest life beyond the S-N data, NaN without one. `probability` (regime, point) with
+        intervals. The key `requirement` adds the variables of
+        `trackroller.results.targets.targets`.
 
     Raises
     ------
@@ -69,36 +71,55 @@ def robustness(
     regime = regimes(ds, results.dims)
     wanted = list(config.analysis.outputs or default_names(ds, design.factors, results.dims))
     goals = [statistic(goal) for goal in config.pareto]
-    wanted += [output for kind, output in goals if kind not in ("", "probability") and output not in wanted]
-    columns = outputs(ds, design.factors, wanted, scale="natural", unlimited=True, allowed=results.allowed)
+    wanted += [
+        output for kind, output in goals if kind not in ("", "probability") and output not in wanted
+    ]
+    columns = outputs(
+        ds, design.factors, wanted, scale="natural", unlimited=True, allowed=results.allowed
+    )
     by_output = []
     for column in columns:
         scatter = log_life_scatter.get(scattering_body(column.name), np.zeros(design.size))
-        if of_first_limit(column.name):  # a life that wear or the bearing ends has no scatter of an S-N line
-            scatter = np.where(results.ended_by_fatigue(body_of(column.name) or "roller"), scatter, 0.0)
+        # a life that wear or the bearing ends has no scatter of an S-N line
+        if of_first_limit(column.name):
+            scatter = np.where(
+                results.ended_by_fatigue(body_of(column.name) or "roller"), scatter, 0.0
+            )
         values = results.with_breaks(column)
         by_output.append(_statistics(values, regime, is_life(column.name), scatter, design.points))
         beyond = np.where(beyond_sn_data(results, column.name), column.values, np.nan)
-        by_output[-1]["beyond_data"] = np.array([np.fmin.reduce(beyond[rows]) for rows in design.points])
+        by_output[-1]["beyond_data"] = np.array(
+            [np.fmin.reduce(beyond[rows]) for rows in design.points]
+        )
     out = xr.Dataset(coords=_coordinates(design, columns))
     for key in by_output[0] if by_output else ():
-        axes = ("output", "point", "percentile") if key == "percentile_value" else ("output", "point")
-        out[key] = (axes, np.stack([one[key] for one in by_output]), {"comment": "in the units of the output"})
+        axes = (
+            ("output", "point", "percentile") if key == "percentile_value" else ("output", "point")
+        )
+        out[key] = (
+            axes,
+            np.stack([one[key] for one in by_output]),
+            {"comment": "in the units of the output"},
+        )
     events = np.stack([regime == i for i in range(len(REGIMES))], axis=1).astype(float)
     for end, value in zip(("", "_low", "_high"), at_points(events, design), strict=True):
         attrs = {"units": "1", "long_name": f"probability{end.replace('_', ' ')} of the regime"}
         out[f"probability{end}"] = (("regime", "point"), value.T, attrs)
     largest = max((float(own.max()) for own in log_life_scatter.values()), default=0.0)
     out.attrs = _attributes(design, largest) | {"study": results.study.merged()}
-    out.attrs["least_log_life_scatter"] = min((float(own.min()) for own in log_life_scatter.values()), default=0.0)
+    out.attrs["least_log_life_scatter"] = min(
+        (float(own.min()) for own in log_life_scatter.values()), default=0.0
+    )
     out.attrs["outputs_named"] = int(config.analysis.outputs is not None)
     return out
 
 
 def _attributes(design: Design, scatter: float) -> dict[str, str | int | float]:
     treatment = (
-        "percentiles and the first B10 are those of the cases that roll, the second B10 counts every "
-        "other case as life 0; a body above its tensile strength counts as life 0, and so does a case that exceeds a "
+        "percentiles and the first B10 are those of the cases that roll, the second B10 counts "
+        "every "
+        "other case as life 0; a body above its tensile strength counts as life 0, and so does a "
+        "case that exceeds a "
         "limit in the life to the first one; "
         "the same inner sample at every design point"
     )
@@ -115,12 +136,14 @@ def _attributes(design: Design, scatter: float) -> dict[str, str | int | float]:
 
 
 def material_deviations(results: SolvedCases) -> dict[str, np.ndarray]:
-    """Return the standard deviation of log10 life of each body's material in each case, lg(T_N) / 2.563.
+    """Return the standard deviation of log10 life of each body's material in each case, lg(T_N) /
+    2.563.
 
     Parameters
     ----------
-    results : solved study, whose key `analysis.material_scatter` states what is wanted: true: T_N (or T_S to the power
-        of k) of the materials in the attribute `materials`; a number: T_N itself; false: nothing
+    results : solved study, whose key `analysis.material_scatter` states what is wanted: true: T_N
+        (or T_S to the power of k) of the materials in the attribute `materials`; a number: T_N
+        itself; false: nothing
 
     Returns
     -------
@@ -134,20 +157,30 @@ def material_deviations(results: SolvedCases) -> dict[str, np.ndarray]:
     for field, body in zip(MATERIAL_FIELDS, BODIES, strict=True):
         if wanted not in (True, "fitted"):
             out[body] = np.full(
-                int(np.prod([ds.sizes[d] for d in dims])), math.log10(float(wanted)) / DEVIATES_10_TO_90
+                int(np.prod([ds.sizes[d] for d in dims])),
+                math.log10(float(wanted)) / DEVIATES_10_TO_90,
             )
         elif field in ds.variables:
             names = flat(ds, field, dims)
-            of = {str(n): float(SNCurve.of(known[str(n)]).log_life_deviation) for n in np.unique(names.astype(str))}
+            of = {
+                str(n): float(SNCurve.of(known[str(n)]).log_life_deviation)
+                for n in np.unique(names.astype(str))
+            }
             out[body] = np.array([of[str(n)] for n in names])
     return out
 
 
 def _coordinates(design: Design, columns: list[Output]) -> dict[str, Any]:
-    """Return the coordinates of the outputs and of the design points, with the values of the outer factors there."""
+    """Return the coordinates of the outputs and of the design points, with the values of the outer
+    factors there.
+    """
     first = [rows.start for rows in design.points]
-    outer = {name: ("point", readable(design.columns[name][first])) for name in design.meta["outer"]}
-    point = [", ".join(in_words(n, outer[n][1][i]) for n in outer) or "all" for i in range(len(first))]
+    outer = {
+        name: ("point", readable(design.columns[name][first])) for name in design.meta["outer"]
+    }
+    point = [
+        ", ".join(in_words(n, outer[n][1][i]) for n in outer) or "all" for i in range(len(first))
+    ]
     return {
         **output_labels(columns),
         "percentile": np.array(PERCENTILES),
@@ -162,7 +195,9 @@ def _coordinates(design: Design, columns: list[Output]) -> dict[str, Any]:
 def _statistics(
     values: np.ndarray, regime: np.ndarray, life: bool, scatter: np.ndarray, points: list[slice]
 ) -> dict[str, np.ndarray]:
-    """Return statistics of one output, shape (n,), NaN where a value is not usable, at the rows of each point."""
+    """Return statistics of one output, shape (n,), NaN where a value is not usable, at the rows of
+    each point.
+    """
     names = ("mean", "standard_deviation", "used_share", "b10", "b10_low", "b10_high", "b10_safe")
     out = {name: np.full(len(points), np.nan) for name in names}
     out["percentile_value"] = np.full((len(points), len(PERCENTILES)), np.nan)
@@ -174,7 +209,8 @@ def _statistics(
         if good.size < 2:
             continue
         out["percentile_value"][p] = quantile(good, np.array(PERCENTILES) / 100)
-        out["percentile_value"][p, PERCENTILES.index(50.0)] = np.median(good)  # as in the table of candidates
+        # as in the table of candidates
+        out["percentile_value"][p, PERCENTILES.index(50.0)] = np.median(good)
         if np.isfinite(good).all():
             out["mean"][p], out["standard_deviation"][p] = good.mean(), good.std(ddof=1)
         if life:

@@ -1,11 +1,13 @@
-"""The record of one solved roller: its first limit with its life, every limit with both ends, and what was not checked.
+"""The record of one solved roller: its first limit with its life, every limit with both ends, and
+what was not checked.
 
-Keys of `Answer.headline`: `low`, `high` (life to the first limit [h]), `ends` (words of the limits that may come
-first), `body`, `extrapolated`, `guessed`, `unknown` (body whose hours are not known), `exceeded` and `broken` (lists of
-{limit, body, use [1], hours}, the worst one first), `open` (list of {limit, body}), `axial_low`, `axial_high`,
-`motor_low`, `motor_high` (forces between which the roller rolls [N]), `not_judged` (reasons), `unrated` (bodies whose
-life by fatigue is not known at the failure probability, because their materials have no scatter), `states` (of each
-requirement: `met`, `open` or `missed`), `state` (of all of them; '' without a requirement).
+Keys of `Answer.headline`: `low`, `high` (life to the first limit [h]), `ends` (words of the limits
+that may come first), `body`, `extrapolated`, `guessed`, `unknown` (body whose hours are not known),
+`exceeded` and `broken` (lists of {limit, body, use [1], hours}, the worst one first), `open` (list
+of {limit, body}), `axial_low`, `axial_high`, `motor_low`, `motor_high` (forces between which the
+roller rolls [N]), `not_judged` (reasons), `unrated` (bodies whose life by fatigue is not known at
+the failure probability, because their materials have no scatter), `states` (of each requirement:
+`met`, `open` or `missed`), `state` (of all of them; '' without a requirement).
 """
 
 from __future__ import annotations
@@ -46,7 +48,8 @@ from trackroller.roller.requirement import requirement_of
 from trackroller.roller.temperature import HEAD as OF_TEMPERATURE
 from trackroller.roller.temperature import temperatures_of
 
-ROUNDING = 1e-9  # N, mm, MPa, 1: results below are rounding errors of a zero, as the drive torque of a free roller
+# N, mm, MPa, 1: results below are rounding errors of a zero, as the drive torque of a free roller
+ROUNDING = 1e-9
 CODES = {  # code of the warning of a validity flag; of the others `flagged`
     "half_space": "not_judged",
     "conformal": "not_judged",
@@ -57,23 +60,50 @@ CODES = {  # code of the warning of a validity flag; of the others `flagged`
     "deep_life": "extrapolated",
     "worn": "worn",
 }
-STOPPED = {"full_slip": "the roller skids", "lift_off": "a contact lifts off"}  # why a limit is not known
+# why a limit is not known
+STOPPED = {"full_slip": "the roller skids", "lift_off": "a contact lifts off"}
 COLUMNS = (
-    Column("limit", "Limit", "", "limit of the roller, of the guide or of the pair", "text", role="name"),
+    Column(
+        "limit",
+        "Limit",
+        "",
+        "limit of the roller, of the guide or of the pair",
+        "text",
+        role="name",
+    ),
     Column("body", "Body", "", "body that the limit concerns", "text", role="name"),
     Column(
         "state",
         "Verdict",
         "",
-        "kept: below 100 % at both ends of the range; finite: a fatigue strength is exceeded, so that the life ends; "
-        "exceeded: above 100 % at both ends; open: at one end; missed: the life is shorter than required",
+        "kept: below 100 % at both ends of the range; finite: a fatigue strength is exceeded, so "
+        "that the life ends; "
+        "exceeded: above 100 % at both ends; open: at one end; missed: the life is shorter than "
+        "required",
         "state",
     ),
     Column(
-        "value", "Now of at most", "", "value in this case, and the value that is permitted", "bounded", "permitted"
+        "value",
+        "Now of at most",
+        "",
+        "value in this case, and the value that is permitted",
+        "bounded",
+        "permitted",
     ),
-    Column("used_low", "Used", "1", "value over the permitted value, at both ends of the placeholders", "share"),
-    Column("low", "Life", "h", "hours until the limit is reached, at both ends of the placeholders", "life"),
+    Column(
+        "used_low",
+        "Used",
+        "1",
+        "value over the permitted value, at both ends of the placeholders",
+        "share",
+    ),
+    Column(
+        "low",
+        "Life",
+        "h",
+        "hours until the limit is reached, at both ends of the placeholders",
+        "life",
+    ),
     Column(
         "hours",
         "Life at the values",
@@ -81,16 +111,38 @@ COLUMNS = (
         "hours until the limit is reached, at the values of the placeholders",
         "life",
     ),
-    Column("extrapolated", "Extrapolated", "", "whether the life lies beyond the data of its rule", "text"),
-    Column("guessed", "Placeholder", "", "whether the limit rests on values that nobody has measured", "text"),
+    Column(
+        "extrapolated",
+        "Extrapolated",
+        "",
+        "whether the life lies beyond the data of its rule",
+        "text",
+    ),
+    Column(
+        "guessed",
+        "Placeholder",
+        "",
+        "whether the limit rests on values that nobody has measured",
+        "text",
+    ),
     Column("model", "Model", "", "second model of an end that another limit has", "text"),
     Column("bound", "What is permitted", "", "what the permitted value is", "text"),
-    Column("units", "Unit", "", "unit of the value and of the permitted value", "text", role="file"),
+    Column(
+        "units", "Unit", "", "unit of the value and of the permitted value", "text", role="file"
+    ),
     Column("least", "At least", "", "smallest permitted value", role="file"),
     Column("name", "Name", "", "name of the limit in data sets", "text", role="file"),
 )
-RANGES = {"used_low": ("used_high", "use"), "low": ("high", "bar")}  # upper end and role of these columns
-YEARS = Column("years_low", "Life in years", "years", "the same in years of the duty", until="years_high", role="file")
+# upper end and role of these columns
+RANGES = {"used_low": ("used_high", "use"), "low": ("high", "bar")}
+YEARS = Column(
+    "years_low",
+    "Life in years",
+    "years",
+    "the same in years of the duty",
+    until="years_high",
+    role="file",
+)
 
 
 def answer_of_roller(ds: xr.Dataset, ranges: Limits | None = None) -> Answer:
@@ -135,7 +187,10 @@ def materials_of_case(ds: xr.Dataset, inputs: Mapping[str, Any]) -> dict[str, Ma
     """Return the material of each body of a solved case, at its temperature."""
     stored = record.materials_of(ds)
     warm = temperatures_of(ds, inputs["ambient_temperature"])
-    return {body: record.as_material(stored[f"{body}_material"]).at(at) for body, at in zip(BODIES, warm, strict=True)}
+    return {
+        body: record.as_material(stored[f"{body}_material"]).at(at)
+        for body, at in zip(BODIES, warm, strict=True)
+    }
 
 
 def facts_of_data(ds: xr.Dataset, **own: Any) -> dict[str, Any]:
@@ -165,7 +220,9 @@ def facts_of_data(ds: xr.Dataset, **own: Any) -> dict[str, Any]:
 
 def _facts(ds: xr.Dataset) -> dict[str, Any]:
     """Return the facts of the title line of one roller."""
-    used = str(solved_by(ds).item()) if "contact_model_used" in ds else str(ds.attrs["contact_model"])
+    used = (
+        str(solved_by(ds).item()) if "contact_model_used" in ds else str(ds.attrs["contact_model"])
+    )
     return facts_of_data(
         ds,
         solved_by=used,
@@ -188,15 +245,21 @@ def _kind(ds: xr.Dataset, own: Sequence[Margin], first: First | None) -> str:
     return "no_life" if first is None else "lasts"
 
 
-def _headline(ds: xr.Dataset, own: Sequence[Margin], first: First | None, ranges: Limits) -> dict[str, Any]:
+def _headline(
+    ds: xr.Dataset, own: Sequence[Margin], first: First | None, ranges: Limits
+) -> dict[str, Any]:
     """Return the numbers and names of the headline."""
     regime = REGIMES[int(ds["regime"])]
-    skipped = {"full_slip": ("full_slip",), "lift_off": ("lift_off", "lift_off_friction")}.get(regime, ())
+    skipped = {"full_slip": ("full_slip",), "lift_off": ("lift_off", "lift_off_friction")}.get(
+        regime, ()
+    )
     # the use of wear is a required travel over its life, which is a requirement
     checks = [one for one in own if one.name not in (*skipped, wear.LIMIT.name) and not one.breaks]
     over = [one for one in checks if one.state == "exceeded"]
     over.sort(key=lambda one: 0.0 if math.isnan(one.used) else -one.used)
-    unknown = any(m.timed and not m.beside and math.isnan(m.hours) and m.body == "guide" for m in own)
+    unknown = any(
+        m.timed and not m.beside and math.isnan(m.hours) and m.body == "guide" for m in own
+    )
     head: dict[str, Any] = {
         "low": math.nan,
         "high": math.nan,
@@ -208,7 +271,11 @@ def _headline(ds: xr.Dataset, own: Sequence[Margin], first: First | None, ranges
         "unrated": _unrated(ds),
         "broken": [_use(one) for one in own if one.breaks],
         "exceeded": [_use(one) for one in over],
-        "open": [{"limit": one.word, "body": one.body} for one in checks if one.state == "open" and not one.beside],
+        "open": [
+            {"limit": one.word, "body": one.body}
+            for one in checks
+            if one.state == "open" and not one.beside
+        ],
         "axial_low": ranges.axial_force[0],
         "axial_high": ranges.axial_force[1],
         "motor_low": ranges.motor_force[0],
@@ -218,14 +285,23 @@ def _headline(ds: xr.Dataset, own: Sequence[Margin], first: First | None, ranges
     if first is None:
         return head
     head |= {"low": first.low, "high": first.high, "ends": list(first.words), "body": first.body}
-    return head | {"extrapolated": first.beyond, "guessed": any(margin.guessed for margin in first.margins)}
+    return head | {
+        "extrapolated": first.beyond,
+        "guessed": any(margin.guessed for margin in first.margins),
+    }
 
 
 def _unrated(ds: xr.Dataset) -> list[str]:
-    """Return the bodies without a life by fatigue at the failure probability, because the scatter is not known."""
+    """Return the bodies without a life by fatigue at the failure probability, because the scatter
+    is not known.
+    """
     if "limit_state" not in ds or REGIMES[int(ds["regime"])] in STOPPED:
         return []
-    lacks = [one.material for one in lacks_of(ds) if (one.limit, one.name) == ("fatigue", "scatter_in_cycles")]
+    lacks = [
+        one.material
+        for one in lacks_of(ds)
+        if (one.limit, one.name) == ("fatigue", "scatter_in_cycles")
+    ]
     return [body for body in BODIES if material_name(ds, body) in lacks]
 
 
@@ -262,10 +338,16 @@ def _use(margin: Margin) -> dict[str, Any]:
 
 
 def _required(ds: xr.Dataset, inputs: Mapping[str, Any]) -> tuple[Required, ...]:
-    """Return what is required of the roller: the key `requirement`, and the travel that wear has to allow."""
+    """Return what is required of the roller: the key `requirement`, and the travel that wear has to
+    allow.
+    """
     found = []
     for name, own in requirement_of(ds).items():
-        words, units = (FIRST_LIMIT[1], "h") if name in OF_PAIR else (PARTS[name].words, PARTS[name].variable.units)
+        words, units = (
+            (FIRST_LIMIT[1], "h")
+            if name in OF_PAIR
+            else (PARTS[name].words, PARTS[name].variable.units)
+        )
         found.append(Required(name, words, units, own.least, own.most, own.probability, own.years))
     travel = inputs.get("required_travel")
     if travel is not None and not math.isnan(float(travel)):
@@ -277,7 +359,8 @@ def _required(ds: xr.Dataset, inputs: Mapping[str, Any]) -> tuple[Required, ...]
 def _columns(ds: xr.Dataset, own: Sequence[Margin]) -> tuple[Column, ...]:
     """Return the columns of the table of limits; lives have years where the duty is known.
 
-    The lives at the values of the placeholders are shown where they differ from the ends of their ranges.
+    The lives at the values of the placeholders are shown where they differ from the ends of their
+    ranges.
     """
     apart = any(margin.low < margin.high for margin in own)
     found = []
@@ -295,7 +378,9 @@ def _table(ds: xr.Dataset, own: Sequence[Margin], required: Sequence[Required]) 
     rows = [_row(margin, least) for margin in own]
     of_outputs = [_required_row(ds, one) for one in required if one.output not in OF_PAIR]
     rows = sorted([*rows, *of_outputs], key=lambda row: row["state"] != "exceeded")
-    table = pd.DataFrame(rows, columns=[name for one in _columns(ds, own) for name in (one.name, one.until) if name])
+    table = pd.DataFrame(
+        rows, columns=[name for one in _columns(ds, own) for name in (one.name, one.until) if name]
+    )
     duty = duty_of(ds)
     if duty:
         for name in ("low", "high"):
@@ -337,7 +422,11 @@ def _row(margin: Margin, least: float) -> dict[str, Any]:
 
 def _required_row(ds: xr.Dataset, required: Required) -> dict[str, Any]:
     """Return the row of a required output; how much of it is used counts towards the nearer end."""
-    value = float(PARTS[required.output].values(ds).item()) if PARTS[required.output].variable.name in ds else math.nan
+    value = (
+        float(PARTS[required.output].values(ds).item())
+        if PARTS[required.output].variable.name in ds
+        else math.nan
+    )
     uses = []
     if math.isfinite(required.most):
         uses.append(value / required.most if required.most else math.inf)
@@ -375,8 +464,12 @@ OF_CONTACTS = (
 OF_ROLLER = (QUANTITY, Column("value", "Value", "", "", "whole"), UNIT)
 
 
-def _parts(ds: xr.Dataset, inputs: Mapping[str, Any], materials: Mapping[str, Material]) -> Iterable[Part]:
-    """Yield the further tables of one roller: both contacts, the whole roller, and the lives by fatigue."""
+def _parts(
+    ds: xr.Dataset, inputs: Mapping[str, Any], materials: Mapping[str, Material]
+) -> Iterable[Part]:
+    """Yield the further tables of one roller: both contacts, the whole roller, and the lives by
+    fatigue.
+    """
     contacts = _contacts(ds)
     if not contacts.empty:
         yield Part("contacts", "Contacts", contacts, OF_CONTACTS)
@@ -396,10 +489,21 @@ def _contacts(ds: xr.Dataset) -> pd.DataFrame:
     names = ["quantity", "contact_1", "contact_2", "units"]
     if "normal_force" in ds and np.isnan(ds.variables["normal_force"].values).any():
         return pd.DataFrame(columns=names)
-    lines = [(quantity_words(n), ds.variables[n].values, VARIABLES[n].units) for n in shown("contact") if n in ds]
+    lines = [
+        (quantity_words(n), ds.variables[n].values, VARIABLES[n].units)
+        for n in shown("contact")
+        if n in ds
+    ]
     if {"peak_stress", "peak_z"} <= set(ds):
-        stated = ds[["peak_stress", "peak_z", *(n for n in ("semi_axis_lateral", "semi_axis_rolling") if n in ds)]]
-        depth = stated["peak_z"].where(at_surface(stated) != 1, 0.0)  # the place of a peak at the surface is rounding
+        stated = ds[
+            [
+                "peak_stress",
+                "peak_z",
+                *(n for n in ("semi_axis_lateral", "semi_axis_rolling") if n in ds),
+            ]
+        ]
+        # the place of a peak at the surface is rounding
+        depth = stated["peak_z"].where(at_surface(stated) != 1, 0.0)
         for body in BODIES:
             peak = stated["peak_stress"].sel(body=body).values
             lines.append((f"peak stress of the {body} (von Mises)", peak, "MPa"))
@@ -414,8 +518,12 @@ def _contacts(ds: xr.Dataset) -> pd.DataFrame:
 
 def quantities(ds: xr.Dataset, names: Iterable[str]) -> pd.DataFrame:
     """Return one row for each finite one of some results, with its value and unit."""
-    found = [(n, _without_rounding(ds.variables[n].values), VARIABLES[n].units) for n in names if n in ds]
-    rows = [[quantity_words(name), value, units] for name, value, units in found if math.isfinite(value)]
+    found = [
+        (n, _without_rounding(ds.variables[n].values), VARIABLES[n].units) for n in names if n in ds
+    ]
+    rows = [
+        [quantity_words(name), value, units] for name, value, units in found if math.isfinite(value)
+    ]
     return pd.DataFrame(rows, columns=["quantity", "value", "units"])
 
 
@@ -465,7 +573,11 @@ def _is_known(ds: xr.Dataset, name: str, body: str) -> bool:
 def _lacks_hours(ds: xr.Dataset, name: str, body: str) -> bool:
     """Return whether a limit that has hours has a use alone."""
     lives = any(variable.units in ("h", "km") for variable in LIMITS[name].results)
-    return lives and "life_hours_by_limit" in ds and bool(ds["life_hours_by_limit"].sel(limit=name, body=body).isnull())
+    return (
+        lives
+        and "life_hours_by_limit" in ds
+        and bool(ds["life_hours_by_limit"].sel(limit=name, body=body).isnull())
+    )
 
 
 def _missing(ds: xr.Dataset, name: str, body: str) -> list[str]:
@@ -497,7 +609,11 @@ def material_name(ds: xr.Dataset, body: str) -> str:
 
 def unchecked(ds: xr.Dataset) -> list[str]:
     """Return the names of the limits that were checked for neither body."""
-    return [limit.name for limit in judged() if not any(_is_known(ds, limit.name, body) for body in limit.bodies)]
+    return [
+        limit.name
+        for limit in judged()
+        if not any(_is_known(ds, limit.name, body) for body in limit.bodies)
+    ]
 
 
 def _not_used(ds: xr.Dataset) -> dict[str, str]:
@@ -521,13 +637,17 @@ def not_given_words(ds: xr.Dataset) -> dict[str, str]:
 
 
 def warnings_of(ds: xr.Dataset, own: Sequence[Margin], first: First | None) -> Iterable[Caution]:
-    """Yield the warnings of one roller: second models, flags with their remedies, guesses, doubts, values not given."""
+    """Yield the warnings of one roller: second models, flags with their remedies, guesses, doubts,
+    values not given.
+    """
     yield from _second_models(own, first)
     for flag in flags_of(ds):
         yield _caution(CODES.get(flag.name, "flagged"), f"{flag.sentence} {flag.remedy}")
     yield from (_caution("extrapolated", text) for text in beyond_tests(ds))
     yield from guess_cautions(placeholders_part(ds))
-    yield from (_caution("flagged", note) for note in notes_of(ds) if note.startswith(OF_TEMPERATURE))
+    yield from (
+        _caution("flagged", note) for note in notes_of(ds) if note.startswith(OF_TEMPERATURE)
+    )
     given = record.not_given_of(ds)
     yield from (_caution("doubtful", text) for text in record.doubts_of(ds))
     question = drive_question(given, set(PARAMETERS) - set(given))
@@ -535,7 +655,9 @@ def warnings_of(ds: xr.Dataset, own: Sequence[Margin], first: First | None) -> I
         yield _caution("not_given", question)
     words = not_given_words(ds)
     if words:
-        yield _caution("not_given", ", ".join(f"{long_name_of(name)} {value}" for name, value in words.items()))
+        yield _caution(
+            "not_given", ", ".join(f"{long_name_of(name)} {value}" for name, value in words.items())
+        )
 
 
 def _caution(code: str, where: str) -> Caution:
@@ -552,7 +674,9 @@ def _second_models(own: Sequence[Margin], first: First | None) -> Iterable[Cauti
 
 
 def _hours_text(margin: Margin) -> str:
-    """Return the hours to a limit with both ends of their range; an empty text where they are not known."""
+    """Return the hours to a limit with both ends of their range; an empty text where they are not
+    known.
+    """
     if math.isnan(margin.hours):
         return ""
     ends = dict.fromkeys((rounded_text(margin.low), rounded_text(margin.high)))
@@ -565,7 +689,9 @@ def rounded_text(value: float) -> str:
 
 
 def beyond_tests(ds: xr.Dataset) -> list[str]:
-    """Return what tests do not tell of the lives by fatigue of a solved case; [] for materials that were not fitted."""
+    """Return what tests do not tell of the lives by fatigue of a solved case; [] for materials that
+    were not fitted.
+    """
     found, others = fits_of_case(ds)
     said = [
         f"The values of {name} hold for {options} alone: solve with it, or fit the tests anew."

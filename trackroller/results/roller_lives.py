@@ -1,4 +1,6 @@
-"""The lives of one solved roller by fatigue: of roller, guide and pair, in hours, kilometres and overrollings."""
+"""The lives of one solved roller by fatigue: of roller, guide and pair, in hours, kilometres and
+overrollings.
+"""
 
 from __future__ import annotations
 
@@ -35,12 +37,23 @@ ENDS_PAIR = {  # what ends the pair, by FIRST_TO_FAIL
     "unknown": "of the roller alone: the hours of the guide are not known",
 }
 COLUMNS = (
-    Column("body", "Body", "", "body that the life is of; the pair ends with its first body", "text", role="name"),
+    Column(
+        "body",
+        "Body",
+        "",
+        "body that the life is of; the pair ends with its first body",
+        "text",
+        role="name",
+    ),
     Column("probability", "Failed by then", "1", "share of like rollers that have failed", "share"),
     Column("low", "Life", "h", "life by fatigue, or the 90 % interval of tests", until="high"),
     Column("km_low", "Travel", "km", "the same life as travel", until="km_high"),
     Column(
-        "cycles_low", "Overrollings", "1", "the same life as overrollings of a point of the body", until="cycles_high"
+        "cycles_low",
+        "Overrollings",
+        "1",
+        "the same life as overrollings of a point of the body",
+        until="cycles_high",
     ),
     Column("rate", "Overrollings an hour", "1/h", "overrollings of a point of the body"),
     Column("contact", "Contact", "", "contact whose track decides", "count"),
@@ -51,7 +64,10 @@ COLUMNS = (
 
 
 def lives_part(
-    ds: xr.Dataset, inputs: Mapping[str, Any], materials: Mapping[str, Material], lifeless: Mapping[str, str]
+    ds: xr.Dataset,
+    inputs: Mapping[str, Any],
+    materials: Mapping[str, Material],
+    lifeless: Mapping[str, str],
 ) -> Part | None:
     """Return the lives of a solved roller by fatigue; None for a result without lives.
 
@@ -62,7 +78,8 @@ def lives_part(
     inputs : mapping
         Inputs of the case by name.
     materials : mapping of str to Material
-        Material of each body. A body whose material has scatter has lives at 10, 50 and 90 % failure probability.
+        Material of each body. A body whose material has scatter has lives at 10, 50 and 90 %
+        failure probability.
     lifeless : mapping of str to str
         Why a body has no fatigue life, see `trackroller.results.margins.lifeless_bodies`.
     """
@@ -75,16 +92,26 @@ def lives_part(
         if body in tested and not lifeless[body]:
             rows += list(_by_tests(ds, body, inputs, tested[body]))
     rows.append(_of_pair(ds, inputs, lifeless, materials))
-    table = pd.DataFrame(rows, columns=[name for column in COLUMNS for name in (column.name, column.until) if name])
+    table = pd.DataFrame(
+        rows, columns=[name for column in COLUMNS for name in (column.name, column.until) if name]
+    )
     note = "Without scatter of its material a body has a median life alone."
     return Part("lives", "Life by fatigue", table, COLUMNS, note)
 
 
-def _row(body: str, inputs: Mapping[str, Any], low: float, high: float, **others: Any) -> dict[str, Any]:
+def _row(
+    body: str, inputs: Mapping[str, Any], low: float, high: float, **others: Any
+) -> dict[str, Any]:
     """Return a life between two ends [h] with its travel and overrollings."""
     rate = overrollings(inputs, body)
     way = KM_PER_HOUR * float(inputs["velocity"])
-    row: dict[str, Any] = {"body": body, "low": low, "high": high, "km_low": low * way, "km_high": high * way}
+    row: dict[str, Any] = {
+        "body": body,
+        "low": low,
+        "high": high,
+        "km_low": low * way,
+        "km_high": high * way,
+    }
     row |= {"cycles_low": low * rate, "cycles_high": high * rate, "rate": rate, "contact": math.nan}
     return row | {"basis": "", "extrapolated": "", "why": ""} | others
 
@@ -107,16 +134,26 @@ def _of_body(
     lives = {MEDIAN: float(by_contact.min())}
     if curve.scatters and stress is not None:
         own = stress.sel(body=body).values
-        lives = {p: float(np.min(curve.changed(failure_probability=p).life_cycles(own))) for p in PROBABILITIES}
+        lives = {
+            p: float(np.min(curve.changed(failure_probability=p).life_cycles(own)))
+            for p in PROBABILITIES
+        }
     basis = "S-N line" if curve.scatters else "S-N line without scatter"
     for probability, cycles in lives.items():
         hours = cycles / overrollings(inputs, body)
         beyond = _yes(bool(past_data(cycles, material.cycles_at_fatigue_limit)))
-        told = {"probability": probability, "contact": contact, "basis": basis, "extrapolated": beyond}
+        told = {
+            "probability": probability,
+            "contact": contact,
+            "basis": basis,
+            "extrapolated": beyond,
+        }
         yield _row(body, inputs, hours, hours, **told)
 
 
-def _by_tests(ds: xr.Dataset, body: str, inputs: Mapping[str, Any], fit: StoredFit) -> Iterator[dict[str, Any]]:
+def _by_tests(
+    ds: xr.Dataset, body: str, inputs: Mapping[str, Any], fit: StoredFit
+) -> Iterator[dict[str, Any]]:
     """Yield the 90 % intervals of the lives of a body by the tests of its material."""
     stress, cycles = worst_contact(ds, body, fit)
     if not (stress > 0 and math.isfinite(cycles)):
@@ -128,24 +165,40 @@ def _by_tests(ds: xr.Dataset, body: str, inputs: Mapping[str, Any], fit: StoredF
         low, high = fit.cycles(stress, probability)
         told = {"probability": probability, "basis": basis, "extrapolated": beyond}
         row = _row(body, inputs, low / rate, high / rate, **told)
-        yield row | {"cycles_low": low, "cycles_high": high}  # known without the overrollings of the guide
+        # known without the overrollings of the guide
+        yield row | {"cycles_low": low, "cycles_high": high}
 
 
 def _of_pair(
-    ds: xr.Dataset, inputs: Mapping[str, Any], lifeless: Mapping[str, str], materials: Mapping[str, Material]
+    ds: xr.Dataset,
+    inputs: Mapping[str, Any],
+    lifeless: Mapping[str, str],
+    materials: Mapping[str, Material],
 ) -> dict[str, Any]:
     """Return the median life of the pair, which ends with its first body."""
     hours = float(ds["pair_life_hours"])
     first = FIRST_TO_FAIL[int(ds["first_to_fail"])]
-    why = next(filter(None, lifeless.values()), "") or ("unknown roller" if math.isnan(hours) else "")
+    why = next(filter(None, lifeless.values()), "") or (
+        "unknown roller" if math.isnan(hours) else ""
+    )
     body = "guide" if first == "guide" else "roller"
-    told = {"body": "pair", "probability": MEDIAN, "cycles_low": math.nan, "cycles_high": math.nan, "rate": math.nan}
+    told = {
+        "body": "pair",
+        "probability": MEDIAN,
+        "cycles_low": math.nan,
+        "cycles_high": math.nan,
+        "rate": math.nan,
+    }
     if why:
         return _row(body, inputs, math.nan, math.nan) | told | {"why": WHY[why]}
     cycles = float(ds["life_cycles"].sel(body=body).min())
     beyond = _yes(bool(past_data(cycles, materials[body].cycles_at_fatigue_limit)))
     said = ENDS_PAIR[first]
-    return _row(body, inputs, hours, hours) | told | {"basis": "S-N line", "extrapolated": beyond, "why": said}
+    return (
+        _row(body, inputs, hours, hours)
+        | told
+        | {"basis": "S-N line", "extrapolated": beyond, "why": said}
+    )
 
 
 def _yes(true: bool) -> str:

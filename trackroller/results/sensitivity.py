@@ -1,8 +1,8 @@
 """From a solved study to its labelled sensitivity indices.
 
-The design decides the analysis: shares of variance on a grid, elementary effects for Morris, Sobol indices for
-Saltelli samples, effects for response-surface designs, measures from given data for every independent sample. An
-inner/outer array design gets distributions of life (`robustness`).
+The design decides the analysis: shares of variance on a grid, elementary effects for Morris, Sobol
+indices for Saltelli samples, effects for response-surface designs, measures from given data for
+every independent sample. An inner/outer array design gets distributions of life (`robustness`).
 """
 
 from __future__ import annotations
@@ -42,11 +42,15 @@ log = logging.getLogger("trackroller")
 
 
 def _of_replicates(found: Estimated, y: np.ndarray, design: Design) -> Estimated:
-    """Replace the intervals and the course of the headline indices by those of the replicates of a grown sample."""
+    """Replace the intervals and the course of the headline indices by those of the replicates of a
+    grown sample.
+    """
     method, total = design.method, design.samples
     at = convergence.sizes(total, smallest=2 * int(design.meta["replicates"]))
     out = method.replicated(y, design, total)
-    course = convergence.course(lambda samples: method.replicated(y, design, samples), at, out, method.narrowed)
+    course = convergence.course(
+        lambda samples: method.replicated(y, design, samples), at, out, method.narrowed
+    )
     return found._replace(estimates=found.estimates | out | course, sizes=at)
 
 
@@ -79,20 +83,22 @@ def analyse(results: SolvedCases) -> xr.Dataset:
     Parameters
     ----------
     results : SolvedCases
-        A solved study. The key `analysis` of its study file says which outputs and regimes count. The same study gives
-        the same indices.
+        A solved study. The key `analysis` of its study file says which outputs and regimes count.
+        The same study gives the same indices.
 
     Returns
     -------
     xarray.Dataset
-        Dimensions output, factor, factor_2 and sample_size. By method: S1, ST, S2 (saltelli); mu, mu_star, sigma
-        (morris); main_share, interaction_share, higher_share (grid); effect, curvature, interaction (response
-        surfaces); first, delta, prcc (given data). A random sample also has interaction_share by a polynomial
-        that predicts `fit_share` of the variance. The key `groups` adds group_S1 and group_ST, and
-        `conditional_on` conditional_S1 and conditional_ST of each factor within each level of a category. Indices have
-        _low, _high and their course with the sample size. For each output: used_share, reliable, take_times, and
-        `note`, which states the rows left out and why; first_order_sum, and first_order_sum_note, which explains a sum
-        above 100 %. An inner/outer array design gives the result of `trackroller.results.robustness.robustness`.
+        Dimensions output, factor, factor_2 and sample_size. By method: S1, ST, S2 (saltelli); mu,
+        mu_star, sigma (morris); main_share, interaction_share, higher_share (grid); effect,
+        curvature, interaction (response surfaces); first, delta, prcc (given data). A random sample
+        also has interaction_share by a polynomial that predicts `fit_share` of the variance. The
+        key `groups` adds group_S1 and group_ST, and `conditional_on` conditional_S1 and
+        conditional_ST of each factor within each level of a category. Indices have _low, _high and
+        their course with the sample size. For each output: used_share, reliable, take_times, and
+        `note`, which states the rows left out and why; first_order_sum, and first_order_sum_note,
+        which explains a sum above 100 %. An inner/outer array design gives the result of
+        `trackroller.results.robustness.robustness`.
 
     Raises
     ------
@@ -102,7 +108,9 @@ def analyse(results: SolvedCases) -> xr.Dataset:
     ds, design, given = results.data, results.design, results.config.analysis
     if design.method.proposes:
         allowed = "a design that draws its rows evenly: a search prefers good designs"
-        raise InputError("design", design.method.name, allowed, "Take design saltelli, sobol or lhs for indices.")
+        raise InputError(
+            "design", design.method.name, allowed, "Take design saltelli, sobol or lhs for indices."
+        )
     own = material_deviations(results)
     judged = results.judged_targets
     scatter = {n: np.where(results.ended_by_fatigue(), own.get("roller", 0.0), 0.0) for n in judged}
@@ -113,9 +121,13 @@ def analyse(results: SolvedCases) -> xr.Dataset:
         aims = aims.merge(bands(results, own), join="left", combine_attrs="override")
     if design.method.points:
         return robustness(results, own).merge(aims, combine_attrs="override")
-    columns = outputs(ds, design.factors, given.outputs, given.keep, scale=given.scale, allowed=results.allowed)
+    columns = outputs(
+        ds, design.factors, given.outputs, given.keep, scale=given.scale, allowed=results.allowed
+    )
     if not columns or not design.factors:
-        raise InputError("study", list(ds.data_vars), "at least one output and one factor that varies")
+        raise InputError(
+            "study", list(ds.data_vars), "at least one output and one factor that varies"
+        )
     by_output = []
     for number, column in enumerate(columns, 1):
         log.info("analyse output %d of %d: %s", number, len(columns), column.name)
@@ -128,7 +140,11 @@ def analyse(results: SolvedCases) -> xr.Dataset:
     result = result.assign(_quality(result, design, columns, by_output))
     if tied := {name for pair in correlated_pairs(design) for name in pair[:2]}:
         words = {"long_name": "1 for a factor that is correlated with another factor", "units": "1"}
-        result["correlated"] = ("factor", np.array([name in tied for name in design.factors], np.int8), words)
+        result["correlated"] = (
+            "factor",
+            np.array([name in tied for name in design.factors], np.int8),
+            words,
+        )
     result = result.assign(first_order_sums(result, not design.method.observed))
     result.attrs = {
         **file_attributes("Sensitivity analysis of a study of track rollers", "analysed"),
@@ -138,7 +154,8 @@ def analyse(results: SolvedCases) -> xr.Dataset:
         "samples": design.samples,
         "kept_regimes": ", ".join(given.keep),
         "interval": "95 %",
-        "treatment": treatment(regimes(ds, results.dims), given.keep, results.allowed) + correlated(design),
+        "treatment": treatment(regimes(ds, results.dims), given.keep, results.allowed)
+        + correlated(design),
         "study": results.study.merged(),
     }
     return result.merge(aims, combine_attrs="override")
@@ -155,28 +172,39 @@ def _of_groups_and_levels(design: Design, columns: Sequence[Output], asked: Anal
 
     Returns
     -------
-    group_S1, group_ST (output, group) and conditional_S1, conditional_ST (output, level, factor), each with _low and
-    _high, and conditional_rows (output, level). Empty if the study file asks for neither. A grid has no interval, a
-    random sample or a table no conditional_ST.
+    group_S1, group_ST (output, group) and conditional_S1, conditional_ST (output, level, factor),
+    each with _low and _high, and conditional_rows (output, level). Empty if the study file asks for
+    neither. A grid has no interval, a random sample or a table no conditional_ST.
     """
     variables: dict[str, Any] = {}
     coords: dict[str, Any] = {}
     if asked.groups:
         groups = all_groups(asked.groups, design.factors)
         coords["group"] = np.array(list(groups), dtype=object)
-        words = [factor_name(name) if name in design.factors else name.replace("_", " ") for name in groups]
+        words = [
+            factor_name(name) if name in design.factors else name.replace("_", " ")
+            for name in groups
+        ]
         coords["group_name"] = ("group", np.array(words, dtype=object))
         members = [", ".join(map(factor_name, names)) for names in groups.values()]
         coords["group_members"] = ("group", np.array(members, dtype=object))
-        estimates = [design.method.group_indices(column.values, design, groups) for column in columns]
+        estimates = [
+            design.method.group_indices(column.values, design, groups) for column in columns
+        ]
         variables |= stacked(design.method, estimates, ("output", "group"))
     if category := asked.conditional_on:
         levels = design.factors[category].levels
-        coords["level"] = ("level", np.array([label(level) for level in levels], dtype=object), {"factor": category})
+        coords["level"] = (
+            "level",
+            np.array([label(level) for level in levels], dtype=object),
+            {"factor": category},
+        )
         coords["factor"] = np.array(list(design.factors), dtype=object)
         estimates = [within_levels(column.values, design, category) for column in columns]
         variables |= stacked(design.method, estimates, ("output", "level", "factor"))
-    return xr.Dataset(variables, coords | {"output": np.array([c.name for c in columns], dtype=object)})
+    return xr.Dataset(
+        variables, coords | {"output": np.array([c.name for c in columns], dtype=object)}
+    )
 
 
 def within_levels(y: np.ndarray, design: Design, category: str) -> Estimates:
@@ -190,50 +218,79 @@ def within_levels(y: np.ndarray, design: Design, category: str) -> Estimates:
 
     Returns
     -------
-    conditional_S1 with _low and _high, shape (levels, k), NaN for the category itself; conditional_ST too from a grid
-    and a Saltelli design; conditional_rows, the blocks, cells or rows of each level, shape (levels,).
+    conditional_S1 with _low and _high, shape (levels, k), NaN for the category itself;
+    conditional_ST too from a grid and a Saltelli design; conditional_rows, the blocks, cells or
+    rows of each level, shape (levels,).
 
     Notes
     -----
-    The variance is that among the rows of the level. Valid for independent factors, as the index over all rows.
+    The variance is that among the rows of the level. Valid for independent factors, as the index
+    over all rows.
     """
     place, levels = list(design.factors).index(category), design.factors[category].levels
     code = {level: i for i, level in enumerate(levels)}
     level_of = np.array([code[value] for value in design.columns[category].tolist()])
-    by_level = [design.method.level_indices(y, design, place, level_of == i) for i in range(len(levels))]
+    by_level = [
+        design.method.level_indices(y, design, place, level_of == i) for i in range(len(levels))
+    ]
     return {name: np.stack([part[name] for part in by_level]) for name in by_level[0]}
 
 
 def _quality(
     result: xr.Dataset, design: Design, columns: list[Output], by_output: list[Estimated]
 ) -> dict[str, tuple[str, np.ndarray, dict[str, str]]]:
-    """Return the variables that say how many rows the indices of each output use, and whether these suffice."""
+    """Return the variables that say how many rows the indices of each output use, and whether these
+    suffice.
+    """
     share = np.array([one.used / max(1, one.total) for one in by_output])
     notes = [
-        note(column, one.used, one.total, design.method.unit) for column, one in zip(columns, by_output, strict=True)
+        note(column, one.used, one.total, design.method.unit)
+        for column, one in zip(columns, by_output, strict=True)
     ]
     bounds = [_bounds(one.estimates, design.method) for one in by_output]
     if design.meta.get("groups"):
-        bounds = list(zip(result["group_ST_low"].values, result["group_ST_high"].values, strict=True))
+        bounds = list(
+            zip(result["group_ST_low"].values, result["group_ST_high"].values, strict=True)
+        )
     times = [convergence.take_times(*both, design.method.half_width) for both in bounds]
     half = [convergence.half_width(*both) for both in bounds]
     return {
-        name: ("output", values, {"long_name": words} | ({} if values.dtype == object else {"units": "1"}))
+        name: (
+            "output",
+            values,
+            {"long_name": words} | ({} if values.dtype == object else {"units": "1"}),
+        )
         for name, values, words in (
             ("used_share", share, "share of the rows that the indices use"),
-            ("reliable", (share >= RELIABLE).astype(np.int8), f"1 where at least {RELIABLE:g} of the rows are used"),
+            (
+                "reliable",
+                (share >= RELIABLE).astype(np.int8),
+                f"1 where at least {RELIABLE:g} of the rows are used",
+            ),
             ("note", np.array(notes, dtype=object), "rows left out, and why"),
-            ("half_width", np.array(half), "half width of the widest interval (of mu*: over the largest mu*)"),
-            ("take_times", np.array(times), "factor on the samples after which the intervals are narrow enough"),
+            (
+                "half_width",
+                np.array(half),
+                "half width of the widest interval (of mu*: over the largest mu*)",
+            ),
+            (
+                "take_times",
+                np.array(times),
+                "factor on the samples after which the intervals are narrow enough",
+            ),
         )
     }
 
 
 def _bounds(out: Estimates, method: Method) -> tuple[np.ndarray, np.ndarray]:
-    """Return the bounds of the indices that must be narrow, as shares of the variance or of the largest effect."""
+    """Return the bounds of the indices that must be narrow, as shares of the variance or of the
+    largest effect.
+    """
     names = [name for name in method.judged if f"{name}_low" in out]
     if not names:
         return np.full(1, np.nan), np.full(1, np.nan)
-    low, high = (np.concatenate([out[f"{name}_{end}"] for name in names]) for end in ("low", "high"))
+    low, high = (
+        np.concatenate([out[f"{name}_{end}"] for name in names]) for end in ("low", "high")
+    )
     whole = float(np.nanmax(out[names[0]], initial=0.0)) if method.effects else 1.0
     return (low / whole, high / whole) if whole > 0 else (low * np.nan, high * np.nan)

@@ -1,7 +1,9 @@
-"""Find the least roller of a shelf that is enough for a required life, reliability and safety against overload.
+"""Find the least roller of a shelf that is enough for a required life, reliability and safety
+against overload.
 
-The rollers are the levels of a factor of a study, and the required life is its requirement: `Results.answer` judges
-them. A second study has all forces times the safety; there each limit has to hold, whatever the life.
+The rollers are the levels of a factor of a study, and the required life is its requirement:
+`Results.answer` judges them. A second study has all forces times the safety; there each limit has
+to hold, whatever the life.
 """
 
 from __future__ import annotations
@@ -34,7 +36,8 @@ from trackroller.study.outputs import of_fatigue
 from trackroller.yaml_file import read_mapping
 
 SHELF = "roller"
-OF_STUDY = ("factors", "base", "name", "design", "method")  # keys that a study file has and a case file has not
+# keys that a study file has and a case file has not
+OF_STUDY = ("factors", "base", "name", "design", "method")
 VERDICTS = ("enough", "open", "not enough")
 OVERLOAD = "overload"  # end of the name of the study with all forces times the safety
 
@@ -45,9 +48,10 @@ class Sizing:
 
     Attributes
     ----------
-    table : one row a roller, the least one that is enough first: `roller`, `verdict` (one of `VERDICTS`), the columns
-        of the shelf, `life_hours` (low end of the life to the first limit, worst condition), `life_ratio` (over the
-        required life), `ends` (what ends it), `overload` (held, exceeded or not judged) and `excluded_by`
+    table : one row a roller, the least one that is enough first: `roller`, `verdict` (one of
+        `VERDICTS`), the columns of the shelf, `life_hours` (low end of the life to the first limit,
+        worst condition), `life_ratio` (over the required life), `ends` (what ends it), `overload`
+        (held, exceeded or not judged) and `excluded_by`
     least : name of the roller to take; '' if none is surely enough
     least_of : column or output by which the rollers rank; '' for the longest life
     unranked : rollers of which this value is not known, so that they do not rank by it
@@ -64,7 +68,9 @@ class Sizing:
 
     @property
     def open_and_less(self) -> tuple[str, ...]:
-        """Return the rollers whose verdict is open, and that rank before the least one that is enough."""
+        """Return the rollers whose verdict is open, and that rank before the least one that is
+        enough.
+        """
         table = self.table.set_index(SHELF)
         is_open = table["verdict"] == VERDICTS[1]
         if self.least and self.least_of:
@@ -76,7 +82,11 @@ class Sizing:
     def to_dict(self) -> dict[str, Any]:
         """Return the sizing as values of JSON; None stands for a number that is not known."""
         rows = self.table.astype(object).where(self.table.notna(), None).to_dict("records")
-        head: dict[str, Any] = {"least": self.least, "least_of": self.least_of, "unranked": list(self.unranked)}
+        head: dict[str, Any] = {
+            "least": self.least,
+            "least_of": self.least_of,
+            "unranked": list(self.unranked),
+        }
         head["open_and_less"] = list(self.open_and_less)
         return head | {"rollers": [{str(key): value for key, value in row.items()} for row in rows]}
 
@@ -97,21 +107,24 @@ def size(
     Parameters
     ----------
     case : pathlib.Path, str or mapping
-        Case file or study file with loads, rail and duty, or a mapping with its keys. The rollers of the shelf take the
-        place of its roller.
+        Case file or study file with loads, rail and duty, or a mapping with its keys. The rollers
+        of the shelf take the place of its roller.
     shelf : pathlib.Path or str
         Table of rollers, see `trackroller.study.file.shelf`.
     life : str or float, optional
-        Required life to the first limit: hours, or years such as "3 years" where the case has a duty.
+        Required life to the first limit: hours, or years such as "3 years" where the case has a
+        duty.
     failures : str or float, optional
-        Failure probability of each limit [1], such as "5%". Default: that of the case, otherwise 0.5.
+        Failure probability of each limit [1], such as "5%". Default: that of the case, otherwise
+        0.5.
     safety : str or float, optional
         Factor >= 1 on all forces at which no limit may be exceeded [1].
     least : str, optional
-        Column of the shelf or result of which the least roller is sought, such as "price". Rollers that are equal in it
-        rank by their life. Default: the longest life.
+        Column of the shelf or result of which the least roller is sought, such as "price". Rollers
+        that are equal in it rank by their life. Default: the longest life.
     results : path, optional
-        Parent of the folders of the studies, as for `trackroller.run`. By default nothing is written.
+        Parent of the folders of the studies, as for `trackroller.run`. By default nothing is
+        written.
     progress : bool
         Whether to show a progress bar.
 
@@ -130,12 +143,15 @@ def size(
     >>> import trackroller as tr
     >>> head = "name;roller_profile_radius;price"
     >>> characters = Path("rollers.csv").write_text(f"{head}\\nclose;-6.4;9\\nwide;-8;5\\n")
-    >>> case = {"radial_force": -100, "motor_force": 0, "contact_model": "sliding", "accuracy": "preview"}
+    >>> case = {"radial_force": -100, "motor_force": 0}
+    >>> case |= {"contact_model": "sliding", "accuracy": "preview"}
     >>> tr.size(case, "rollers.csv", life=50, least="price").least
     'close'
     """
     studies = sizing_studies(case, shelf, life=life, failures=failures, safety=safety, least=least)
-    solved = {kind: run(study, progress=progress, results=results) for kind, study in studies.items()}
+    solved = {
+        kind: run(study, progress=progress, results=results) for kind, study in studies.items()
+    }
     return sizing_of(solved.get("life"), solved.get(OVERLOAD), least or "")
 
 
@@ -150,7 +166,9 @@ def sizing_studies(
 ) -> dict[str, Study]:
     """Return the studies of a sizing: `life` with the requirement, and `overload`; see `size`."""
     if life is None and safety is None:
-        raise InputError("size", None, "a required life, or a safety", 'Give life="3 years", for example.')
+        raise InputError(
+            "size", None, "a required life, or a safety", 'Give life="3 years", for example.'
+        )
     keys = _keys_of(case, shelf)
     if failures is not None:
         keys["failure_probability"] = finite_number(failures, "-", "failures")
@@ -184,7 +202,9 @@ def _keys_of(case: Path | str | Mapping[str, Any], shelf: Path | str) -> dict[st
         stem = path.stem
         values = read_mapping(path, "study or case file")
     if not isinstance(values, Mapping):
-        raise InputError("case", type(case).__name__, "a path or a mapping", "Give a case file, or its keys.")
+        raise InputError(
+            "case", type(case).__name__, "a path or a mapping", "Give a case file, or its keys."
+        )
     with files_beside(path):
         if set(OF_STUDY) & set(values):
             keys = with_options(values)
@@ -193,9 +213,21 @@ def _keys_of(case: Path | str | Mapping[str, Any], shelf: Path | str) -> dict[st
     for name in ("carriage", "table", "blocks"):
         if keys.get(name) is not None:
             remedy = "Give a case file, or a study with factors."
-            raise InputError(f"size: {name}", None, "the loads of one roller", remedy, "has several rollers or rows")
+            raise InputError(
+                f"size: {name}",
+                None,
+                "the loads of one roller",
+                remedy,
+                "has several rollers or rows",
+            )
     if SHELF in (keys.get("factors") or {}):
-        raise InputError(f"factors.{SHELF}", None, "one shelf", "Remove it: --shelf gives it.", "stands there already")
+        raise InputError(
+            f"factors.{SHELF}",
+            None,
+            "one shelf",
+            "Remove it: --shelf gives it.",
+            "stands there already",
+        )
     keys["name"] = _name(str(keys.get("name", stem)), Path(shelf).stem)
     keys["factors"] = {SHELF: {"file": Path(shelf).name}, **(keys.get("factors") or {})}
     base = dict(keys.get("base") or {})
@@ -218,7 +250,9 @@ def _of_case(values: Mapping[str, Any]) -> dict[str, Any]:
     """Return the keys of a study with the values of a case file."""
     case, options, beside = checked_case(values)
     given = {name: value for name, value in case.as_dict().items() if name not in case.not_given}
-    keys: dict[str, Any] = {"base": {name: value for name, value in given.items() if value not in (None, "")}}
+    keys: dict[str, Any] = {
+        "base": {name: value for name, value in given.items() if value not in (None, "")}
+    }
     keys |= {option.name: options[option.name] for option in IN_STUDY if option.name in options}
     keys |= {name: beside[name] for name in ("duty", "requirement") if name in beside}
     return keys
@@ -240,11 +274,17 @@ def _overloaded(keys: Mapping[str, Any], safety: str | float) -> dict[str, Any]:
     varied = [name for name in LOADS if name in keys["factors"]]
     if varied:
         remedy = "Give the forces under base, or leave the safety out."
-        raise InputError(f"factors.{varied[0]}", None, "forces under base beside a safety", remedy, "varies")
+        raise InputError(
+            f"factors.{varied[0]}", None, "forces under base beside a safety", remedy, "varies"
+        )
     base = dict(keys["base"])
     for name in LOADS:
         base[name] = factor * finite_number(base.get(name, EXAMPLE[name]), "N", f"base.{name}")
-    left = {name: value for name, value in keys.items() if name not in ("requirement", "pareto", "goals")}
+    left = {
+        name: value
+        for name, value in keys.items()
+        if name not in ("requirement", "pareto", "goals")
+    }
     return left | {"name": f"{keys['name']}-{OVERLOAD}", "base": base}
 
 
@@ -279,7 +319,9 @@ def sizing_of(at_loads: Results | None, overload: Results | None, least: str = "
 
 
 def _by_roller(results: Results, values: np.ndarray) -> list[Any]:
-    """Return a column of cases by roller: the largest number of its conditions, or the first text."""
+    """Return a column of cases by roller: the largest number of its conditions, or the first
+    text.
+    """
     own = results.study.parsed[SHELF].levels
     if SHELF not in results.table:  # a shelf of one roller
         return [pd.Series(values).max() if values.dtype.kind == "f" else values[0]]
@@ -300,11 +342,17 @@ def _answer_rows(results: Results) -> pd.DataFrame:
 
 
 def _with_life(table: pd.DataFrame, results: Results) -> pd.DataFrame:
-    """Return the table with the life of each roller, its ratio to the required life, and the verdict of the answer."""
+    """Return the table with the life of each roller, its ratio to the required life, and the
+    verdict of the answer.
+    """
     rows = _answer_rows(results).reindex(table.index)
-    name = next(name for name in (DEFAULT, "roller_life_hours") if name in results.config.requirement)
+    name = next(
+        name for name in (DEFAULT, "roller_life_hours") if name in results.config.requirement
+    )
     required = results.config.requirement[name].least
-    table = table.assign(life_hours=rows["low"], life_ratio=rows["low"] / required, ends=rows["ends"])
+    table = table.assign(
+        life_hours=rows["low"], life_ratio=rows["low"] / required, ends=rows["ends"]
+    )
     words = {"met": VERDICTS[0], "open": VERDICTS[1]}
     table["verdict"] = [words.get(str(state), VERDICTS[2]) for state in rows["state"]]
     why = []
@@ -322,9 +370,11 @@ def _with_life(table: pd.DataFrame, results: Results) -> pd.DataFrame:
 
 
 def _without_unknown_lives(table: pd.DataFrame, results: Results) -> pd.DataFrame:
-    """Return the table with open verdicts where no life is known at the failure probability that is asked for.
+    """Return the table with open verdicts where no life is known at the failure probability that is
+    asked for.
 
-    Without scatter the S-N curve of a material gives the median life alone, which answers another question.
+    Without scatter the S-N curve of a material gives the median life alone, which answers another
+    question.
     """
     chance = float(results.data.attrs.get("failure_probability", 0.5))
     answer = results.answer
@@ -335,11 +385,16 @@ def _without_unknown_lives(table: pd.DataFrame, results: Results) -> pd.DataFram
     lacking = np.array(_by_roller(results, results.without_fatigue.astype(float))) > 0
     lacking |= table["ends"].str.endswith("not known").to_numpy()
     unknown = (lacking & (table["verdict"] != VERDICTS[2]).to_numpy()) | by_median
-    used = dict.fromkeys(name for body in BODIES for name in np.unique(results.material(body)).tolist())
+    used = dict.fromkeys(
+        name for body in BODIES for name in np.unique(results.material(body)).tolist()
+    )
     known = [results.study.materials.material(name) for name in used]
-    bare = [one.name for one in known if one.scatter_in_cycles is None and one.scatter_in_stress is None]
+    bare = [
+        one.name for one in known if one.scatter_in_cycles is None and one.scatter_in_stress is None
+    ]
     text = (
-        f"open: the life at {100 * chance:g} % failures is not known, because the database has no scatter of "
+        f"open: the life at {100 * chance:g} % failures is not known, because the database has no "
+        "scatter of "
         f"{' and '.join(bare)}. Give scatter_in_cycles with the material, or leave the failures out"
     )
     table = table.copy()
@@ -354,7 +409,9 @@ def _with_overload(table: pd.DataFrame, results: Results) -> pd.DataFrame:
     """Return the table with what becomes of each roller at the forces times the safety."""
     rows = _answer_rows(results).reindex(table.index)
     found = []
-    for holds, judged, of, exceeded in rows[["holds", "judged", "of", "exceeded"]].itertuples(index=False):
+    for holds, judged, of, exceeded in rows[["holds", "judged", "of", "exceeded"]].itertuples(
+        index=False
+    ):
         if exceeded:  # by a second model too, such as a catalogue
             found.append(str(exceeded))
         elif holds == of:
@@ -373,8 +430,12 @@ def _with_overload(table: pd.DataFrame, results: Results) -> pd.DataFrame:
     return table.assign(excluded_by=["; ".join(filter(None, pair)) for pair in both])
 
 
-def _ranked(table: pd.DataFrame, least: str, at_loads: Results | None, overload: Results | None) -> Sizing:
-    """Return the sizing with its rollers in order: by verdict, by what is to be least, then the longer life."""
+def _ranked(
+    table: pd.DataFrame, least: str, at_loads: Results | None, overload: Results | None
+) -> Sizing:
+    """Return the sizing with its rollers in order: by verdict, by what is to be least, then the
+    longer life.
+    """
     place = [VERDICTS.index(word) for word in table["verdict"]]
     wanted = np.zeros(len(table))
     unranked: tuple[str, ...] = ()

@@ -15,7 +15,14 @@ import xarray as xr
 
 from trackroller.damage.pair import first_failure
 from trackroller.methods import Design
-from trackroller.parameters import BODIES, EXACTNESS, FIRST_TO_FAIL, PARAMETERS, ROLE_OF, expressions
+from trackroller.parameters import (
+    BODIES,
+    EXACTNESS,
+    FIRST_TO_FAIL,
+    PARAMETERS,
+    ROLE_OF,
+    expressions,
+)
 from trackroller.results import groups
 from trackroller.results.columns import base_values, case_columns, codes, factor_names
 from trackroller.results.constraints import Column, meeting, quantity_of
@@ -31,14 +38,16 @@ from trackroller.study.outputs import Output, case_dims, flat, of_fatigue, of_fi
 
 Made = TypeVar("Made")
 SAME_ENDS = 1e-6  # relative difference of the two ends of a life below which it is one number
-OUTSIDE = ("half_space", "yield", "static", "conformal", "steep_friction")  # flags of designs outside the model
+# flags of designs outside the model
+OUTSIDE = ("half_space", "yield", "static", "conformal", "steep_friction")
 
 
 @dataclass(frozen=True, eq=False)
 class SolvedCases:
     """The solved cases of a study: their data, one row a case, and which of them are valid.
 
-    Every analysis takes them. A user holds `trackroller.results.results.Results`, which adds the analyses.
+    Every analysis takes them. A user holds `trackroller.results.results.Results`, which adds the
+    analyses.
 
     Parameters
     ----------
@@ -49,11 +58,11 @@ class SolvedCases:
     data : xarray.Dataset
         The results, over the factors of a grid or along `case`, with every input as a coordinate.
     known_indices : xarray.Dataset, optional
-        Sensitivity indices that were computed before. A data set without variables stands for a study that has none.
-        By default they are computed when they are needed.
+        Sensitivity indices that were computed before. A data set without variables stands for a
+        study that has none. By default they are computed when they are needed.
     materials_file : Path, optional
-        Materials file of the study as its folder keeps it, with the fits of its materials beside it. By default the
-        user's.
+        Materials file of the study as its folder keeps it, with the fits of its materials beside
+        it. By default the user's.
     """
 
     study: Study
@@ -79,20 +88,24 @@ class SolvedCases:
 
     @cached_property
     def made(self) -> dict[Any, Any]:
-        """Return what functions with `made_once` made of these cases, by the function and its further arguments."""
+        """Return what functions with `made_once` made of these cases, by the function and its
+        further arguments.
+        """
         return {}
 
     @cached_property
     def dims(self) -> tuple[str, ...]:
-        """Return the dimensions that count cases: `case`, or the factors of a grid in the order of the study file."""
+        """Return the dimensions that count cases: `case`, or the factors of a grid in the order of
+        the study file.
+        """
         return case_dims(self.data, self.study.factors)
 
     @cached_property
     def table(self) -> pd.DataFrame:
         """Return one row a case: factors, inputs that vary, and results.
 
-        Results by contact and body have the suffixes `_1`, `_2`, `_roller`, `_guide`; a body counts at its worse
-        contact.
+        Results by contact and body have the suffixes `_1`, `_2`, `_roller`, `_guide`; a body counts
+        at its worse contact.
         """
         own = {name: flat(self.data, name, self.dims) for name in self.config.own}
         return pd.DataFrame(case_columns(self.data, self.dims) | own)
@@ -104,36 +117,55 @@ class SolvedCases:
 
     @cached_property
     def roles(self) -> dict[str, str]:
-        """Return the role of each factor that varies: `choice` of the designer, or `condition` of the use.
+        """Return the role of each factor that varies: `choice` of the designer, or `condition` of
+        the use.
 
-        A label of its own for each row of several designs, such as the number of a drawing, has no role.
+        A label of its own for each row of several designs, such as the number of a drawing, has no
+        role.
         """
         given = self.config.roles
         roles = roles_of(self.factors, self.study.parsed, given, self.config.method.name)
         labels = [n for n in self.labels if n not in given]
-        known = {role: [n for n in roles if n not in labels and roles[n] == role] for role in ("choice", "condition")}
+        known = {
+            role: [n for n in roles if n not in labels and roles[n] == role]
+            for role in ("choice", "condition")
+        }
         of_label = {n: _role_of_label(self.table, n, known) for n in labels}
         return {n: role for n in roles if (role := of_label.get(n, roles[n]))}
 
     @cached_property
     def labels(self) -> tuple[str, ...]:
-        """Return the columns of a table that change no case: they are no parameter, and no expression uses them."""
+        """Return the columns of a table that change no case: they are no parameter, and no
+        expression uses them.
+        """
         if not self.config.method.observed:
             return ()
         texts = [own.text for own in self.study.parsed.values() if own.text]
         used = {name for text in texts for name in expressions.names(text, "factors")}
-        return tuple(n for n in self.factors if n not in ROLE_OF and n not in OPTION_FACTORS and n not in used)
+        return tuple(
+            n
+            for n in self.factors
+            if n not in ROLE_OF and n not in OPTION_FACTORS and n not in used
+        )
 
     @cached_property
     def goods(self) -> tuple[str, ...]:
-        """Return the columns of the user's own in the shelves of the study, such as the price of a roller."""
-        return tuple(n for n in self.study.columns_of_shelves if n not in CASE_FIELDS and n in self.table)
+        """Return the columns of the user's own in the shelves of the study, such as the price of a
+        roller.
+        """
+        return tuple(
+            n for n in self.study.columns_of_shelves if n not in CASE_FIELDS and n in self.table
+        )
 
     @cached_property
     def grid(self) -> bool:
         """Return whether every combination of levels is there."""
         names, rows = self.factors, len(self.table)
-        full = int(np.prod([self.table[f].nunique(dropna=False) for f in names], dtype=float)) if names else 1
+        full = (
+            int(np.prod([self.table[f].nunique(dropna=False) for f in names], dtype=float))
+            if names
+            else 1
+        )
         return full == rows and not (len(names) == 1 and self.dims == ("case",) and rows > 60)
 
     @cached_property
@@ -157,24 +189,33 @@ class SolvedCases:
 
     @cached_property
     def flags(self) -> tuple[str, ...]:
-        """Return the names of the validity flags in the order of the bits of the columns `validity`."""
+        """Return the names of the validity flags in the order of the bits of the columns
+        `validity`.
+        """
         known = "validity" in self.data
-        return tuple(str(self.data["validity"].attrs.get("flag_meanings", "")).split()) if known else ()
+        return (
+            tuple(str(self.data["validity"].attrs.get("flag_meanings", "")).split())
+            if known
+            else ()
+        )
 
     @cached_property
     def limits(self) -> tuple[str, ...]:
         """Return the names of the limits by their numbers in the columns `limiting_mechanism_`."""
         known = "limiting_mechanism" in self.data
-        return tuple(self.data["limiting_mechanism"].attrs["flag_meanings"].split()) if known else ()
+        return (
+            tuple(self.data["limiting_mechanism"].attrs["flag_meanings"].split()) if known else ()
+        )
 
     @cached_property
     def goals(self) -> dict[str, str]:
         """Return the goals of the key `pareto`, each `min` or `max`, otherwise the usual ones.
 
-        A single goal ranks what meets the requirement, see `trackroller.results.decide`; it has no front.
+        A single goal ranks what meets the requirement, see `trackroller.results.decide`; it has no
+        front.
 
-        The usual goals are the longest life of the pair, and the lowest friction power, friction energy or contact
-        pressure. The mapping is empty if the study lacks one of the two.
+        The usual goals are the longest life of the pair, and the lowest friction power, friction
+        energy or contact pressure. The mapping is empty if the study lacks one of the two.
         """
         given = dict(self.config.pareto)
         if len(given) > 1:
@@ -182,7 +223,9 @@ class SolvedCases:
         return _usual_goals(self.data)
 
     def quantity(self, name: str) -> Column:
-        """Return values (n,), units and words of a factor, parameter or output; see `constraints.quantity_of`."""
+        """Return values (n,), units and words of a factor, parameter or output; see
+        `constraints.quantity_of`.
+        """
         return quantity_of(self.data, self.dims, name, self.config.base, self.design.columns)
 
     def levels(self, name: str) -> list[Any]:
@@ -211,18 +254,27 @@ class SolvedCases:
 
     @cached_property
     def categories(self) -> tuple[str, ...]:
-        """Return the factors without an order; every pooled statement must hold within each of their levels."""
-        return tuple(f for f in self.factors if not self.ordered(f) and len(self.levels(f)) <= groups.MOST_LEVELS)
+        """Return the factors without an order; every pooled statement must hold within each of
+        their levels.
+        """
+        return tuple(
+            f
+            for f in self.factors
+            if not self.ordered(f) and len(self.levels(f)) <= groups.MOST_LEVELS
+        )
 
     def behind(self, name: str) -> tuple[str, ...]:
         """Return the factors that decide a parameter.
 
-        These are the parameter itself or the factors that it is computed from. A fixed parameter has no such factor.
+        These are the parameter itself or the factors that it is computed from. A fixed parameter
+        has no such factor.
         """
         return (name,) if name in self.factors else self.derived.get(name, ())
 
     def of_one_model(self, rows: np.ndarray | None = None) -> np.ndarray:
-        """Return some rows, or all, without those of another level of an option than `held_level`, shape (n,) bool."""
+        """Return some rows, or all, without those of another level of an option than `held_level`,
+        shape (n,) bool.
+        """
         kept = np.ones(len(self.table), dtype=bool) if rows is None else rows.copy()
         for option in (n for n in self.factors if n in OPTION_FACTORS):
             kept &= (self.table[option] == self.held_level(option)).to_numpy()
@@ -231,8 +283,8 @@ class SolvedCases:
     def held_level(self, name: str) -> Any:
         """Return the level at which a factor is held.
 
-        It is the level of the base case, or the middle level if the base case has none. Contact models are held at the
-        most exact model.
+        It is the level of the base case, or the middle level if the base case has none. Contact
+        models are held at the most exact model.
         """
         levels = self.levels(name)
         if name == "contact_model":
@@ -243,9 +295,11 @@ class SolvedCases:
         return levels[len(levels) // 2] if self.numeric(name) else levels[0]
 
     def hold(self, shown: tuple[str, ...]) -> tuple[pd.DataFrame, dict[str, Any]]:
-        """Return the rows with every factor outside `shown` at its held level, and these levels by factor.
+        """Return the rows with every factor outside `shown` at its held level, and these levels by
+        factor.
 
-        A sampled study has no such rows: there only the options of the calculation are held, such as the contact model.
+        A sampled study has no such rows: there only the options of the calculation are held, such
+        as the contact model.
         """
         names = self.factors if self.grid else [f for f in self.factors if f in OPTION_FACTORS]
         held = {f: self.held_level(f) for f in names if f not in shown}
@@ -256,10 +310,12 @@ class SolvedCases:
 
     @cached_property
     def life(self) -> tuple[str, str, str] | None:
-        """Return the column, wording and unit of the life to show, or None when the study has no life.
+        """Return the column, wording and unit of the life to show, or None when the study has no
+        life.
 
-        It is the life to the first limit if the study asks for limits. Otherwise it is the life of the pair where the
-        hours of the guide are known in a case, and that of the roller where they are not.
+        It is the life to the first limit if the study asks for limits. Otherwise it is the life of
+        the pair where the hours of the guide are known in a case, and that of the roller where they
+        are not.
         """
         if self.without_chance:
             return None
@@ -279,7 +335,9 @@ class SolvedCases:
 
     @property
     def fatigue_lives(self) -> tuple[tuple[str, str, str], ...]:
-        """Return columns, wordings and units of lives by the S-N curve; the pair needs the hours of the guide."""
+        """Return columns, wordings and units of lives by the S-N curve; the pair needs the hours of
+        the guide.
+        """
         return LIVES[0 if self.knows("guide_life_hours") else 1 :]
 
     @cached_property
@@ -299,7 +357,12 @@ class SolvedCases:
     def material(self, body: str) -> np.ndarray:
         """Return the name of the material of a body in every case, shape (n,)."""
         if "material_pair" in self.table:
-            return self.table["material_pair"].str.split(" / ").str[BODIES.index(body)].to_numpy(dtype=str)
+            return (
+                self.table["material_pair"]
+                .str.split(" / ")
+                .str[BODIES.index(body)]
+                .to_numpy(dtype=str)
+            )
         name = f"{body}_material"
         given = self.table.get(name, pd.Series(str(self.base.get(name, "")), self.table.index))
         return given.to_numpy(dtype=str)
@@ -307,7 +370,8 @@ class SolvedCases:
     def flagged(self, flag: str, body: str = "") -> np.ndarray:
         """Mark the cases that carry a validity flag, shape (n,).
 
-        With `body` only where it holds for this body. No case carries a flag that the data set does not know.
+        With `body` only where it holds for this body. No case carries a flag that the data set does
+        not know.
         """
         if flag not in self.flags:
             return np.zeros(len(self.table), dtype=bool)
@@ -327,43 +391,63 @@ class SolvedCases:
 
     @cached_property
     def inside(self) -> np.ndarray:
-        """Return the cases that roll, converged, and carry no flag of a design outside the model, shape (n,)."""
+        """Return the cases that roll, converged, and carry no flag of a design outside the model,
+        shape (n,).
+        """
         return np.asarray(self.rolling & ~np.any([self.flagged(flag) for flag in OUTSIDE], axis=0))
 
     @cached_property
     def allowed(self) -> np.ndarray | None:
-        """Return the cases that meet the constraints of the study, shape (n,); None without constraints."""
+        """Return the cases that meet the constraints of the study, shape (n,); None without
+        constraints.
+        """
         texts = self.config.constraints
         if not texts:
             return None
-        values = {name: self.constrained(name) for name in sorted({name for text in texts for name in names_in(text)})}
+        values = {
+            name: self.constrained(name)
+            for name in sorted({name for text in texts for name in names_in(text)})
+        }
         rows = int(np.prod([self.data.sizes[d] for d in self.dims]))
         return np.asarray(np.all(list(meeting(texts, values, rows).values()), axis=0))
 
     def constrained(self, name: str) -> np.ndarray:
-        """Return the values of a quantity that a constraint compares, shape (n,): of a life in a range the low end."""
-        return self.quantity(name)[0] if name != FIRST_LIMIT[0] or name not in self.data else self.sure_life
+        """Return the values of a quantity that a constraint compares, shape (n,): of a life in a
+        range the low end.
+        """
+        return (
+            self.quantity(name)[0]
+            if name != FIRST_LIMIT[0] or name not in self.data
+            else self.sure_life
+        )
 
     @cached_property
     def counted(self) -> np.ndarray:
-        """Return the cases that roll, converged, and meet the constraints of the study, shape (n,)."""
+        """Return the cases that roll, converged, and meet the constraints of the study, shape
+        (n,).
+        """
         return self.rolling if self.allowed is None else self.rolling & self.allowed
 
     @cached_property
     def without_fatigue(self) -> np.ndarray:
-        """Return the cases without a life by fatigue that other materials have for the same body, shape (n,).
+        """Return the cases without a life by fatigue that other materials have for the same body,
+        shape (n,).
 
-        Their life to the first limit is one by fewer limits, and compares with no other. At a failure probability
-        other than 0.5 no life by fatigue of a material without scatter is known.
+        Their life to the first limit is one by fewer limits, and compares with no other. At a
+        failure probability other than 0.5 no life by fatigue of a material without scatter is
+        known.
         """
         out = np.zeros(len(self.table), dtype=bool)
         if FIRST_LIMIT[0] not in self.table or "fatigue" not in self.data["limit"].values:
             return out
-        known = ~np.isnan(flat(self.data.sel(limit="fatigue"), "life_hours_by_limit", self.dims))  # (n, body)
+        # (n, body)
+        known = ~np.isnan(flat(self.data.sel(limit="fatigue"), "life_hours_by_limit", self.dims))
         for i, body in enumerate(BODIES):
             of, rows = self.material(body), self.inside
             if known[rows, i].any():
-                never = [name for name in np.unique(of[rows]) if not known[rows & (of == name), i].any()]
+                never = [
+                    name for name in np.unique(of[rows]) if not known[rows & (of == name), i].any()
+                ]
                 out |= rows & np.isin(of, never)
         return out
 
@@ -376,19 +460,27 @@ class SolvedCases:
         return np.asarray(self.inside & self.counted & ~self.without_fatigue)
 
     def limits_in(self, state: str) -> dict[str, np.ndarray]:
-        """Return the cases in which each limit of the verdict is `exceeded` or `open`, shape (n,) by limit.
+        """Return the cases in which each limit of the verdict is `exceeded` or `open`, shape (n,)
+        by limit.
 
         Limits that are second models of an end which another limit has are left out.
         """
         if "limit_state" not in self.data:
             return {}
         words = str(self.data["limit_state"].attrs["flag_meanings"]).split()
-        hit = (flat(self.data, "limit_state", self.dims) == words.index(state)).any(axis=2)  # of (n, limit, body)
-        return {name: hit[:, i] for i, name in enumerate(self.data["limit"].values.tolist()) if name not in BESIDE}
+        # of (n, limit, body)
+        hit = (flat(self.data, "limit_state", self.dims) == words.index(state)).any(axis=2)
+        return {
+            name: hit[:, i]
+            for i, name in enumerate(self.data["limit"].values.tolist())
+            if name not in BESIDE
+        }
 
     def any_limit_in(self, state: str) -> np.ndarray:
         """Return the cases in which any of these limits is `exceeded` or `open`, shape (n,)."""
-        return np.asarray(np.any([np.zeros(len(self.table), dtype=bool), *self.limits_in(state).values()], axis=0))
+        return np.asarray(
+            np.any([np.zeros(len(self.table), dtype=bool), *self.limits_in(state).values()], axis=0)
+        )
 
     @cached_property
     def held(self) -> np.ndarray:
@@ -396,7 +488,8 @@ class SolvedCases:
         return np.asarray(self.valid & ~self.any_limit_in("exceeded"))
 
     def meets(self, target: str) -> np.ndarray:
-        """Return the cases that meet a target of the study, shape (n,), whether they are valid or not.
+        """Return the cases that meet a target of the study, shape (n,), whether they are valid or
+        not.
 
         A life that is a range has to meet it with its low end.
         """
@@ -406,33 +499,44 @@ class SolvedCases:
 
     @cached_property
     def judged_targets(self) -> dict[str, np.ndarray]:
-        """Return the life that judges a target on the life of a pair or a roller, shape (n,) each [h].
+        """Return the life that judges a target on the life of a pair or a roller, shape (n,) each
+        [h].
 
-        It is the low end of the life to the first limit, as in the verdict: a longer life by one limit is of no use if
-        another limit comes first. Other targets are judged by the result that they name, and so are all of a study
-        without the life to the first limit.
+        It is the low end of the life to the first limit, as in the verdict: a longer life by one
+        limit is of no use if another limit comes first. Other targets are judged by the result that
+        they name, and so are all of a study without the life to the first limit.
         """
         if self.life != FIRST_LIMIT and not self.without_chance:
             return {}
-        named = [n for n, ends in self.config.requirement.items() if n in OF_PAIR and ends.only_least]
+        named = [
+            n for n, ends in self.config.requirement.items() if n in OF_PAIR and ends.only_least
+        ]
         return dict.fromkeys(named, self.sure_life)
 
     @cached_property
     def sure_life(self) -> np.ndarray:
-        """Return the low end of the life to the first limit, shape (n,) [h]; the life itself where it has no range."""
+        """Return the low end of the life to the first limit, shape (n,) [h]; the life itself where
+        it has no range.
+        """
         name = FIRST_LIMIT[0]
         value = self.column(name)
         low = self.quantity(f"{name}_low")[0].astype(float) if f"{name}_low" in self.data else value
         return np.where(np.isnan(low), value, low)
 
     def ended_by_fatigue(self, body: str = "roller") -> np.ndarray:
-        """Return the cases in which fatigue is the first limit of a body, shape (n,), so that its material scatters."""
+        """Return the cases in which fatigue is the first limit of a body, shape (n,), so that its
+        material scatters.
+        """
         name = f"limiting_mechanism_{body}"
-        return np.asarray(self.column(name) == self.limits.index("fatigue") if name in self.table else True)
+        return np.asarray(
+            self.column(name) == self.limits.index("fatigue") if name in self.table else True
+        )
 
     @cached_property
     def ranged(self) -> bool:
-        """Return whether a life to the first limit of a valid case is a range, by placeholders or bounds of wear."""
+        """Return whether a life to the first limit of a valid case is a range, by placeholders or
+        bounds of wear.
+        """
         ends = [f"{FIRST_LIMIT[0]}{end}" for end in ("_low", "_high")]
         if self.life != FIRST_LIMIT or not all(end in self.data for end in ends):
             return False
@@ -440,7 +544,8 @@ class SolvedCases:
         return bool((self.valid & (high > low * (1 + SAME_ENDS))).any())
 
     def first_failing(self, goal: str) -> np.ndarray:
-        """Return the number in `FIRST_TO_FAIL` of the body that fails first in every case, shape (n,).
+        """Return the number in `FIRST_TO_FAIL` of the body that fails first in every case, shape
+        (n,).
 
         Parameters
         ----------
@@ -453,8 +558,9 @@ class SolvedCases:
     def with_breaks(self, column: Output) -> np.ndarray:
         """Return the values of an output, shape (n,), with 0 for a life that does not hold.
 
-        A fatigue life of a body above its tensile strength, of which the results state no life, and the life of a case
-        that exceeds a limit. A statistic over the cases must not leave out those that fail at once.
+        A fatigue life of a body above its tensile strength, of which the results state no life, and
+        the life of a case that exceeds a limit. A statistic over the cases must not leave out those
+        that fail at once.
         """
         if of_first_limit(column.name):
             return np.where(self.valid & ~self.held, 0.0, column.values)
@@ -473,7 +579,8 @@ class SolvedCases:
 
 
 def made_once(function: Callable[..., Made]) -> Callable[..., Made]:
-    """Keep what a function makes of solved cases beside them, because a page asks for it several times.
+    """Keep what a function makes of solved cases beside them, because a page asks for it several
+    times.
 
     Parameters
     ----------
@@ -493,10 +600,12 @@ def made_once(function: Callable[..., Made]) -> Callable[..., Made]:
 
 
 def _role_of_label(table: pd.DataFrame, label: str, known: Mapping[str, list[str]]) -> str:
-    """Return the role of a column of a table that changes no case; '' for the number of each row of several designs.
+    """Return the role of a column of a table that changes no case; '' for the number of each row of
+    several designs.
 
-    It names conditions, such as the block of a measured load, if all rows are of one design, or if rows of the same
-    conditions share their label and rows of the same design do not. Otherwise it names designs.
+    It names conditions, such as the block of a measured load, if all rows are of one design, or if
+    rows of the same conditions share their label and rows of the same design do not. Otherwise it
+    names designs.
 
     Parameters
     ----------
@@ -507,12 +616,16 @@ def _role_of_label(table: pd.DataFrame, label: str, known: Mapping[str, list[str
     places = {role: codes(table, names) for role, names in known.items()}
     if table[label].nunique() == len(table):
         return "condition" if not places["choice"].any() else ""
-    decides = {role: table.groupby(place)[label].nunique().max() == 1 for role, place in places.items()}
+    decides = {
+        role: table.groupby(place)[label].nunique().max() == 1 for role, place in places.items()
+    }
     return "condition" if decides["condition"] and not decides["choice"] else "choice"
 
 
 def _usual_goals(ds: xr.Dataset) -> dict[str, str]:
-    """Return the longest life and the lowest friction or pressure, each `max` or `min`; empty if one is missing."""
+    """Return the longest life and the lowest friction or pressure, each `max` or `min`; empty if
+    one is missing.
+    """
     goals: dict[str, str] = {}
     known = "guide_life_hours" in ds and not bool(ds["guide_life_hours"].isnull().all())
     # of the pair where the guide's hours are known

@@ -36,8 +36,8 @@ def run(
     progress : bool
         Whether to show a progress bar.
     results : path, optional
-        Parent of a folder that keeps every solved case, as `trackroller run` does: a run that was interrupted goes on
-        there. By default nothing is written.
+        Parent of a folder that keeps every solved case, as `trackroller run` does: a run that was
+        interrupted goes on there. By default nothing is written.
 
     Returns
     -------
@@ -54,8 +54,10 @@ def run(
     Examples
     --------
     >>> import trackroller as tr
-    >>> factors = {"friction_coefficient": {"values": [0.1, 0.2]}, "roller_profile_radius": {"values": [-7, -8]}}
-    >>> solved = tr.run({"name": "groove", "factors": factors, "contact_model": "sliding"}, progress=False)
+    >>> factors = {"friction_coefficient": {"values": [0.1, 0.2]}}
+    >>> factors |= {"roller_profile_radius": {"values": [-7, -8]}}
+    >>> study = {"name": "groove", "factors": factors, "contact_model": "sliding"}
+    >>> solved = tr.run(study, progress=False)
     >>> float(solved.best(1)["roller_profile_radius"].iloc[0])
     -7.0
     """
@@ -67,7 +69,9 @@ def run(
         # the cases of a study that decides follow from stored results
         with tempfile.TemporaryDirectory() if results is None else nullcontext(results) as place:
             solved = open_study(run_any(checked, place, **shown).folder.root)
-            return solved if results is not None else dataclasses.replace(solved, materials_file=None)
+            return (
+                solved if results is not None else dataclasses.replace(solved, materials_file=None)
+            )
 
 
 def run_any(study: Study, results: Path | str = "results", **how: Any) -> Ledger:
@@ -78,7 +82,8 @@ def run_any(study: Study, results: Path | str = "results", **how: Any) -> Ledger
     if study.config.until is not None:
         from trackroller.results.growing import grow_study as run  # heavy: scipy.stats, as below
     elif study.decides:
-        from trackroller.results.optimum import search_designs as run  # heavy: no job of a workflow needs it
+        # heavy: no job of a workflow needs it
+        from trackroller.results.optimum import search_designs as run
     else:
         run = run_study
     return run(study, results, **how)

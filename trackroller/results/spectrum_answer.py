@@ -1,9 +1,11 @@
-"""The record of a load spectrum: its first limit with its life, every limit of both bodies, and the blocks.
+"""The record of a load spectrum: its first limit with its life, every limit of both bodies, and the
+blocks.
 
-Keys of `Answer.headline`: `low`, `high` [h], `km_low`, `km_high` [km], `ends` (words of the limits that may come
-first), `body`, `extrapolated`, `guessed`, `block` (with the largest part of the damage of the first limit), `share`
-(this part [1]), `unknown` (bodies whose life is not known), `broken` and `exceeded` (lists of {limit, body, use [1],
-hours, blocks}), `open` (list of {limit, body}), `not_judged` and `why` (reasons).
+Keys of `Answer.headline`: `low`, `high` [h], `km_low`, `km_high` [km], `ends` (words of the limits
+that may come first), `body`, `extrapolated`, `guessed`, `block` (with the largest part of the
+damage of the first limit), `share` (this part [1]), `unknown` (bodies whose life is not known),
+`broken` and `exceeded` (lists of {limit, body, use [1], hours, blocks}), `open` (list of {limit,
+body}), `not_judged` and `why` (reasons).
 """
 
 from __future__ import annotations
@@ -45,18 +47,47 @@ COLUMNS = (
         "state",
         "Verdict",
         "",
-        "kept: below 100 % in every block; exceeded: above it in a block; not known: a block has no result",
+        "kept: below 100 % in every block; exceeded: above it in a block; not known: a block has "
+        "no result",
         "state",
     ),
     Column("used_low", "Used", "1", "use of the worst block", "share", "used_high", "use"),
-    Column("low", "Life", "h", "hours of travel to the limit, at both ends of the placeholders", "life", "high", "bar"),
+    Column(
+        "low",
+        "Life",
+        "h",
+        "hours of travel to the limit, at both ends of the placeholders",
+        "life",
+        "high",
+        "bar",
+    ),
     Column("km_low", "Travel", "km", "the same life as travel", until="km_high"),
     Column("shifts_low", "Shifts", "1", "the same life in shifts", until="shifts_high"),
-    Column("block", "Block", "", "block with the largest part of the damage, or with the largest use", "text"),
-    Column("share", "Its part", "1", "part of the damage that this block does", "share", role="file"),
+    Column(
+        "block",
+        "Block",
+        "",
+        "block with the largest part of the damage, or with the largest use",
+        "text",
+    ),
+    Column(
+        "share", "Its part", "1", "part of the damage that this block does", "share", role="file"
+    ),
     Column("contact", "Contact", "", "contact whose track takes most damage by fatigue", "count"),
-    Column("extrapolated", "Extrapolated", "", "whether the life lies beyond the data of its rule", "text"),
-    Column("guessed", "Placeholder", "", "whether the limit rests on values that nobody has measured", "text"),
+    Column(
+        "extrapolated",
+        "Extrapolated",
+        "",
+        "whether the life lies beyond the data of its rule",
+        "text",
+    ),
+    Column(
+        "guessed",
+        "Placeholder",
+        "",
+        "whether the limit rests on values that nobody has measured",
+        "text",
+    ),
     Column("model", "Model", "", "second model of an end that another limit has", "text"),
     Column("blocks", "Exceeded in", "", "blocks in which the limit is exceeded or open", "text"),
     Column("name", "Name", "", "name of the limit in data sets", "text", role="file"),
@@ -67,7 +98,12 @@ OF_LIVES = (
     Column("hours", "Life", "h", "hours of travel by fatigue", "life"),
     Column("km", "Travel", "km", "the same life as travel"),
     Column("shifts", "Shifts", "1", "the same life in shifts"),
-    Column("at_most", "At most", "h", "bound by the blocks whose damage is known, where that of others is not"),
+    Column(
+        "at_most",
+        "At most",
+        "h",
+        "bound by the blocks whose damage is known, where that of others is not",
+    ),
     Column("contact", "Contact", "", "contact whose track fails first", "count"),
     Column("why", "Remark", "", "why a life is not known", "text"),
 )
@@ -108,7 +144,8 @@ def answer_of_spectrum(ds: xr.Dataset) -> Answer:
 
 
 def known_damage(ds: xr.Dataset, body: str) -> tuple[int, np.ndarray]:
-    """Return the contact whose track takes more damage in the blocks with known damage, and the damage of each block.
+    """Return the contact whose track takes more damage in the blocks with known damage, and the
+    damage of each block.
 
     The damage has the shape (blocks,), NaN where it is not known.
     """
@@ -123,9 +160,19 @@ def _by_share(ds: xr.Dataset) -> bool:
 
 
 def _margins(ds: xr.Dataset) -> list[Margin]:
-    """Return the limits of both bodies in the order in which they are reached; without limits fatigue alone."""
+    """Return the limits of both bodies in the order in which they are reached; without limits
+    fatigue alone.
+    """
     found = [*_of_limits(ds), *_of_pressure(ds)]
-    return sorted(found, key=lambda one: (one.state != "exceeded", one.reached, one.beside, -np.nan_to_num(one.used)))
+    return sorted(
+        found,
+        key=lambda one: (
+            one.state != "exceeded",
+            one.reached,
+            one.beside,
+            -np.nan_to_num(one.used),
+        ),
+    )
 
 
 def _of_limits(ds: xr.Dataset) -> Iterator[Margin]:
@@ -141,7 +188,9 @@ def _of_limits(ds: xr.Dataset) -> Iterator[Margin]:
             state = STATES[int(own["limit_state"])]
             if state == "unknown":
                 continue
-            unsolved = (own["limit_state_of_block"].values == STATES.index("unknown")) & (ds["distance"].values > 0)
+            unsolved = (own["limit_state_of_block"].values == STATES.index("unknown")) & (
+                ds["distance"].values > 0
+            )
             if state == "kept" and unsolved.any():
                 state = "unknown"
             used = float(own["utilisation"])
@@ -174,7 +223,9 @@ def _by_fatigue_alone(ds: xr.Dataset, body: str) -> Margin:
     limit = LIMITS["fatigue"]
     beyond = _beyond(ds, body, float(ds[f"{body}_life_shifts"]))
     state = "unknown" if math.isnan(hours) else "kept"
-    margin = Margin("fatigue", limit.word, limit.title, body, state=state, timed=True, beyond=beyond)
+    margin = Margin(
+        "fatigue", limit.word, limit.title, body, state=state, timed=True, beyond=beyond
+    )
     return replace(margin, hours=hours, low=hours, high=hours)
 
 
@@ -195,7 +246,9 @@ def _yields(ds: xr.Dataset, body: str) -> np.ndarray:
 
 
 def _beyond(ds: xr.Dataset, body: str, shifts: float) -> bool:
-    """Return whether a body lasts more overrollings than its fatigue limit or the S-N data reach."""
+    """Return whether a body lasts more overrollings than its fatigue limit or the S-N data
+    reach.
+    """
     material = json.loads(str(ds.attrs.get("materials", "{}"))).get(f"{body}_material", {})
     cycles = shifts * float(ds["overrollings"].sel(body=body).sum())
     return bool(past_data(cycles, float(material.get("cycles_at_fatigue_limit", np.inf))))
@@ -210,7 +263,9 @@ def _kind(own: list[Margin], first: First | None, lives: pd.DataFrame) -> str:
     return "unlimited" if math.isinf(first.low) else "lasts"
 
 
-def _headline(ds: xr.Dataset, own: list[Margin], first: First | None, lives: pd.DataFrame) -> dict[str, Any]:
+def _headline(
+    ds: xr.Dataset, own: list[Margin], first: First | None, lives: pd.DataFrame
+) -> dict[str, Any]:
     """Return the numbers and names of the headline."""
     over = [one for one in own if one.state == "exceeded" and not one.breaks]
     reasons = _reasons(ds)
@@ -225,17 +280,28 @@ def _headline(ds: xr.Dataset, own: list[Margin], first: First | None, lives: pd.
         "guessed": False,
         "block": "",
         "share": math.nan,
-        "unknown": [body for body in BODIES if not any(one.ends and one.body == body for one in own)],
+        "unknown": [
+            body for body in BODIES if not any(one.ends and one.body == body for one in own)
+        ],
         "broken": [_use(ds, one) for one in own if one.breaks],
         "exceeded": [_use(ds, one) for one in over],
-        "open": [{"limit": one.word, "body": one.body} for one in own if one.state == "open" and not one.beside],
+        "open": [
+            {"limit": one.word, "body": one.body}
+            for one in own
+            if one.state == "open" and not one.beside
+        ],
         "not_judged": list(reasons),
         "why": [f"{row['body']}: {row['why']}" for row in lives.to_dict("records") if row["why"]],
     }
     if first is None:
         return head
     rate = _km_an_hour(ds)
-    head |= {"low": first.low, "high": first.high, "km_low": first.low * rate, "km_high": first.high * rate}
+    head |= {
+        "low": first.low,
+        "high": first.high,
+        "km_low": first.low * rate,
+        "km_high": first.high * rate,
+    }
     head |= {"ends": list(first.words), "body": first.body, "extrapolated": first.beyond}
     head["guessed"] = any(margin.guessed for margin in first.margins) and first.low < first.high
     block, share = _worst_block(ds, first.margins[0])
@@ -264,7 +330,9 @@ def _blocks_of(ds: xr.Dataset, margin: Margin) -> list[str]:
 
 
 def _worst_block(ds: xr.Dataset, margin: Margin) -> tuple[str, float]:
-    """Return the block that does the largest part of the damage by a limit, and this part [1]; '' if not known."""
+    """Return the block that does the largest part of the damage by a limit, and this part [1]; ''
+    if not known.
+    """
     if "damage_by_limit" in ds and margin.name in ds["limit"].values.tolist():
         damage = ds["damage_by_limit"].sel(limit=margin.name, body=margin.body).values
     elif margin.name == "fatigue":
@@ -280,7 +348,9 @@ def _worst_block(ds: xr.Dataset, margin: Margin) -> tuple[str, float]:
 def _table(ds: xr.Dataset, own: list[Margin]) -> pd.DataFrame:
     """Return one row a limit and body."""
     rows = [_row(ds, margin) for margin in own]
-    return pd.DataFrame(rows, columns=[name for one in COLUMNS for name in (one.name, one.until) if name])
+    return pd.DataFrame(
+        rows, columns=[name for one in COLUMNS for name in (one.name, one.until) if name]
+    )
 
 
 def _row(ds: xr.Dataset, margin: Margin) -> dict[str, Any]:
@@ -304,7 +374,9 @@ def _row(ds: xr.Dataset, margin: Margin) -> dict[str, Any]:
         "shifts_high": high / shift,
         "block": f"{block}, {100 * share:.0f} %" if block else "",
         "share": share,
-        "contact": known_damage(ds, margin.body)[0] if margin.name == "fatigue" and block else math.nan,
+        "contact": known_damage(ds, margin.body)[0]
+        if margin.name == "fatigue" and block
+        else math.nan,
         "extrapolated": "yes" if margin.beyond else "",
         "guessed": "yes" if margin.guessed else "",
         "model": "second" if margin.beside else "",
@@ -314,7 +386,9 @@ def _row(ds: xr.Dataset, margin: Margin) -> dict[str, Any]:
 
 
 def _lives(ds: xr.Dataset) -> pd.DataFrame:
-    """Return the life of each body by fatigue, at each failure probability if its material scatters."""
+    """Return the life of each body by fatigue, at each failure probability if its material
+    scatters.
+    """
     shift = float(ds["duration"].sum())
     km = float(ds["distance"].sum()) / 1e3
     rows = []
@@ -325,16 +399,26 @@ def _lives(ds: xr.Dataset) -> pd.DataFrame:
         if "life_shifts_at_probability" in ds:
             at = ds["life_shifts_at_probability"].sel(body=body)
             if not bool(at.isnull().all()):
-                lives = {float(p): float(at.sel(probability=p).min(skipna=False)) for p in ds["probability"].values}
+                lives = {
+                    float(p): float(at.sel(probability=p).min(skipna=False))
+                    for p in ds["probability"].values
+                }
         for probability, shifts in lives.items():
             lengths = {"hours": shifts * shift, "km": shifts * km, "shifts": shifts}
-            told = {"body": body, "probability": probability, "at_most": at_most, "contact": contact, "why": why}
+            told = {
+                "body": body,
+                "probability": probability,
+                "at_most": at_most,
+                "contact": contact,
+                "why": why,
+            }
             rows.append(told | lengths)
     return pd.DataFrame(rows, columns=[one.name for one in OF_LIVES])
 
 
 def _why_unknown(ds: xr.Dataset, body: str) -> tuple[str, float]:
-    """Return why the life of a body is not known, and the longest life that the other blocks allow [h].
+    """Return why the life of a body is not known, and the longest life that the other blocks allow
+    [h].
 
     The life is NaN where these blocks set no bound.
     """
@@ -342,24 +426,36 @@ def _why_unknown(ds: xr.Dataset, body: str) -> tuple[str, float]:
         return "", math.nan
     damage = known_damage(ds, body)[1]
     unknown = ds["damage"].sel(body=body).isnull().any("contact").values
-    names, regimes = ds["block"].values.astype(str)[unknown], ds["regime"].values.astype(int)[unknown]
+    names, regimes = (
+        ds["block"].values.astype(str)[unknown],
+        ds["regime"].values.astype(int)[unknown],
+    )
     skids = regimes == REGIMES.index("full_slip")
     breaks = np.zeros(len(names), dtype=bool)
     if "validity_body" in ds:
         breaks = (ds["validity_body"].sel(body=body).values[unknown] & validity_bit("static")) != 0
-    unsolved = np.isnan(ds["peak_stress"].sel(body=body).transpose("block", "contact").values[unknown]).any(axis=1)
-    said = [f"no stress in {n} ({REGIME_LABELS[r]})" for n, r in zip(names[unsolved], regimes[unsolved], strict=True)]
+    unsolved = np.isnan(
+        ds["peak_stress"].sel(body=body).transpose("block", "contact").values[unknown]
+    ).any(axis=1)
+    said = [
+        f"no stress in {n} ({REGIME_LABELS[r]})"
+        for n, r in zip(names[unsolved], regimes[unsolved], strict=True)
+    ]
     said += [f"its peak stress exceeds its tensile strength in {n}" for n in names[breaks]]
     said += [f"the roller skids in {n}" for n in names[skids & ~breaks]]
     if not said:
         said = ["give guide_overrollings_per_hour, or guide_overrollings of each block"]
     known = float(np.nansum(damage))
-    bound = ds.attrs["critical_damage"] / known * float(ds["duration"].sum()) if known > 0 else math.nan
+    bound = (
+        ds.attrs["critical_damage"] / known * float(ds["duration"].sum()) if known > 0 else math.nan
+    )
     return "; ".join(said), bound
 
 
 def _parts(ds: xr.Dataset, lives: pd.DataFrame) -> Iterable[Part]:
-    """Yield the further tables of a spectrum: its blocks, the lives by fatigue, and placeholders."""
+    """Yield the further tables of a spectrum: its blocks, the lives by fatigue, and
+    placeholders.
+    """
     yield _blocks(ds)
     columns = tuple(one for one in OF_LIVES if one.name != "shifts" or not _by_share(ds))
     yield Part("lives", "Life by fatigue", lives, columns, f"{ds.attrs['life_conventions']}.")
@@ -369,7 +465,9 @@ def _parts(ds: xr.Dataset, lives: pd.DataFrame) -> Iterable[Part]:
 
 
 def _blocks(ds: xr.Dataset) -> Part:
-    """Return the blocks with their loads, the regime, and stress and damage of both bodies, and their sum."""
+    """Return the blocks with their loads, the regime, and stress and damage of both bodies, and
+    their sum.
+    """
     known = [name for name in LOAD_FIELDS if np.isfinite(ds[name].values).any()]
     loads = [name for name in known if name not in ABSENT or ds[name].values.any()]
     columns = [
@@ -379,7 +477,9 @@ def _blocks(ds: xr.Dataset) -> Part:
         *(Column(n, long_name_of(n), PARAMETERS[n].units, "", "whole") for n in loads),
         Column("regime", "Regime", "", "", "text"),
     ]
-    columns[2] = Column("duration", "Share of the time", "1", "", "share") if _by_share(ds) else columns[2]
+    columns[2] = (
+        Column("duration", "Share of the time", "1", "", "share") if _by_share(ds) else columns[2]
+    )
     table = pd.DataFrame({"block": ds["block"].values.astype(str)})
     for name in ("distance", "duration", *loads):
         table[name] = ds[name].values.astype(float)
@@ -392,7 +492,13 @@ def _blocks(ds: xr.Dataset) -> Part:
         table[f"damage_{body}"] = damage
         table[f"share_{body}"] = damage / whole if whole > 0 else np.nan
         columns += [
-            Column(f"peak_{body}", f"{body} peak", "MPa", "peak stress of the track that fails first", "whole"),
+            Column(
+                f"peak_{body}",
+                f"{body} peak",
+                "MPa",
+                "peak stress of the track that fails first",
+                "whole",
+            ),
             Column(f"damage_{body}", f"{body} damage", "1", "damage of the block by fatigue"),
             Column(f"share_{body}", f"{body} share", "1", "part of the known damage", "share"),
         ]
@@ -414,7 +520,11 @@ def _not_checked(ds: xr.Dataset) -> Mapping[str, tuple[str, ...]]:
 def not_given_values(ds: xr.Dataset) -> dict[str, str]:
     """Return the values that nobody gave, with their units, of a spectrum or a carriage."""
     given = json.loads(ds.attrs.get(NOT_GIVEN, "{}"))
-    return {name: level_text(name, value) for name, value in given.items() if value is not None and value == value}
+    return {
+        name: level_text(name, value)
+        for name, value in given.items()
+        if value is not None and value == value
+    }
 
 
 def _reasons(ds: xr.Dataset) -> dict[str, list[str]]:

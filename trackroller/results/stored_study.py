@@ -1,4 +1,5 @@
-"""Open the results of a study: from its folder, from `study.nc`, or from what `solve` returned for a study's design.
+"""Open the results of a study: from its folder, from `study.nc`, or from what `solve` returned for
+a study's design.
 
 This is the only place that reads a study file from the attribute of a data set.
 """
@@ -42,7 +43,10 @@ from trackroller.yaml_file import parse_mapping
 _REMEDY = "Run the study again."
 NOTICE = "notice"  # attribute with a sentence that every page of the study shows at its top
 MISSING = "missing_cases"  # attribute with the number of cases that are not solved yet
-_EARLIER = "Another version of the solver made these results. `trackroller run` with the study file solves them anew."
+_EARLIER = (
+    "Another version of the solver made these results. `trackroller run` with the study "
+    "file solves them anew."
+)
 
 
 def open_study(source: xr.Dataset | Path | str, indices: Path | str | None = None) -> Results:
@@ -51,23 +55,24 @@ def open_study(source: xr.Dataset | Path | str, indices: Path | str | None = Non
     Parameters
     ----------
     source : xarray.Dataset, pathlib.Path or str
-        Folder of a study, its file `study.nc`, the data set in such a file, or the result of `trackroller.solve` for
-        the design of a study.
+        Folder of a study, its file `study.nc`, the data set in such a file, or the result of
+        `trackroller.solve` for the design of a study.
     indices : pathlib.Path or str, optional
-        File `sensitivity.nc` with the indices of the study. By default they are computed when they are needed.
+        File `sensitivity.nc` with the indices of the study. By default they are computed when they
+        are needed.
 
     Returns
     -------
     Results
-        The results with the same meaning as before they were written. For the folder of a study that is not gathered
-        yet, the cases that are solved: the attribute `missing_cases` of the data counts the others, and `notice` says
-        so.
+        The results with the same meaning as before they were written. For the folder of a study
+        that is not gathered yet, the cases that are solved: the attribute `missing_cases` of the
+        data counts the others, and `notice` says so.
 
     Raises
     ------
     InputError
-        If there is no such file, it holds no study, this version would read its study file differently, its rows are
-        not those of its design, or the folder holds a link.
+        If there is no such file, it holds no study, this version would read its study file
+        differently, its rows are not those of its design, or the folder holds a link.
     WorkError
         If the file was altered after it was written.
 
@@ -91,7 +96,8 @@ def open_study(source: xr.Dataset | Path | str, indices: Path | str | None = Non
     study = _study(data)
     data = data.assign_attrs({NOT_GIVEN: json.dumps(study.not_given)})
     design = restored(data, study.parsed, case_dims(data, study.factors))
-    if "options" in data.attrs and "case" in data.dims:  # the cases of a design beside their results: not labelled yet
+    # the cases of a design beside their results: not labelled yet
+    if "options" in data.attrs and "case" in data.dims:
         names = [name for name in data.data_vars if name not in CASE_FIELDS]
         solved = data[names].transpose("case", ...)
         if "regime" in names:
@@ -103,13 +109,16 @@ def open_study(source: xr.Dataset | Path | str, indices: Path | str | None = Non
 
 
 def open_as_reported(root: Path) -> Results:
-    """Open the results in a folder with the indices that a report has written there, and without indices otherwise.
+    """Open the results in a folder with the indices that a report has written there, and without
+    indices otherwise.
 
     Nothing is computed: a page or a figure that must not wait takes these results.
     """
     results, stored = open_study(root), root / "sensitivity.nc"
     known = stored.is_file() and not results.unfinished and digests_of(stored)
-    return dataclasses.replace(results, known_indices=read_result(stored) if known else xr.Dataset())
+    return dataclasses.replace(
+        results, known_indices=read_result(stored) if known else xr.Dataset()
+    )
 
 
 def solved_results(ledger: Ledger) -> Results:
@@ -120,12 +129,16 @@ def solved_results(ledger: Ledger) -> Results:
 
 
 def _materials_file(path: Path) -> Path:
-    """Return the materials file in the folder of a study; `path` is that folder, or `study.nc` in it."""
+    """Return the materials file in the folder of a study; `path` is that folder, or `study.nc` in
+    it.
+    """
     return StudyFolder(path if path.is_dir() else path.parent).inputs / MATERIALS
 
 
 def _gathered(path: Path) -> xr.Dataset | None:
-    """Return the results in `study.nc`; None for the folder of a study whose plan is not gathered yet."""
+    """Return the results in `study.nc`; None for the folder of a study whose plan is not gathered
+    yet.
+    """
     if path.is_dir():
         check_readable(path)
     file = StudyFolder(path).gathered if path.is_dir() else path
@@ -133,7 +146,9 @@ def _gathered(path: Path) -> xr.Dataset | None:
     planned = record.get("study")
     if not file.is_file() and planned is None:
         allowed = "a folder results/NAME with study.nc, or such a file"
-        raise InputError("study", str(path), allowed, "Run the study to its end first.", "holds no results")
+        raise InputError(
+            "study", str(path), allowed, "Run the study to its end first.", "holds no results"
+        )
     data = read_result(file) if file.is_file() else None
     if data is None or planned not in (None, data.attrs.get("study")):
         return None
@@ -146,11 +161,20 @@ def _read_unfinished(folder: StudyFolder, indices: xr.Dataset | None) -> Results
     ledger = Ledger(StudyCases(study), folder)
     place = ledger.state_number
     of_row = ledger.cases.rows
-    rows = np.setdiff1d(of_row, of_row[place < 0])  # whole rows of the design: a carriage has several cases
+    # whole rows of the design: a carriage has several cases
+    rows = np.setdiff1d(of_row, of_row[place < 0])
     solved = np.flatnonzero(np.isin(of_row, rows))
     if not len(rows) or len(solved) == len(place):
-        state = "is solved, but not gathered into study.nc" if len(rows) else "has no solved case yet"
-        raise InputError("study", str(folder.root), "a study with results", "Run the study to its end first.", state)
+        state = (
+            "is solved, but not gathered into study.nc" if len(rows) else "has no solved case yet"
+        )
+        raise InputError(
+            "study",
+            str(folder.root),
+            "a study with results",
+            "Run the study to its end first.",
+            state,
+        )
     drawn, cases = solved_part(study.drawn, rows), ledger.cases.design.isel(case=solved)
     if ROW in cases.coords:
         cases = cases.assign_coords({ROW: ("case", np.searchsorted(rows, cases[ROW].values))})
@@ -158,7 +182,8 @@ def _read_unfinished(folder: StudyFolder, indices: xr.Dataset | None) -> Results
     lacking = [n for n in study.drawn.factors if n not in drawn.factors]
     only = f" They hold one value only of {' and '.join(lacking)}." if lacking else ""
     notice = (
-        f"Unfinished study: {len(solved)} of {len(place)} cases are solved, and all numbers are those of these.{only}"
+        f"Unfinished study: {len(solved)} of {len(place)} cases are solved, and all numbers "
+        f"are those of these.{only}"
     )
     warnings.warn(notice, stacklevel=3)
     if study.config.method.points:  # its goals are statistics of whole design points
@@ -168,7 +193,9 @@ def _read_unfinished(folder: StudyFolder, indices: xr.Dataset | None) -> Results
 
 
 def _check_dims(data: xr.Dataset, along: tuple[str, ...]) -> None:
-    """Refuse results that have another dimension than those of the cases and of the output itself."""
+    """Refuse results that have another dimension than those of the cases and of the output
+    itself.
+    """
     for name, v in data.data_vars.items():
         if name in VARIABLES:
             known = (*along, *VARIABLES[str(name)].dims)
@@ -179,12 +206,18 @@ def _check_dims(data: xr.Dataset, along: tuple[str, ...]) -> None:
         added = [str(dim) for dim in v.dims if dim not in known]
         if added:
             allowed = f"the dimensions {', '.join(known)}"
-            remedy = f"Select one place of it, such as ds.isel({added[0]}=0), or run the study again."
-            raise InputError(str(name), ", ".join(added), allowed, remedy, "is a dimension that was added")
+            remedy = (
+                f"Select one place of it, such as ds.isel({added[0]}=0), or run the study again."
+            )
+            raise InputError(
+                str(name), ", ".join(added), allowed, remedy, "is a dimension that was added"
+            )
 
 
 def _checked_version(data: xr.Dataset) -> dict[str, str]:
-    """Refuse results in another format; return the notice for results of another solver, {} for those of this one."""
+    """Refuse results in another format; return the notice for results of another solver, {} for
+    those of this one.
+    """
     solver, written = data.attrs.get("solver_digest"), data.attrs.get("store_format")
     if solver is None or (solver == solver_digest() and written == STORE_FORMAT):
         return {}
@@ -197,10 +230,17 @@ def _checked_version(data: xr.Dataset) -> dict[str, str]:
 
 
 def _study(data: xr.Dataset) -> Study:
-    """Return the study whose file a data set holds; refuse a file that would be read with another meaning."""
+    """Return the study whose file a data set holds; refuse a file that would be read with another
+    meaning.
+    """
     text = data.attrs.get("study")
     if not isinstance(text, str):
-        raise InputError("study", sorted(map(str, data.attrs)), "results with their study file as attribute", _REMEDY)
+        raise InputError(
+            "study",
+            sorted(map(str, data.attrs)),
+            "results with their study file as attribute",
+            _REMEDY,
+        )
     stored = with_present_keys(parse_mapping(text, "stored study file"))
     name = str(stored.get("name", ""))
     try:
@@ -210,13 +250,18 @@ def _study(data: xr.Dataset) -> Study:
         raise InputError("study", name, "", _REMEDY, wrong) from None
     study = Study(config, not_given=tuple(json.loads(data.attrs.get(NOT_GIVEN, "[]"))))
     if changed := _changed(stored, study.as_dict()):
-        allowed, wrong = "a study file that is read as it was written", f"has another {changed} in this version"
+        allowed, wrong = (
+            "a study file that is read as it was written",
+            f"has another {changed} in this version",
+        )
         raise InputError("study", name, allowed, _REMEDY, wrong)
     return study
 
 
 def _changed(stored: Mapping[str, Any], now: Mapping[str, Any]) -> str:
-    """Return the first key whose value has changed, or that only one of two mappings has; '' if there is none."""
+    """Return the first key whose value has changed, or that only one of two mappings has; '' if
+    there is none.
+    """
     for key, value in stored.items():
         if key not in now:
             return key

@@ -1,4 +1,6 @@
-"""What `print` shows of the results of a study: ten lines on cases, factors, regimes, outputs and what to take next."""
+"""What `print` shows of the results of a study: ten lines on cases, factors, regimes, outputs and
+what to take next.
+"""
 
 from __future__ import annotations
 
@@ -10,7 +12,10 @@ from trackroller.parameters import REGIMES
 from trackroller.results.solved_cases import SolvedCases
 
 MOST_NAMED = 3  # factors or outputs of a line; of further ones their number is said
-NEXT = "next: .answer, .best(), .to_table(), .report(path), .explore(path), .indices(), .pareto(), .data (xarray)"
+NEXT = (
+    "next: .answer, .best(), .to_table(), .report(path), .explore(path), .indices(), "
+    ".pareto(), .data (xarray)"
+)
 
 
 def summary_of(results: SolvedCases) -> str:
@@ -52,12 +57,18 @@ def _factors(results: SolvedCases) -> str:
 def _regimes(results: SolvedCases) -> str:
     """Return how many cases roll, skid, lift off or failed."""
     counts = np.bincount(results.regime.astype(int), minlength=len(REGIMES))
-    found = [f"{count:,} {name.replace('_', ' ')}" for name, count in zip(REGIMES, counts, strict=True) if count]
+    found = [
+        f"{count:,} {name.replace('_', ' ')}"
+        for name, count in zip(REGIMES, counts, strict=True)
+        if count
+    ]
     return ", ".join(found)
 
 
 def _outputs(results: SolvedCases) -> list[str]:
-    """Return the outputs of the summary: the life that counts, and the outputs that the study asks for."""
+    """Return the outputs of the summary: the life that counts, and the outputs that the study asks
+    for.
+    """
     found = [results.life[0]] if results.life is not None else []
     found += [name for name in results.config.requirement if name not in found]
     return found[:MOST_NAMED]
@@ -75,4 +86,6 @@ def _range(results: SolvedCases, name: str) -> str:
 
 
 def _ends(ends: dict[str, float]) -> str:
-    return " ".join(f"{'at least' if end == 'min' else 'at most'} {value:g}" for end, value in ends.items())
+    return " ".join(
+        f"{'at least' if end == 'min' else 'at most'} {value:g}" for end, value in ends.items()
+    )

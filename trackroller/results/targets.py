@@ -1,4 +1,6 @@
-"""Probability that a design meets the key `requirement`, at each design point and at each level of a factor."""
+"""Probability that a design meets the key `requirement`, at each design point and at each level of
+a factor.
+"""
 
 from __future__ import annotations
 
@@ -24,7 +26,8 @@ from trackroller.study.outputs import Output, outputs
 
 CLASSES = 4  # of a number with more than `MOST_LEVELS` levels
 ENDS = ("", "_low", "_high")
-Found = tuple[np.ndarray, np.ndarray, np.ndarray]  # probability and its bounds, shape (targets,) each
+# probability and its bounds, shape (targets,) each
+Found = tuple[np.ndarray, np.ndarray, np.ndarray]
 
 
 class Level(NamedTuple):
@@ -60,27 +63,36 @@ def targets(
     ds : gathered study
     design : its design
     wanted : what is required by output
-    deviations : body, or target -> standard deviation of log10 life of its material [1], shape (n,), see
-        `material_deviations`
+    deviations : body, or target -> standard deviation of log10 life of its material [1], shape
+        (n,), see `material_deviations`
     allowed : cases that count, such as the valid ones, shape (n,)
-    judged : life to the first limit by the targets that it judges, see `SolvedCases.judged_targets`, shape (n,) each
+    judged : life to the first limit by the targets that it judges, see
+        `SolvedCases.judged_targets`, shape (n,) each
 
     Returns
     -------
-    Dimension `target` (with `all` for several targets). `target_probability` (target, point) of an inner/outer design,
-    else (target,) of all cases; `level_probability` (target, target_level). Both with _low and _high (95 %), NaN in a
-    grid or a table, whose rows are no sample. A case that does not roll, is not allowed or has no value misses each
-    target.
+    Dimension `target` (with `all` for several targets). `target_probability` (target, point) of an
+    inner/outer design, else (target,) of all cases; `level_probability` (target, target_level).
+    Both with _low and _high (95 %), NaN in a grid or a table, whose rows are no sample. A case that
+    does not roll, is not allowed or has no value misses each target.
 
     Notes
     -----
-    At a level of the outer array the probability is the mean over its design points. Their common sample counts once.
-    If these have different numbers of samples, the bounds are the means of their bounds.
+    At a level of the outer array the probability is the mean over its design points. Their common
+    sample counts once. If these have different numbers of samples, the bounds are the means of
+    their bounds.
     """
-    columns = outputs(ds, design.factors, list(wanted), scale="natural", unlimited=True, allowed=allowed)
+    columns = outputs(
+        ds, design.factors, list(wanted), scale="natural", unlimited=True, allowed=allowed
+    )
     columns = [_judged(c, judged[c.name], allowed) if c.name in judged else c for c in columns]
     hits = np.stack(
-        [hits_of(c, wanted[c.name], deviations.get(c.name, deviations.get(scattering_body(c.name)))) for c in columns],
+        [
+            hits_of(
+                c, wanted[c.name], deviations.get(c.name, deviations.get(scattering_body(c.name)))
+            )
+            for c in columns
+        ],
         axis=1,
     )
     names = [c.name for c in columns]
@@ -90,9 +102,17 @@ def targets(
     levels, estimates = (_of_points if robust else _of_rows)(hits, design)
     out = xr.Dataset(coords=_coordinates(names, columns, wanted, levels))
     for end, whole in zip(ENDS, estimates[0], strict=True):
-        out[f"target_probability{end}"] = (("target", "point") if robust else ("target",), whole, {"units": "1"})
+        out[f"target_probability{end}"] = (
+            ("target", "point") if robust else ("target",),
+            whole,
+            {"units": "1"},
+        )
     for end, part in zip(ENDS, zip(*estimates[1:], strict=True), strict=False):
-        out[f"level_probability{end}"] = (("target", "target_level"), np.stack(part, axis=1), {"units": "1"})
+        out[f"level_probability{end}"] = (
+            ("target", "target_level"),
+            np.stack(part, axis=1),
+            {"units": "1"},
+        )
     return out
 
 
@@ -108,7 +128,9 @@ def scattering_body(output: str) -> str:
 
 
 def hits_of(column: Output, limits: Requirement, deviation: np.ndarray | None) -> np.ndarray:
-    """Return the probability that each case meets a target, shape (n,): 0 or 1 where the material has no scatter."""
+    """Return the probability that each case meets a target, shape (n,): 0 or 1 where the material
+    has no scatter.
+    """
     values = column.values
     met = limits.meets(values).astype(float)
     if deviation is None or not (deviation > 0).any():
@@ -119,7 +141,9 @@ def hits_of(column: Output, limits: Requirement, deviation: np.ndarray | None) -
 
 
 def _share_above(lives: np.ndarray, limit: float, deviation: np.ndarray) -> np.ndarray:
-    """Return the share of the lives of a material above a limit, by the median life and the scatter, shape (n,)."""
+    """Return the share of the lives of a material above a limit, by the median life and the
+    scatter, shape (n,).
+    """
     if np.isinf(limit):
         return np.full(len(lives), 1.0 if limit < 0 else 0.0)
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -132,16 +156,27 @@ def _all(hits: np.ndarray, names: list[str]) -> np.ndarray:
     ASSUME: the materials of roller and guide scatter independently of each other.
     """
     bodies = np.array([scattering_body(name) for name in names])
-    return np.asarray(np.prod([hits[:, bodies == body].min(axis=1) for body in dict.fromkeys(bodies)], axis=0))
+    return np.asarray(
+        np.prod([hits[:, bodies == body].min(axis=1) for body in dict.fromkeys(bodies)], axis=0)
+    )
 
 
 def _of_points(hits: np.ndarray, design: Design) -> tuple[list[Level], list[Found]]:
-    """Return the levels of the outer factors, and the probabilities at all points and at each level."""
+    """Return the levels of the outer factors, and the probabilities at all points and at each
+    level.
+    """
     first = [rows.start for rows in design.points]
     outer = [name for name in design.meta["outer"] if len(design.meta["outer"]) > 1]
-    levels = [level for name in outer for level in _levels(design.factors[name], design.columns[name][first])]
+    levels = [
+        level
+        for name in outer
+        for level in _levels(design.factors[name], design.columns[name][first])
+    ]
     p, low, high = whole = at_points(hits, design)
-    return levels, [(p.T, low.T, high.T), *(_at_level(hits, design, level, whole) for level in levels)]
+    return levels, [
+        (p.T, low.T, high.T),
+        *(_at_level(hits, design, level, whole) for level in levels),
+    ]
 
 
 def at_points(hits: np.ndarray, design: Design) -> Found:
@@ -156,7 +191,10 @@ def at_points(hits: np.ndarray, design: Design) -> Found:
     -------
     Probability, lower and upper bound [1], each of shape (points, m).
     """
-    sizes, sample = np.array([rows.stop - rows.start for rows in design.points]), inner_sample(design)
+    sizes, sample = (
+        np.array([rows.stop - rows.start for rows in design.points]),
+        inner_sample(design),
+    )
     bounds = np.empty((3, len(sizes), hits.shape[1]))
     for size in np.unique(sizes):
         own = np.flatnonzero(sizes == size)
@@ -169,14 +207,17 @@ def at_points(hits: np.ndarray, design: Design) -> Found:
 def _at_level(hits: np.ndarray, design: Design, level: Level, whole: Found) -> Found:
     """Return the mean probability of the design points of a level and its bounds.
 
-    Points with different numbers of samples get the mean of their bounds, which is wide enough for any correlation.
+    Points with different numbers of samples get the mean of their bounds, which is wide enough for
+    any correlation.
     """
     own = [rows for rows, chosen in zip(design.points, level.rows, strict=True) if chosen]
     sizes = {rows.stop - rows.start for rows in own}
     if len(sizes) > 1:
         p, low, high = (part[level.rows].mean(axis=0) for part in whole)
         return p, low, high
-    return probabilities(np.mean([hits[rows] for rows in own], axis=0), *_first(inner_sample(design), sizes.pop()))
+    return probabilities(
+        np.mean([hits[rows] for rows in own], axis=0), *_first(inner_sample(design), sizes.pop())
+    )
 
 
 def _first(sample: tuple[np.ndarray, ...], size: int) -> tuple[np.ndarray, ...]:
@@ -187,7 +228,11 @@ def _first(sample: tuple[np.ndarray, ...], size: int) -> tuple[np.ndarray, ...]:
 def _of_rows(hits: np.ndarray, design: Design) -> tuple[list[Level], list[Found]]:
     """Return the levels of the factors, and the probabilities over all rows and at each level."""
     rows = design.method.independent_rows(design)
-    levels = [level for name, f in design.factors.items() for level in _levels(f, design.columns[name][rows])]
+    levels = [
+        level
+        for name, f in design.factors.items()
+        for level in _levels(f, design.columns[name][rows])
+    ]
     hits = hits[rows]
     strata = () if correlated_pairs(design) else (design.places[rows], design.ordered)
     estimates = [probabilities(hits, *strata)]
@@ -198,11 +243,13 @@ def _of_rows(hits: np.ndarray, design: Design) -> tuple[list[Level], list[Found]
 
 
 def inner_sample(design: Design) -> tuple[np.ndarray, np.ndarray] | tuple[()]:
-    """Return the inner sample of an inner/outer design; nothing if its factors are correlated and so not stratified.
+    """Return the inner sample of an inner/outer design; nothing if its factors are correlated and
+    so not stratified.
 
     Returns
     -------
-    Quantiles (of a list: index of its value), shape (samples, inner factors), and which of them are ordered.
+    Quantiles (of a list: index of its value), shape (samples, inner factors), and which of them are
+    ordered.
     """
     if correlated_pairs(design):
         return ()
@@ -213,7 +260,9 @@ def inner_sample(design: Design) -> tuple[np.ndarray, np.ndarray] | tuple[()]:
 
 
 def _levels(factor: Factor, values: np.ndarray) -> Iterator[Level]:
-    """Yield the levels of a factor, or classes with equally many rows of a number that has more than `MOST_LEVELS`."""
+    """Yield the levels of a factor, or classes with equally many rows of a number that has more
+    than `MOST_LEVELS`.
+    """
     if not factor.numeric:
         texts = np.array([in_words(factor.name, value) for value in values])
         for text in dict.fromkeys(texts.tolist()):
@@ -246,7 +295,10 @@ def _coordinates(
         "target_min": ("target", _finite([limit.least for limit in limits])),
         "target_max": ("target", _finite([limit.most for limit in limits])),
         **{
-            f"level_{key}": ("target_level", np.array([getattr(level, key) for level in levels], dtype=kind))
+            f"level_{key}": (
+                "target_level",
+                np.array([getattr(level, key) for level in levels], dtype=kind),
+            )
             for key, kind in (("factor", str), ("low", float), ("high", float), ("text", str))
         },
         "level_rows": ("target_level", np.array([level.rows.sum() for level in levels], dtype=int)),

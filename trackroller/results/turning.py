@@ -18,12 +18,14 @@ from trackroller.roller.limit_notes import Placeholder, placeholders_of
 from trackroller.study.outputs import flat
 
 STEPS = np.linspace(0.0, 1.0, 201)  # places of a placeholder in its range, on a logarithmic scale
-LEAST = 0.1  # of the leader's range over which a rival must lead before the placeholder is worth a measurement
+# of the leader's range over which a rival must lead before the placeholder is worth a measurement
+LEAST = 0.1
 
 
 @dataclass(frozen=True, eq=False)
 class Turning:
-    """Lives of candidates while one placeholder moves through its range, and all others stay in the middle.
+    """Lives of candidates while one placeholder moves through its range, and all others stay in the
+    middle.
 
     Attributes
     ----------
@@ -34,7 +36,9 @@ class Turning:
 
     @cached_property
     def hours(self) -> tuple[np.ndarray, np.ndarray] | None:
-        """Return the hours to each limit of each body at both ends, (n, limit, 2); None if lives have no range."""
+        """Return the hours to each limit of each body at both ends, (n, limit, 2); None if lives
+        have no range.
+        """
         data = self.own.results.data
         if self.own.ranges.output != FIRST_LIMIT or "life_hours_by_limit_low" not in data:
             return None
@@ -56,7 +60,9 @@ class Turning:
         return found + tests
 
     def moves(self, one: Placeholder, rows: np.ndarray) -> np.ndarray:
-        """Return which limits and bodies of some cases rest on a placeholder, (rows, limit, 2) bool."""
+        """Return which limits and bodies of some cases rest on a placeholder, (rows, limit, 2)
+        bool.
+        """
         names = [str(name) for name in self.own.results.data["limit"].values]
         out = np.zeros((len(rows), len(names), len(BODIES)), dtype=bool)
         if one.limit not in names:
@@ -73,7 +79,9 @@ class Turning:
         return {body: self.own.results.material(body) for body in BODIES}
 
     def worst(self, number: int, one: Placeholder) -> np.ndarray:
-        """Return the life of a candidate at its worst condition at each of `STEPS` of a placeholder, (steps,) [h]."""
+        """Return the life of a candidate at its worst condition at each of `STEPS` of a
+        placeholder, (steps,) [h].
+        """
         key = number, self.placeholders.index(one)
         if key not in self._worst:
             self._worst[key] = self._worst_of(number, one)
@@ -103,12 +111,13 @@ class Turning:
             return np.asarray(np.exp(least))
 
     def leads(self, leader: int, rivals: list[int]) -> dict[str, Any] | None:
-        """Return the placeholder of a leader over whose range a rival leads for at least a tenth; None without one.
+        """Return the placeholder of a leader over whose range a rival leads for at least a tenth;
+        None without one.
 
         Returns
         -------
-        `what`, `of` (its material), `on` (the other one), `turn` (where a rival overtakes; NaN if it is not known),
-        `units`, `low` and `high` (the range of the placeholder).
+        `what`, `of` (its material), `on` (the other one), `turn` (where a rival overtakes; NaN if
+        it is not known), `units`, `low` and `high` (the range of the placeholder).
         """
         if self.hours is None:
             return None
@@ -118,14 +127,19 @@ class Turning:
             if mine[-1] <= mine[0] * (1 + 1e-9):
                 continue
             for rival in rivals:
-                ahead = self.worst(rival, one) > mine * (1.0 + self.own.error_of_ratio(leader, rival))
+                ahead = self.worst(rival, one) > mine * (
+                    1.0 + self.own.error_of_ratio(leader, rival)
+                )
                 if ahead.mean() >= best:
                     best = float(ahead.mean())
-                    found = self.told(one, int(np.argmin(ahead)) if ahead[0] else int(np.argmax(ahead)))
+                    found = self.told(
+                        one, int(np.argmin(ahead)) if ahead[0] else int(np.argmax(ahead))
+                    )
         return found
 
     def decides(self, number: int, least: float) -> dict[str, Any] | None:
-        """Return the placeholder whose place decides whether a candidate reaches a life; None without one.
+        """Return the placeholder whose place decides whether a candidate reaches a life; None
+        without one.
 
         Of several, the one with the widest effect counts.
         """
@@ -143,7 +157,9 @@ class Turning:
         return found
 
     def told(self, one: Placeholder, step: int) -> dict[str, Any]:
-        """Return a placeholder with the value at one of `STEPS`, -1 for none; only a wear coefficient has one."""
+        """Return a placeholder with the value at one of `STEPS`, -1 for none; only a wear
+        coefficient has one.
+        """
         turn = np.nan
         if step >= 0 and one.name.startswith("wear_coefficient") and one.low > 0:
             turn = float(one.high * (one.low / one.high) ** STEPS[step])
@@ -158,9 +174,11 @@ class Turning:
         }
 
     def of_open_limit(self, number: int) -> dict[str, Any] | None:
-        """Return the placeholder that leaves a limit without hours open for a candidate; None if none is open.
+        """Return the placeholder that leaves a limit without hours open for a candidate; None if
+        none is open.
 
-        The use of the shakedown limit is inversely proportional to the yield strength, so that its turn is known.
+        The use of the shakedown limit is inversely proportional to the yield strength, so that its
+        turn is known.
         """
         rows = self.own.rows[number]
         results = self.own.results
@@ -174,23 +192,37 @@ class Turning:
             use = flat(results.data, "utilisation", results.dims)[own, place].astype(float)
             row, body = np.unravel_index(np.nanargmax(use), use.shape)
             material = str(self.materials[BODIES[body]][own[row]])
-            known = [one for one in placeholders_of(results.data) if (one.limit, one.material) == (limit, material)]
+            known = [
+                one
+                for one in placeholders_of(results.data)
+                if (one.limit, one.material) == (limit, material)
+            ]
             if not known:
-                return {"what": LIMITS[limit].word, "of": material, "on": "", "turn": np.nan, "units": ""}
+                return {
+                    "what": LIMITS[limit].word,
+                    "of": material,
+                    "on": "",
+                    "turn": np.nan,
+                    "units": "",
+                }
             found = self.told(known[0], -1)
             if len(known) > 1:
                 found["what"] = " or ".join(dict.fromkeys(one.name for one in known))
             if known[0].name == "yield_strength":
-                stored = json.loads(str(results.data.attrs.get("materials", "{}"))).get(material, {})
+                stored = json.loads(str(results.data.attrs.get("materials", "{}"))).get(
+                    material, {}
+                )
                 found["turn"] = float(stored.get("yield_strength", np.nan)) * float(np.nanmax(use))
             return found
         return None
 
     def of_span(self, leader: int, rivals: list[int]) -> dict[str, Any] | None:
-        """Return the placeholder whose range a factor spans if a rival leads over a tenth of it or more; None without.
+        """Return the placeholder whose range a factor spans if a rival leads over a tenth of it or
+        more; None without.
 
-        The leader stands at each level of the factor in turn. Rivals of the same materials stand at the same level,
-        because they share the placeholder, and all others in the middle of their range.
+        The leader stands at each level of the factor in turn. Rivals of the same materials stand at
+        the same level, because they share the placeholder, and all others in the middle of their
+        range.
         """
         own = self.own
         if not own.spans or not rivals:
@@ -221,12 +253,16 @@ class Turning:
         return found | {"low": values[0], "high": values[-1]}
 
     def _middle(self, number: int, levels: np.ndarray) -> float:
-        """Return the geometric middle of the range of a candidate over the places of the placeholders."""
+        """Return the geometric middle of the range of a candidate over the places of the
+        placeholders.
+        """
         lives = self._at_level(number, levels)
         return float(np.sqrt(lives.min()) * np.sqrt(lives.max()))
 
     def _behind(self, number: int, place: int, levels: np.ndarray) -> Placeholder | None:
-        """Return the placeholder of the limit that ends a candidate at one place of the placeholders; None without."""
+        """Return the placeholder of the limit that ends a candidate at one place of the
+        placeholders; None without.
+        """
         own = self.own
         rows = own.rows[number]
         rows = rows[own.reachable[rows] & (own.level[rows] == levels[place])]
@@ -237,9 +273,14 @@ class Turning:
         return known[0] if known else None
 
     def _at_level(self, number: int, levels: np.ndarray) -> np.ndarray:
-        """Return the life of a candidate at its worst condition at each level of the spanned placeholders."""
+        """Return the life of a candidate at its worst condition at each level of the spanned
+        placeholders.
+        """
         own = self.own
         rows = own.rows[number]
         rows = rows[own.reachable[rows]]
-        found = [own.ranges.middle[rows[own.level[rows] == level]].min(initial=np.inf) for level in levels]
+        found = [
+            own.ranges.middle[rows[own.level[rows] == level]].min(initial=np.inf)
+            for level in levels
+        ]
         return np.array(found)

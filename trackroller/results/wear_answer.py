@@ -1,10 +1,12 @@
-"""The record of a roller that wears: how far it went and why it ended, depth, pressure and fatigue of both bodies.
+"""The record of a roller that wears: how far it went and why it ended, depth, pressure and fatigue
+of both bodies.
 
-Keys of `Answer.headline`: `travel` [km], `hours` [h], `depths` (µm by body that wears), `end` (why the travel ends),
-`contact` (that wears more), `pressure_first`, `pressure_last`, `pressure_most` [MPa], `travel_most` [km], `wider`
-(width of the patch at the end over that at first [1]), `pressure_error` [1], `guessed` (whether the wear coefficient
-is a placeholder), `fatigue` ({body, travel [km]} of the body whose damage sum by fatigue reaches 1 first within the
-run, or None), `state` (of the required travel: `met`, `open`, `missed`, or '' without one).
+Keys of `Answer.headline`: `travel` [km], `hours` [h], `depths` (µm by body that wears), `end` (why
+the travel ends), `contact` (that wears more), `pressure_first`, `pressure_last`, `pressure_most`
+[MPa], `travel_most` [km], `wider` (width of the patch at the end over that at first [1]),
+`pressure_error` [1], `guessed` (whether the wear coefficient is a placeholder), `fatigue` ({body,
+travel [km]} of the body whose damage sum by fatigue reaches 1 first within the run, or None),
+`state` (of the required travel: `met`, `open`, `missed`, or '' without one).
 """
 
 from __future__ import annotations
@@ -39,10 +41,13 @@ COLUMNS = (
         "life_travel",
         "Life with wear",
         "km",
-        "travel until the damage sum by fatigue is 1; from the end of the run to ∞ where the run ends before",
+        "travel until the damage sum by fatigue is 1; from the end of the run to ∞ where the run "
+        "ends before",
         until="life_travel_high",
     ),
-    Column("life_new", "Life of the new groove", "km", "the same under the stress of the new groove"),
+    Column(
+        "life_new", "Life of the new groove", "km", "the same under the stress of the new groove"
+    ),
     Column("damage", "Damage sum", "1", "largest damage sum by fatigue at the end of the travel"),
     Column("damage_error", "Error", "1", "estimated error of the damage sum", "error"),
 )
@@ -90,7 +95,9 @@ def answer_of_wear(ds: xr.Dataset) -> Answer:
 
 
 def deeper_contact(ds: xr.Dataset) -> int:
-    """Return the contact whose profiles have lost more depth at the end; contact 1 if both are alike."""
+    """Return the contact whose profiles have lost more depth at the end; contact 1 if both are
+    alike.
+    """
     depth = ds["groove_depth"].isel(travel=-1).sum("body")
     return int(ds["contact"].values[int(np.argmax(depth.values > 0.999 * depth.values.max()))])
 
@@ -124,14 +131,23 @@ def _table(ds: xr.Dataset) -> pd.DataFrame:
     rows = []
     for body in BODIES:
         own = ds.sel(body=body)
-        row = {"body": body, "depth": MICROMETRES * float(own["groove_depth"].isel(travel=-1).max())}
+        row = {
+            "body": body,
+            "depth": MICROMETRES * float(own["groove_depth"].isel(travel=-1).max()),
+        }
         rows.append(row | _fatigue(own))
-    return pd.DataFrame(rows, columns=[name for one in COLUMNS for name in (one.name, one.until) if name])
+    return pd.DataFrame(
+        rows, columns=[name for one in COLUMNS for name in (one.name, one.until) if name]
+    )
 
 
 def _fatigue(own: xr.Dataset) -> dict[str, float]:
-    """Return the life of a body by fatigue that counts wear; it is longer than the run if the run ends before."""
-    unknown = dict.fromkeys(("life_travel", "life_travel_high", "life_new", "damage", "damage_error"), np.nan)
+    """Return the life of a body by fatigue that counts wear; it is longer than the run if the run
+    ends before.
+    """
+    unknown = dict.fromkeys(
+        ("life_travel", "life_travel_high", "life_new", "damage", "damage_error"), np.nan
+    )
     if "fatigue_damage" not in own:
         return unknown
     damage, new = own["fatigue_damage"].isel(travel=-1).values, float(own["life_travel_new"].min())
@@ -149,7 +165,9 @@ def _fatigue(own: xr.Dataset) -> dict[str, float]:
 
 
 def _first_by_fatigue(table: pd.DataFrame, travel: float) -> dict[str, Any] | None:
-    """Return the body whose damage sum reaches 1 first within the run, and its travel [km]; None without one."""
+    """Return the body whose damage sum reaches 1 first within the run, and its travel [km]; None
+    without one.
+    """
     reached = table[table["life_travel_high"] <= travel]
     if reached.empty:
         return None
@@ -161,17 +179,23 @@ def _required(ds: xr.Dataset) -> tuple[Required, ...]:
     """Return the travel that the case requires: its own, or that of a required life."""
     inputs = inputs_of(ds)
     least = [own.least for name, own in requirement_of(ds).items() if name in OF_PAIR]
-    travels = [hours * KM_PER_HOUR * float(inputs["velocity"]) for hours in least if np.isfinite(hours)]
+    travels = [
+        hours * KM_PER_HOUR * float(inputs["velocity"]) for hours in least if np.isfinite(hours)
+    ]
     if inputs.get("required_travel") is not None:
         travels.append(float(inputs["required_travel"]))
     travels = [travel for travel in travels if np.isfinite(travel)]
     return (Required("travel", "travel", "km", least=max(travels)),) if travels else ()
 
 
-def _state(ds: xr.Dataset, table: pd.DataFrame, head: Mapping[str, Any], required: Sequence[Required]) -> str:
-    """Return whether the required travel is reached before wear, fatigue or a contact ends the roller.
+def _state(
+    ds: xr.Dataset, table: pd.DataFrame, head: Mapping[str, Any], required: Sequence[Required]
+) -> str:
+    """Return whether the required travel is reached before wear, fatigue or a contact ends the
+    roller.
 
-    Where the wear coefficient is a placeholder, only fatigue that ends the new groove before is surely too early.
+    Where the wear coefficient is a placeholder, only fatigue that ends the new groove before is
+    surely too early.
     """
     if not required:
         return ""
@@ -192,12 +216,16 @@ def _not_given(ds: xr.Dataset) -> dict[str, str]:
 
 
 def states_part(ds: xr.Dataset) -> Part:
-    """Return the states of the contact that wears more: depth, pressure, patch, forces, stress and damage."""
+    """Return the states of the contact that wears more: depth, pressure, patch, forces, stress and
+    damage.
+    """
     contact = deeper_contact(ds)
     own = ds.sel(contact=contact)
     if "drive_torque" in own:  # 0 where it is smaller than the residual of its balance allows
         least = SOLVED * own["normal_force"] * inputs_of(ds)["axis_distance"]
-        own = own.assign(drive_torque=own["drive_torque"].where(np.abs(own["drive_torque"]) > least, 0.0))
+        own = own.assign(
+            drive_torque=own["drive_torque"].where(np.abs(own["drive_torque"]) > least, 0.0)
+        )
     columns = [Column("travel", "Travel", "km", "", "whole", role="name")]
     table = {"travel": own["travel"].values.astype(float)}
     for name, words, scale, unit in (row for row in OF_BODY if row[0] in own):

@@ -31,13 +31,16 @@ from trackroller.roller.output_names import is_life
 from trackroller.study.design.entries import OPTION_FACTORS
 from trackroller.study.outputs import default_names
 
-PAIRED = ("S2", "interaction_share", "interaction")  # indices of pairs of factors, the most exact first
+# indices of pairs of factors, the most exact first
+PAIRED = ("S2", "interaction_share", "interaction")
 ROUNDING = 1e-12  # of the largest effect: a smaller one is 0 but for rounding
 WORTH = 0.02  # of the variance: a smaller interaction is not named
 
 
 def shown_ranges(results: SolvedCases) -> CaseRanges | None:
-    """Return the output that a study without candidates is about: its first wanted one, its life or a stress."""
+    """Return the output that a study without candidates is about: its first wanted one, its life or
+    a stress.
+    """
     required = required_of(results)
     named = [name for name in results.config.analysis.outputs or () if name not in REGIMES]
     if named and not required:
@@ -65,8 +68,8 @@ def answer_what_matters(results: SolvedCases) -> Answer:
 
     Notes
     -----
-    `kind` is `indices` where the method has them for this output, otherwise `curves`. The total index ranks the factors
-    of a Saltelli design; the height of their curves ranks all others.
+    `kind` is `indices` where the method has them for this output, otherwise `curves`. The total
+    index ranks the factors of a Saltelli design; the height of their curves ranks all others.
     """
     ranges = shown_ranges(results)
     assert ranges is not None
@@ -94,7 +97,9 @@ def answer_what_matters(results: SolvedCases) -> Answer:
 
 
 def _indices(results: SolvedCases, ranges: CaseRanges) -> xr.Dataset | None:
-    """Return the analysis of a study if it has indices that are shares of variance, or elementary effects."""
+    """Return the analysis of a study if it has indices that are shares of variance, or elementary
+    effects.
+    """
     sens = analysis_of(results)
     name = ranges.output[0]
     if sens is None or robust_design(sens) or name not in sens["output"].values:
@@ -103,7 +108,9 @@ def _indices(results: SolvedCases, ranges: CaseRanges) -> xr.Dataset | None:
 
 
 def _table(results: SolvedCases, ranges: CaseRanges, curves: tuple[Curve, ...]) -> pd.DataFrame:
-    """Return one row a factor: index with its interval, height and shape of its curve, and both of its ends."""
+    """Return one row a factor: index with its interval, height and shape of its curve, and both of
+    its ends.
+    """
     sens = _indices(results, ranges)
     known = {curve.factor: curve for curve in curves}
     lost = _lost(results, ranges)
@@ -127,11 +134,15 @@ def _table(results: SolvedCases, ranges: CaseRanges, curves: tuple[Curve, ...]) 
     table = pd.DataFrame(found)
     by_index = sens is not None and not index_words(sens, headline(sens)).sized
     keys = ["index", "height"] if by_index and "index" in table else ["height"]
-    return table.sort_values(keys, ascending=False, na_position="last", kind="stable").reset_index(drop=True)
+    return table.sort_values(keys, ascending=False, na_position="last", kind="stable").reset_index(
+        drop=True
+    )
 
 
 def _index(sens: xr.Dataset, output: str, name: str) -> dict[str, Any]:
-    """Return the index of a factor with its interval, a share cut to 0 to 1, and the factors that it interacts with."""
+    """Return the index of a factor with its interval, a share cut to 0 to 1, and the factors that
+    it interacts with.
+    """
     index = headline(sens)
     part = sens.sel(output=output)
     names = [str(one) for one in part["factor"].values]
@@ -152,7 +163,9 @@ def _index(sens: xr.Dataset, output: str, name: str) -> dict[str, Any]:
 
 
 def _partners(part: xr.Dataset, place: int) -> list[str]:
-    """Return the factors whose interaction with a factor surely holds at least `WORTH` of the variance."""
+    """Return the factors whose interaction with a factor surely holds at least `WORTH` of the
+    variance.
+    """
     name = next((one for one in PAIRED[:2] if one in part), "")
     if not name:
         return []
@@ -165,19 +178,28 @@ def _partners(part: xr.Dataset, place: int) -> list[str]:
 
 
 def pair_shares(sens: xr.Dataset | None, output: str) -> dict[str, Any]:
-    """Return the shares of variance of all pairs of factors as a matrix with its names; {} without them."""
+    """Return the shares of variance of all pairs of factors as a matrix with its names; {} without
+    them.
+    """
     if sens is None:
         return {}
     part = sens.sel(output=output)
-    name = next((one for one in PAIRED[:2] if one in part and np.isfinite(part[one].values).any()), "")
+    name = next(
+        (one for one in PAIRED[:2] if one in part and np.isfinite(part[one].values).any()), ""
+    )
     if not name:
         return {}
     value = part[name].values.astype(float)
-    return {"pairs": np.fmax(value, value.T), "titles": [str(one) for one in part["factor_name"].values]}
+    return {
+        "pairs": np.fmax(value, value.T),
+        "titles": [str(one) for one in part["factor_name"].values],
+    }
 
 
 def _lost(results: SolvedCases, ranges: CaseRanges) -> dict[str, int]:
-    """Return how many cases are lost (skids, lift-offs and others) between the levels of a factor, most less least."""
+    """Return how many cases are lost (skids, lift-offs and others) between the levels of a factor,
+    most less least.
+    """
     rows = results.of_one_model()
     bad = (~ranges.held)[rows]
     out = {}
@@ -203,7 +225,11 @@ def _named(table: pd.DataFrame, curves: tuple[Curve, ...], place: int) -> dict[s
     """Return what a headline says of a factor."""
     row = table.iloc[place]
     curve = next((one for one in curves if one.factor == row["name"]), None)
-    told: dict[str, Any] = {"title": row["factor"], "name": row["name"], "height": float(row["height"])}
+    told: dict[str, Any] = {
+        "title": row["factor"],
+        "name": row["name"],
+        "height": float(row["height"]),
+    }
     told |= {key: float(row.get(key, np.nan)) for key in ("index", "index_low", "index_high")}
     if curve is not None:
         low, high = (0, len(curve.levels) - 1)
@@ -224,7 +250,9 @@ def _in_order(curves: tuple[Curve, ...], table: pd.DataFrame) -> tuple[Curve, ..
     return tuple(sorted(curves, key=lambda curve: place.get(curve.factor, len(place))))
 
 
-def _columns(ranges: CaseRanges, table: pd.DataFrame, sens: xr.Dataset | None) -> tuple[Column, ...]:
+def _columns(
+    ranges: CaseRanges, table: pd.DataFrame, sens: xr.Dataset | None
+) -> tuple[Column, ...]:
     _, words, units = ranges.output
     columns = [
         Column("factor", "Factor", "", "factor of the study", "text", role="name"),
@@ -235,7 +263,9 @@ def _columns(ranges: CaseRanges, table: pd.DataFrame, sens: xr.Dataset | None) -
         index = headline(sens)
         share = not index_words(sens, index).sized
         meaning = str(sens[index].attrs.get("long_name", index))
-        scale = str(sens["scale"].sel(output=ranges.output[0]).item()) if "scale" in sens.coords else ""
+        scale = (
+            str(sens["scale"].sel(output=ranges.output[0]).item()) if "scale" in sens.coords else ""
+        )
         unit = "1" if share else "decades" if scale == "log10" else units
         kind = "share" if share else "number"
         columns += [
@@ -249,15 +279,50 @@ def _columns(ranges: CaseRanges, table: pd.DataFrame, sens: xr.Dataset | None) -
             Column("index_low", "95 %", unit, "interval of the index", kind, until="index_high"),
         ]
         if table["interacts"].any():
-            meaning = f"factors with which a pair surely holds {100 * WORTH:.0f} % of the variance or more"
+            meaning = (
+                f"factors with which a pair surely holds {100 * WORTH:.0f} % of the "
+                "variance or more"
+            )
             columns.append(Column("interacts", "Interacts with", "", meaning, "text"))
     positive = bool(np.nanmin(table["at_low"], initial=np.inf) > 0)
-    meaning = "largest over smallest value of the curve" if positive else "largest less smallest value of the curve"
+    meaning = (
+        "largest over smallest value of the curve"
+        if positive
+        else "largest less smallest value of the curve"
+    )
     columns += [
-        Column("height", "Height", "" if positive else units, meaning, "ratio" if positive else "number"),
-        Column("at_low", "At the first level", units, f"{words}: the curve at the smallest or first level"),
-        Column("at_high", "At the last level", units, f"{words}: the curve at the largest or last level"),
-        Column("shape", "Shape", "", "rise, fall, hump, dip, cliff (in one step), groups or flat", "text"),
-        Column("lost", "Rows lost", "", "cases that are not held: most of a level less fewest of a level", "count"),
+        Column(
+            "height",
+            "Height",
+            "" if positive else units,
+            meaning,
+            "ratio" if positive else "number",
+        ),
+        Column(
+            "at_low",
+            "At the first level",
+            units,
+            f"{words}: the curve at the smallest or first level",
+        ),
+        Column(
+            "at_high",
+            "At the last level",
+            units,
+            f"{words}: the curve at the largest or last level",
+        ),
+        Column(
+            "shape",
+            "Shape",
+            "",
+            "rise, fall, hump, dip, cliff (in one step), groups or flat",
+            "text",
+        ),
+        Column(
+            "lost",
+            "Rows lost",
+            "",
+            "cases that are not held: most of a level less fewest of a level",
+            "count",
+        ),
     ]
     return tuple(columns)

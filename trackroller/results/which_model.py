@@ -1,4 +1,6 @@
-"""Whether the contact model changes a decision: the answer to a study whose only choice is the model."""
+"""Whether the contact model changes a decision: the answer to a study whose only choice is the
+model.
+"""
 
 from __future__ import annotations
 
@@ -40,7 +42,9 @@ def models_of(results: SolvedCases) -> list[str]:
 
 
 def of_model(results: SolvedCases, model: str) -> SolvedCases:
-    """Return the results of one contact model alone, as those of a study that was solved with it."""
+    """Return the results of one contact model alone, as those of a study that was solved with
+    it.
+    """
     rows = np.flatnonzero((results.table[MODEL] == model).to_numpy())
     data = results.data
     if MODEL in data.dims:
@@ -80,10 +84,15 @@ def answer_which_model(results: SolvedCases) -> Answer:
         "changes": " and ".join(changed),
         "base": base,
         "models": [
-            {**{k: plain(v) for k, v in parts[m].items() if k in TOLD}, "leader": parts[m]["names"]} for m in models
+            {**{k: plain(v) for k, v in parts[m].items() if k in TOLD}, "leader": parts[m]["names"]}
+            for m in models
         ],
-        "smallest": float(np.nanmin(table["ratio_low"])) if table["ratio_low"].notna().any() else np.nan,
-        "largest": float(np.nanmax(table["ratio_high"])) if table["ratio_high"].notna().any() else np.nan,
+        "smallest": float(np.nanmin(table["ratio_low"]))
+        if table["ratio_low"].notna().any()
+        else np.nan,
+        "largest": float(np.nanmax(table["ratio_high"]))
+        if table["ratio_high"].notna().any()
+        else np.nan,
     }
     return Answer(
         question="which model",
@@ -108,7 +117,9 @@ TOLD = ("model", "verdict", "low", "high", "error", "meets", "of", "holds")
 
 
 def _of_model(results: SolvedCases, ranges: CaseRanges, model: str, base: str) -> dict[str, Any]:
-    """Return the row of one contact model: its own decision, and its ratios to the most exact one on like cases."""
+    """Return the row of one contact model: its own decision, and its ratios to the most exact one
+    on like cases.
+    """
     own_results = of_model(results, model)
     required = required_of(own_results)
     own = Comparison(
@@ -126,7 +137,9 @@ def _of_model(results: SolvedCases, ranges: CaseRanges, model: str, base: str) -
     return {
         "model": model,
         "verdict": plain(leader["state"]) or decided.kind,
-        "leader": ", ".join(f"{long_name_of(name)} {level_text(name, level)}" for name, level in names.items()),
+        "leader": ", ".join(
+            f"{long_name_of(name)} {level_text(name, level)}" for name, level in names.items()
+        ),
         "names": names,
         "leader_key": str(sorted(names.items())),
         "low": float(leader["low"]),
@@ -156,7 +169,9 @@ def _like(results: SolvedCases, model: str, base: str) -> tuple[np.ndarray, np.n
 
 
 def _ratios(results: SolvedCases, ranges: CaseRanges, model: str, base: str) -> np.ndarray:
-    """Return the output by a model over that by the most exact one, over the cases that both hold, shape (k,)."""
+    """Return the output by a model over that by the most exact one, over the cases that both hold,
+    shape (k,).
+    """
     one, other = _like(results, model, base)
     both = ranges.held[one] & ranges.held[other]
     mine, theirs = ranges.value[one[both]], ranges.value[other[both]]
@@ -165,8 +180,12 @@ def _ratios(results: SolvedCases, ranges: CaseRanges, model: str, base: str) -> 
     return np.asarray(found[np.isfinite(found)])
 
 
-def _like_against_like(results: SolvedCases, ranges: CaseRanges, models: list[str]) -> dict[str, Any]:
-    """Return the output by each model against that by the most exact one, on the cases that both hold."""
+def _like_against_like(
+    results: SolvedCases, ranges: CaseRanges, models: list[str]
+) -> dict[str, Any]:
+    """Return the output by each model against that by the most exact one, on the cases that both
+    hold.
+    """
     points = {}
     for model in models[1:]:
         one, other = _like(results, model, models[0])
@@ -177,20 +196,42 @@ def _like_against_like(results: SolvedCases, ranges: CaseRanges, models: list[st
 
 def _columns(ranges: CaseRanges, required: bool, several: bool) -> tuple[Column, ...]:
     _, words, units = ranges.output
-    columns = [Column("model", "Contact model", "", "contact model of these cases", "text", role="name")]
+    columns = [
+        Column("model", "Contact model", "", "contact model of these cases", "text", role="name")
+    ]
     if required:
-        columns.append(Column("verdict", "Verdict", "", "requirement of the leader by this model", "state"))
+        columns.append(
+            Column("verdict", "Verdict", "", "requirement of the leader by this model", "state")
+        )
     if several:
-        columns.append(Column("leader", "Leader", "", "candidate that this model names first", "text"))
+        columns.append(
+            Column("leader", "Leader", "", "candidate that this model names first", "text")
+        )
     columns += [
-        Column("low", "Worst", units, f"{words} of the leader at its worst condition", until="high", role="bar"),
         Column(
-            "ratio_low", "To the exact model", "1", "ratio on like cases, smallest to largest", "ratio", "ratio_high"
+            "low",
+            "Worst",
+            units,
+            f"{words} of the leader at its worst condition",
+            until="high",
+            role="bar",
+        ),
+        Column(
+            "ratio_low",
+            "To the exact model",
+            "1",
+            "ratio on like cases, smallest to largest",
+            "ratio",
+            "ratio_high",
         ),
         Column("like", "Like cases", "", "cases that both models hold", "count"),
     ]
     if required:
-        columns.append(Column("meets", "Meets", "", "cases that meet the requirement within the error", "count"))
+        columns.append(
+            Column(
+                "meets", "Meets", "", "cases that meet the requirement within the error", "count"
+            )
+        )
     columns += [
         Column("holds", "Holds", "", "cases in which the roller rolls inside all limits", "count"),
         Column("skids", "Skids", "", "cases that skid", "count"),

@@ -1,4 +1,6 @@
-"""The designs of a study and their conditions for the explorer: numbers to brush by, and a list of each."""
+"""The designs of a study and their conditions for the explorer: numbers to brush by, and a list of
+each.
+"""
 
 from __future__ import annotations
 
@@ -29,14 +31,20 @@ def design_columns(results: Results) -> tuple[list[Column], dict[str, Any]]:
 
     Returns
     -------
-    columns : `design` (number in the ranking, the best first), `design_worst` (worst life over the valid conditions of
-        the design), and `condition` (number of the combination of conditions, the hardest first) if the designs share
-        their conditions; none if the goal does not rank the designs
-    lists : under `design` and `condition` the `factors`, the `heads` and the `rows` of a list, `of`, the number of all
-        its entries, and a `note` for the reader; empty if no design repeats
+    columns : `design` (number in the ranking, the best first), `design_worst` (worst life over the
+        valid conditions of the design), and `condition` (number of the combination of conditions,
+        the hardest first) if the designs share their conditions; none if the goal does not rank the
+        designs
+    lists : under `design` and `condition` the `factors`, the `heads` and the `rows` of a list,
+        `of`, the number of all its entries, and a `note` for the reader; empty if no design repeats
     """
     candidates = results.candidates()
-    if candidates is None or len(candidates.size) < 2 or candidates.size.max() < 2 or not candidates.ranks:
+    if (
+        candidates is None
+        or len(candidates.size) < 2
+        or candidates.size.max() < 2
+        or not candidates.ranks
+    ):
         return [], {}
     own = candidates.place >= 0
     number = np.argsort(candidates.table.index.to_numpy())[candidates.place]
@@ -44,7 +52,14 @@ def design_columns(results: Results) -> tuple[list[Column], dict[str, Any]]:
     words, unit = candidates.goal[1:]
     columns = [
         _numbered("design", "Design, the best first", np.where(own, number, -1)),
-        Column("design_worst", f"Worst {words} of the design", unit, "design", worst, log=candidates.rising),
+        Column(
+            "design_worst",
+            f"Worst {words} of the design",
+            unit,
+            "design",
+            worst,
+            log=candidates.rising,
+        ),
     ]
     head = with_unit(f"Worst {words}", unit)
     lists = {"design": _designs(candidates, head)}
@@ -57,17 +72,24 @@ def design_columns(results: Results) -> tuple[list[Column], dict[str, Any]]:
 
 def _numbered(name: str, label: str, codes: np.ndarray) -> Column:
     levels = tuple(float(i + 1) for i in range(codes.max() + 1))
-    return Column(name, label, "", "design", codes, levels, tuple(count(int(level)) for level in levels))
+    return Column(
+        name, label, "", "design", codes, levels, tuple(count(int(level)) for level in levels)
+    )
 
 
 def _designs(candidates: Candidates, worst: str) -> dict[str, Any]:
-    """List the designs by rank, with their lives, the conditions in which they are valid, and what fails first."""
+    """List the designs by rank, with their lives, the conditions in which they are valid, and what
+    fails first.
+    """
     heads, cells, note = _goals(candidates)
     nine = [f"Nine of ten reach [{candidates.goal[2]}]"] if "b10" in candidates.table else []
     rows = []
     for _, row in candidates.table.head(MOST_LISTED).iterrows():
         key = tuple(row[n] for n in candidates.choices)
-        lives = [Life(row[name], row[f"{name}_beyond"]) for name in (["b10", "worst"] if nine else ["worst"])]
+        lives = [
+            Life(row[name], row[f"{name}_beyond"])
+            for name in (["b10", "worst"] if nine else ["worst"])
+        ]
         valid = part_of(row["valid"], row["cases"])
         further = [*map(cell, lives if candidates.rising else map(float, lives)), valid]
         further += [] if alone(candidates) else [first_words(row) or "–"]
@@ -86,19 +108,29 @@ def _designs(candidates: Candidates, worst: str) -> dict[str, Any]:
 
 
 def _goals(candidates: Candidates) -> tuple[list[str], dict[tuple[Any, ...], list[str]], str]:
-    """Return the goals of the study that are statistics over the conditions of a design, with its Pareto set.
+    """Return the goals of the study that are statistics over the conditions of a design, with its
+    Pareto set.
 
     Returns
     -------
-    Heads, cells by design, and what a reader has to know; empty if the goals of the study are those of single cases.
+    Heads, cells by design, and what a reader has to know; empty if the goals of the study are those
+    of single cases.
     """
     goals = candidates.results.config.pareto
     if not any(statistic(name)[0] for name in goals):
         return [], {}, ""
-    note = "The goals of this study are statistics over its scatter: they compare designs. Goals below compares cases."
+    note = (
+        "The goals of this study are statistics over its scatter: they compare designs. Goals "
+        "below compares cases."
+    )
     front = study_pareto(candidates.results)
     if front is None:
-        return [], {}, f"{note} Their Pareto set needs sensitivity.nc beside the study; it stands in the report."
+        return (
+            [],
+            {},
+            f"{note} Their Pareto set needs sensitivity.nc beside the study; it stands in the "
+            "report.",
+        )
     names = [name for name in goals if name not in candidates.choices]
     best = np.where(front["optimal"].values == 1, "yes", "no")
     values = zip(*(front[name].values.tolist() for name in names), strict=True)
@@ -108,8 +140,12 @@ def _goals(candidates: Candidates) -> tuple[list[str], dict[tuple[Any, ...], lis
     return heads, dict(zip(keys, lines, strict=True)), note
 
 
-def _conditions(candidates: Candidates, place: np.ndarray, number: np.ndarray, worst: str) -> dict[str, Any]:
-    """List the conditions with the designs that are valid there, the worst life, and the design that does best."""
+def _conditions(
+    candidates: Candidates, place: np.ndarray, number: np.ndarray, worst: str
+) -> dict[str, Any]:
+    """List the conditions with the designs that are valid there, the worst life, and the design
+    that does best.
+    """
     results, rows = candidates.results, []
     values, sign = results.column(candidates.goal[0]), 1.0 if candidates.rising else -1.0
     beyond = beyond_sn_data(results, candidates.goal[0])
@@ -123,11 +159,19 @@ def _conditions(candidates: Candidates, place: np.ndarray, number: np.ndarray, w
         first = results.table.iloc[int(np.argmax(there))]
         rows.append([*(cell(factor_cell(n, first[n])) for n in candidates.conditions), *cells])
     heads = [*map(heading, candidates.conditions), "Valid designs", worst, "Best design"]
-    return {"factors": candidates.conditions, "heads": heads, "rows": rows, "of": int(place.max()) + 1, "note": ""}
+    return {
+        "factors": candidates.conditions,
+        "heads": heads,
+        "rows": rows,
+        "of": int(place.max()) + 1,
+        "note": "",
+    }
 
 
 def alone(candidates: Candidates) -> bool:
-    """Return whether the roller stands for the pair in every case, because the guide's hours are unknown."""
+    """Return whether the roller stands for the pair in every case, because the guide's hours are
+    unknown.
+    """
     return candidates.rising and not candidates.results.knows("guide_life_hours")
 
 

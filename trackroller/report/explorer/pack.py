@@ -1,4 +1,6 @@
-"""What the explorer takes of the cases: a sample of a large study, and columns as one compressed block of bytes."""
+"""What the explorer takes of the cases: a sample of a large study, and columns as one compressed
+block of bytes.
+"""
 
 from __future__ import annotations
 
@@ -31,20 +33,23 @@ def pack(columns: Sequence[Column]) -> tuple[list[dict[str, Any]], str]:
 
     Returns
     -------
-    header : for each column its name, label, unit, role, scale, levels, number type and place in the block
+    header : for each column its name, label, unit, role, scale, levels, number type and place in
+        the block
     block : the numbers, as base64 of a zlib stream (RFC 1950)
 
     Notes
     -----
-    Numbers are little-endian. In each column the first bytes of all numbers come first, then all second bytes, and so
-    on: equal bytes then stand side by side, which compresses better. Positions in a list of levels are stored plus
-    one; 0 stands for no value.
+    Numbers are little-endian. In each column the first bytes of all numbers come first, then all
+    second bytes, and so on: equal bytes then stand side by side, which compresses better. Positions
+    in a list of levels are stored plus one; 0 stands for no value.
     """
     header, parts, start = [], [], 0
     for column in columns:
         array = _numbers(column)
         part = array.view(np.uint8).reshape(len(array), -1).T.tobytes()
-        entry: dict[str, Any] = {key: getattr(column, key) for key in ("name", "label", "unit", "role", "log")}
+        entry: dict[str, Any] = {
+            key: getattr(column, key) for key in ("name", "label", "unit", "role", "log")
+        }
         if column.levels is not None:
             # JSON has no infinity
             entry["levels"] = [str(v) if v in (math.inf, -math.inf) else v for v in column.levels]
@@ -88,8 +93,9 @@ def sample_rows(state: np.ndarray, keep: np.ndarray, most: int) -> np.ndarray:
 
     Returns
     -------
-    Rising row numbers: all rows if there are at most `most`. Otherwise the cases of `keep`, all cases of rare states,
-    and a random part of each other state in proportion to its number of cases.
+    Rising row numbers: all rows if there are at most `most`. Otherwise the cases of `keep`, all
+    cases of rare states, and a random part of each other state in proportion to its number of
+    cases.
     """
     if len(state) <= most:
         return np.arange(len(state))

@@ -38,7 +38,8 @@ def explorer(results: Results) -> dict[str, Any]:
 
     Returns
     -------
-    `header` (JSON), `rows` (base64), `script` and `style` (text), `sampled` (a sentence, '' if all cases are shown)
+    `header` (JSON), `rows` (base64), `script` and `style` (text), `sampled` (a sentence, '' if all
+    cases are shown)
     """
     ds, columns = results.data, collect(results)
     settings, more = solve_inputs(results, {c.name: c for c in columns})
@@ -47,7 +48,9 @@ def explorer(results: Results) -> dict[str, Any]:
     columns += of_designs
     state = next(c for c in columns if c.name == "state").values
     cases = len(state)
-    kept = pareto_rows(results, cases) | extreme_rows(state, (c.values for c in columns if c.levels is None))
+    kept = pareto_rows(results, cases) | extreme_rows(
+        state, (c.values for c in columns if c.levels is None)
+    )
     rows = sample_rows(state, kept, affordable_rows(columns))
     if len(rows) < cases:
         columns = [dataclasses.replace(c, values=c.values[rows]) for c in columns]
@@ -70,8 +73,10 @@ def explorer(results: Results) -> dict[str, Any]:
         "columns": packed,
     }
     said = (
-        f"{count(len(rows))} of {count(cases)} cases are shown: a sample by regime and validity, with all cases of "
-        "rare states, the smallest and the largest value of every quantity in every state, and the Pareto set of the "
+        f"{count(len(rows))} of {count(cases)} cases are shown: a sample by regime and validity, "
+        "with all cases of "
+        "rare states, the smallest and the largest value of every quantity in every state, and "
+        "the Pareto set of the "
         "study's goals. Counts and shares are those of the sample."
     )
     return {
@@ -86,14 +91,20 @@ def explorer(results: Results) -> dict[str, Any]:
 def _numbers(results: Results) -> np.ndarray | None:
     """Return the case numbers of `trackroller repeat` if they are not the row numbers."""
     ds = results.data
-    if "case" not in ds.variables or ds["case"].size != len(results.table) or ds["case"].dtype.kind not in "fiu":
+    if (
+        "case" not in ds.variables
+        or ds["case"].size != len(results.table)
+        or ds["case"].dtype.kind not in "fiu"
+    ):
         return None
     numbers = flat(ds, "case", results.dims)
     return None if (numbers == np.arange(len(numbers))).all() else numbers
 
 
 def pareto_rows(results: Results, cases: int) -> np.ndarray:
-    """Mark the cases that no other case beats in the study's goals, shape (n,) bool; all False without goals."""
+    """Mark the cases that no other case beats in the study's goals, shape (n,) bool; all False
+    without goals.
+    """
     marked = np.zeros(cases, dtype=bool)
     goals = results.goals
     if not goals or results.design.method.points:
@@ -105,22 +116,34 @@ def pareto_rows(results: Results, cases: int) -> np.ndarray:
 
 def asset(name: str) -> str:
     """Return the text of a built file of the page."""
-    return (resources.files("trackroller.report") / "explorer" / "assets" / name).read_text(encoding="utf-8")
+    return (resources.files("trackroller.report") / "explorer" / "assets" / name).read_text(
+        encoding="utf-8"
+    )
 
 
 def _json(value: Any) -> markupsafe.Markup:
-    """Write JSON without NaN. Every `<` is escaped, so that no name of a user can end the script element."""
+    """Write JSON without NaN. Every `<` is escaped, so that no name of a user can end the script
+    element.
+    """
     text = json.dumps(value, ensure_ascii=False, allow_nan=False, separators=(",", ":"))
-    return markupsafe.Markup(text.replace("<", "\\u003c").replace("\u2028", "\\u2028").replace("\u2029", "\\u2029"))
+    return markupsafe.Markup(
+        text.replace("<", "\\u003c").replace("\u2028", "\\u2028").replace("\u2029", "\\u2029")
+    )
 
 
 def secured(page: str) -> str:
-    """Fill in the Content-Security-Policy of a page: its own scripts and styles by their digests, nothing else."""
+    """Fill in the Content-Security-Policy of a page: its own scripts and styles by their digests,
+    nothing else.
+    """
     policy = ["default-src 'none'", "img-src data:", "base-uri 'none'", "form-action 'none'"]
     for kind in ("script", "style"):
         texts = re.findall(rf"<{kind}>(.*?)</{kind}>", page, re.S)
-        digests = [base64.b64encode(hashlib.sha256(text.encode()).digest()).decode() for text in texts]
-        policy.append(" ".join([f"{kind}-src", *([f"'sha256-{digest}'" for digest in digests] or ["'none'"])]))
+        digests = [
+            base64.b64encode(hashlib.sha256(text.encode()).digest()).decode() for text in texts
+        ]
+        policy.append(
+            " ".join([f"{kind}-src", *([f"'sha256-{digest}'" for digest in digests] or ["'none'"])])
+        )
     return page.replace(POLICY, "; ".join(policy), 1)
 
 

@@ -1,4 +1,6 @@
-"""The cases of a study as typed columns: factors, results, states, and the inputs that solve a case again."""
+"""The cases of a study as typed columns: factors, results, states, and the inputs that solve a case
+again.
+"""
 
 from __future__ import annotations
 
@@ -11,7 +13,15 @@ import pandas as pd
 import xarray as xr
 
 from trackroller.damage import LIMITS
-from trackroller.parameters import BODIES, MAPPING_FIELDS, MATERIAL_FIELDS, OPTIONS, PARAMETERS, REGIME_LABELS, REGIMES
+from trackroller.parameters import (
+    BODIES,
+    MAPPING_FIELDS,
+    MATERIAL_FIELDS,
+    OPTIONS,
+    PARAMETERS,
+    REGIME_LABELS,
+    REGIMES,
+)
 from trackroller.parameters.carriage_fields import parameter_of
 from trackroller.parameters.validity import VALIDITY
 from trackroller.report.numbers import BEYOND, capital, level_text, long_name, plain, unit_text
@@ -28,8 +38,17 @@ from trackroller.study.design.levels import NAMED
 from trackroller.study.file import goals
 from trackroller.study.outputs import Output, default_names, flat, outputs, parts_in
 
-MOST_DETAILED = 20_000  # cases; a larger study shows only its factors and outputs, so that the file can be sent
-STATES = ("valid", "outside the model", "full slip", "lift-off", "failed", "not converged", "constraints not met")
+# cases; a larger study shows only its factors and outputs, so that the file can be sent
+MOST_DETAILED = 20_000
+STATES = (
+    "valid",
+    "outside the model",
+    "full slip",
+    "lift-off",
+    "failed",
+    "not converged",
+    "constraints not met",
+)
 DETAILS = (*CONTACT_RESULTS, *(n for n in BODY_RESULTS if n != "error_estimate"), *WHOLE_RESULTS)
 
 
@@ -41,8 +60,8 @@ class Column:
     ----------
     name : name as in study files
     label, unit : for people
-    role : `factor`, `input` (follows from factors), `output`, `design` (of the design, over its conditions), `detail`
-        (shown for a chosen case), `state`, or `remark` (of another column)
+    role : `factor`, `input` (follows from factors), `output`, `design` (of the design, over its
+        conditions), `detail` (shown for a chosen case), `state`, or `remark` (of another column)
     values : numbers (n,), or positions (n,) in `levels`, -1 for none
     levels : values of a column of few values, in order; numbers or texts
     texts : the levels in words
@@ -68,8 +87,8 @@ def collect(results: Results) -> list[Column]:
 
     Returns
     -------
-    Columns of equal length. Outputs hold the numbers that `pareto` and the analyses use, in double precision; figures
-    of single contacts hold single precision.
+    Columns of equal length. Outputs hold the numbers that `pareto` and the analyses use, in double
+    precision; figures of single contacts hold single precision.
     """
     ds, dims = results.data, results.dims
     columns = [_setting(results, name, "factor") for name in results.factors]
@@ -92,9 +111,21 @@ def _setting(results: Results, name: str, role: str) -> Column:
     label = capital(long_name(name))
     few = not results.numeric(name) or results.grid or len(results.levels(name)) <= 12
     if not few or (role == "input" and results.numeric(name)):
-        return Column(name, label, unit, role, values.astype(float), log=spaced_by_ratio(values.astype(float), 100.0))
+        return Column(
+            name,
+            label,
+            unit,
+            role,
+            values.astype(float),
+            log=spaced_by_ratio(values.astype(float), 100.0),
+        )
     return coded(
-        name, label, role, values, [level_text(name, v, unit=name in NAMED) for v in results.levels(name)], unit
+        name,
+        label,
+        role,
+        values,
+        [level_text(name, v, unit=name in NAMED) for v in results.levels(name)],
+        unit,
     )
 
 
@@ -102,27 +133,43 @@ def _good(results: Results, name: str) -> Column:
     """Return a column of the user's own of a shelf, such as the price of a roller."""
     values = results.table[name].to_numpy()
     if values.dtype.kind == "f":
-        return Column(name, capital(long_name(name)), str(results.data[name].attrs.get("units", "")), "input", values)
+        return Column(
+            name,
+            capital(long_name(name)),
+            str(results.data[name].attrs.get("units", "")),
+            "input",
+            values,
+        )
     return coded(name, capital(long_name(name)), "input", values)
 
 
 def coded(
-    name: str, label: str, role: str, values: Sequence[Any] | np.ndarray, texts: Sequence[str] = (), unit: str = ""
+    name: str,
+    label: str,
+    role: str,
+    values: Sequence[Any] | np.ndarray,
+    texts: Sequence[str] = (),
+    unit: str = "",
 ) -> Column:
     """Return a column of few values as positions in the list of its values.
 
-    Numbers are sorted, texts stay in order of appearance. Without `texts` the values stand for themselves.
+    Numbers are sorted, texts stay in order of appearance. Without `texts` the values stand for
+    themselves.
     """
     array = np.asarray(values)
     number = array.dtype.kind in "fiu"
     codes, different = pd.factorize(array, sort=number)
     levels = different.astype(float if number else str).tolist()
-    return Column(name, label, unit, role, codes, tuple(levels), tuple(texts) or tuple(map(str, levels)))
+    return Column(
+        name, label, unit, role, codes, tuple(levels), tuple(texts) or tuple(map(str, levels))
+    )
 
 
 def _results(ds: xr.Dataset, dims: tuple[str, ...], results: Results) -> list[Column]:
     """Return the usual outputs and those that the study file names as goals."""
-    named = [n for text in results.config.constraints for n in goals.names_in(text) if n != "regime"]
+    named = [
+        n for text in results.config.constraints for n in goals.names_in(text) if n != "regime"
+    ]
     named += [n for n in results.config.pareto if not goals.statistic(n)[0]]
     inputs = {*results.table, *PARAMETERS, *MATERIAL_FIELDS}
     names = dict.fromkeys([*default_names(ds, dims, dims), *(n for n in named if n not in inputs)])
@@ -130,7 +177,8 @@ def _results(ds: xr.Dataset, dims: tuple[str, ...], results: Results) -> list[Co
 
 
 def _beyond(results: Results, columns: Sequence[Column]) -> list[Column]:
-    """Mark the lives that lie beyond the S-N data: for each column with a life in it a column `NAME:beyond` of 0 and 1.
+    """Mark the lives that lie beyond the S-N data: for each column with a life in it a column
+    `NAME:beyond` of 0 and 1.
 
     A column that marks no life is left out.
     """
@@ -139,17 +187,23 @@ def _beyond(results: Results, columns: Sequence[Column]) -> list[Column]:
         marks = beyond_sn_data(results, column.name) & ~np.isnan(column.values)
         if marks.any():
             name = f"{column.name}:beyond"
-            remarks.append(Column(name, BEYOND, "", "remark", marks.astype(int), (0.0, 1.0), ("", BEYOND)))
+            remarks.append(
+                Column(name, BEYOND, "", "remark", marks.astype(int), (0.0, 1.0), ("", BEYOND))
+            )
     return remarks
 
 
 def _in_years(results: Results, columns: Sequence[Column]) -> list[Column]:
-    """Return the lives in years, for the card of a chosen case; none if the duty of the roller is not known."""
+    """Return the lives in years, for the card of a chosen case; none if the duty of the roller is
+    not known.
+    """
     duty = results.config.duty
     if duty is None:
         return []
     lives = [c for c in columns if c.unit == "h" and is_life(c.name)]
-    return [Column(f"{c.name}:years", c.label, "years", "detail", years(c.values, duty)) for c in lives]
+    return [
+        Column(f"{c.name}:years", c.label, "years", "detail", years(c.values, duty)) for c in lives
+    ]
 
 
 def _outputs(ds: xr.Dataset, dims: tuple[str, ...], names: list[str]) -> list[Output]:
@@ -157,15 +211,21 @@ def _outputs(ds: xr.Dataset, dims: tuple[str, ...], names: list[str]) -> list[Ou
 
 
 def _output(one: Output, role: str, results: Results) -> Column:
-    if is_life(one.name):  # a roller that skids, and a body above its tensile strength, have no fatigue life
+    # a roller that skids, and a body above its tensile strength, have no fatigue life
+    if is_life(one.name):
         body = body_of(one.name) if results.by_body else ""
-        one = replace(one, values=np.where(results.rolling & ~results.flagged("static", body), one.values, np.nan))
+        one = replace(
+            one,
+            values=np.where(results.rolling & ~results.flagged("static", body), one.values, np.nan),
+        )
     values = one.values.astype(np.float32) if role == "detail" else one.values
     log = declared(one.name).scale == "log10"
     return Column(one.name, capital(one.long_name), unit_text(one.units), role, values, log=log)
 
 
-def _details(ds: xr.Dataset, dims: tuple[str, ...], known: set[str], results: Results) -> list[Column]:
+def _details(
+    ds: xr.Dataset, dims: tuple[str, ...], known: set[str], results: Results
+) -> list[Column]:
     """Return figures of each contact and body, under names such as `peak_stress_roller_1`."""
     parts = parts_in(ds, [n for n in DETAILS if n in ds and set(ds[n].dims) >= set(dims)], dims)
     names = [
@@ -177,7 +237,9 @@ def _details(ds: xr.Dataset, dims: tuple[str, ...], known: set[str], results: Re
 
 
 def _states(ds: xr.Dataset, dims: tuple[str, ...], results: Results) -> list[Column]:
-    """Return regime, state, validity flags (of each body where they are known), and reason of failure."""
+    """Return regime, state, validity flags (of each body where they are known), and reason of
+    failure.
+    """
     regime = np.clip(np.nan_to_num(results.regime, nan=3), 0, 3).astype(int)
     rolls = np.where(results.inside, 6, np.where(results.rolling, 1, 5))
     state = np.where(results.valid, 0, np.where(regime > 0, regime + 1, rolls))
@@ -190,15 +252,35 @@ def _states(ds: xr.Dataset, dims: tuple[str, ...], results: Results) -> list[Col
             masks = np.nan_to_num(results.column(name, 0.0)).astype(int)
             texts_of_masks = [flag_text(int(mask), results.flags) for mask in np.unique(masks)]
             body = name.partition("_")[2]
-            columns.append(coded(name, f"Flags{f' of the {body}' if body else ''}", "state", masks, texts_of_masks))
+            columns.append(
+                coded(
+                    name,
+                    f"Flags{f' of the {body}' if body else ''}",
+                    "state",
+                    masks,
+                    texts_of_masks,
+                )
+            )
     columns += _first_limits(results)
     if results.allowed is not None:
         met = ("met", "not met")
         columns.append(
-            Column("constraints", "Constraints of the study", "", "state", 1 - results.allowed.astype(int), met, met)
+            Column(
+                "constraints",
+                "Constraints of the study",
+                "",
+                "state",
+                1 - results.allowed.astype(int),
+                met,
+                met,
+            )
         )
     if "reason" in ds:
-        reason = ds["reason"].broadcast_like(ds["regime"]).transpose(*dims) if "regime" in ds else ds["reason"]
+        reason = (
+            ds["reason"].broadcast_like(ds["regime"]).transpose(*dims)
+            if "regime" in ds
+            else ds["reason"]
+        )
         texts = reason.values.astype(str).ravel()
         if (texts != "").any():
             columns.append(coded("reason", "Reason", "state", texts))
@@ -206,18 +288,31 @@ def _states(ds: xr.Dataset, dims: tuple[str, ...], results: Results) -> list[Col
 
 
 def _first_limits(results: Results) -> list[Column]:
-    """Return the limit that ends the pair first, and the first one of each body; nothing without limits."""
+    """Return the limit that ends the pair first, and the first one of each body; nothing without
+    limits.
+    """
     if not results.limits:
         return []
-    words = np.array([LIMITS[name].title if name in LIMITS else "not known" for name in results.limits])
+    words = np.array(
+        [LIMITS[name].title if name in LIMITS else "not known" for name in results.limits]
+    )
     last = len(words) - 1
-    columns = {"limiting_mechanism": [LIMITS[name].title if name else words[last] for name in first_limit(results)]}
+    columns = {
+        "limiting_mechanism": [
+            LIMITS[name].title if name else words[last] for name in first_limit(results)
+        ]
+    }
     for body in BODIES:
-        numbers = np.nan_to_num(results.column(f"limiting_mechanism_{body}", np.nan), nan=last).astype(int)
+        numbers = np.nan_to_num(
+            results.column(f"limiting_mechanism_{body}", np.nan), nan=last
+        ).astype(int)
         columns[f"limiting_mechanism_{body}"] = words[numbers].tolist()
     labels = ("First limit of the pair", *(f"First limit of the {body}" for body in BODIES))
     pairs = zip(columns.items(), labels, strict=True)
-    return [coded(name, label, "state", np.array(values, dtype=object)) for (name, values), label in pairs]
+    return [
+        coded(name, label, "state", np.array(values, dtype=object))
+        for (name, values), label in pairs
+    ]
 
 
 def flag_text(mask: int, flags: Sequence[str]) -> str:
@@ -226,7 +321,9 @@ def flag_text(mask: int, flags: Sequence[str]) -> str:
     return "; ".join(said) or "none"
 
 
-def solve_inputs(results: Results, known: dict[str, Column]) -> tuple[list[list[Any]], list[Column]]:
+def solve_inputs(
+    results: Results, known: dict[str, Column]
+) -> tuple[list[list[Any]], list[Column]]:
     """Return what `trackroller solve --set` needs to repeat a case.
 
     Parameters
@@ -236,7 +333,8 @@ def solve_inputs(results: Results, known: dict[str, Column]) -> tuple[list[list[
 
     Returns
     -------
-    settings : pairs of a key and its text, or of a key and a list with the name of its column if the text varies
+    settings : pairs of a key and its text, or of a key and a list with the name of its column if
+        the text varies
     columns : further columns that the settings name
     """
     ds, dims = results.data, results.dims
@@ -273,7 +371,10 @@ def _fixed(ds: xr.Dataset, results: Results, name: str) -> Any:
 def strengths(ds: xr.Dataset) -> dict[str, list[float]]:
     """Return tensile strength and fatigue limit [MPa] of each material of the study, by name."""
     return {
-        str(name): [values["tensile_strength"], values["tensile_strength"] * values["fatigue_strength_ratio"]]
+        str(name): [
+            values["tensile_strength"],
+            values["tensile_strength"] * values["fatigue_strength_ratio"],
+        ]
         for name, values in stored_materials(ds.attrs).items()
         if {"tensile_strength", "fatigue_strength_ratio"} <= set(values)
     }

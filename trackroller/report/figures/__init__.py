@@ -1,4 +1,6 @@
-"""Figures of studies and of single cases. Drawing libraries are imported when something is drawn."""
+"""Figures of studies and of single cases. Drawing libraries are imported when something is
+drawn.
+"""
 
 from trackroller.environment import let_matplotlib_cache
 

@@ -29,14 +29,19 @@ from trackroller.study.store.put import replacing
 ARROWS = (17, 11)  # along the long and the short axis of the patch
 SLENDER = 4.0  # ratio of the axes above which a patch is not drawn to scale
 PANEL_MM = 70.0  # width of a map
-LIGHT = ListedColormap(matplotlib.colormaps["YlGnBu"](np.linspace(0, 0.62, 64)))  # black arrows are visible on it
+# black arrows are visible on it
+LIGHT = ListedColormap(matplotlib.colormaps["YlGnBu"](np.linspace(0, 0.62, 64)))
 
 
 def _shapes(patches: list[Patch]) -> str:
-    return "the loaded part of both contact patches" if patches[0].solved else "both contact ellipses"
+    return (
+        "the loaded part of both contact patches" if patches[0].solved else "both contact ellipses"
+    )
 
 
-def _canvas(patches: list[Patch], profile: bool = False) -> tuple[Figure, list[Axes], Axes | None, bool]:
+def _canvas(
+    patches: list[Patch], profile: bool = False
+) -> tuple[Figure, list[Axes], Axes | None, bool]:
     """Return a figure with the patches side by side and, on request, axes for a profile.
 
     The patches are drawn to one scale unless they are very slender.
@@ -88,8 +93,13 @@ def shear_arrows(ds: xr.Dataset) -> style.Drawn:
     style.head(figure, "Shear traction on the roller")
     best = int(np.argmax([s.max() for s in sizes]))
     caption = (
-        f"Shear traction on the roller over {_shapes(patches)} (arrows: direction and size; shade: size, MPa). "
-        + ("The black dot is the spin pole, about which the surfaces turn on each other. " if pole else "")
+        f"Shear traction on the roller over {_shapes(patches)} (arrows: direction and size; "
+        "shade: size, MPa). "
+        + (
+            "The black dot is the spin pole, about which the surfaces turn on each other. "
+            if pole
+            else ""
+        )
         + case_text(ds, to_scale)
     )
     largest = number(float(sizes[best].max()))
@@ -108,7 +118,13 @@ def _arrows(axes: Axes, patch: Patch, top: float, to_scale: bool) -> None:
     size: dict[str, Any] = {"angles": "uv", "scale_units": "width", "scale": top / 0.075}
     if to_scale:
         size = {"angles": "xy", "scale_units": "xy", "scale": top / (1.5 * step)}
-    size |= {"units": "inches", "width": 0.010, "headwidth": 4, "headlength": 4.5, "headaxislength": 4}
+    size |= {
+        "units": "inches",
+        "width": 0.010,
+        "headwidth": 4,
+        "headlength": 4.5,
+        "headaxislength": 4,
+    }
     axes.quiver(x[keep], y[keep], u[keep], v[keep], pivot="mid", zorder=3, **size)
 
 
@@ -124,14 +140,32 @@ def _pole(axes: Axes, patch: Patch) -> None:
     x, y = patch.spin_pole
     (left, right), (rear, front) = axes.get_xlim(), axes.get_ylim()
     if left <= x <= right and rear <= y <= front:
-        axes.plot(x, y, "o", color="black", markersize=5, markeredgecolor="white", markeredgewidth=0.8, zorder=5)
+        axes.plot(
+            x,
+            y,
+            "o",
+            color="black",
+            markersize=5,
+            markeredgecolor="white",
+            markeredgewidth=0.8,
+            zorder=5,
+        )
     elif np.isfinite(x):
         at, side = (0.99, "right") if x > 0.5 * (left + right) else (0.01, "left")
-        axes.text(at, 0.03, f"spin pole at x = {number(x)} mm", fontsize=7, ha=side, transform=axes.transAxes)
+        axes.text(
+            at,
+            0.03,
+            f"spin pole at x = {number(x)} mm",
+            fontsize=7,
+            ha=side,
+            transform=axes.transAxes,
+        )
 
 
 def friction_energy(ds: xr.Dataset) -> style.Drawn:
-    """Draw the friction energy per area over both patches, and its profile across the running track."""
+    """Draw the friction energy per area over both patches, and its profile across the running
+    track.
+    """
     name = "friction_energy_density"
     patches = patches_of(ds, name)
     fields = [np.where(p.inside, p.field(name), 0.0) for p in patches]
@@ -153,11 +187,14 @@ def friction_energy(ds: xr.Dataset) -> style.Drawn:
     figure.legend(loc="outside lower left", ncols=2)
     style.head(figure, "Friction energy of both contacts")
     caption = (
-        f"Friction energy per area and distance travelled over {_shapes(patches)}, and summed along the rolling "
+        f"Friction energy per area and distance travelled over {_shapes(patches)}, and summed "
+        "along the rolling "
         f"direction over each strip of the running track. {case_text(ds, to_scale)}"
     )
     totals = [float(q.summed(p)) for p, q in zip(profiles, patches, strict=True)]
-    words = " and ".join(f"{number(t)} J/m in contact {p.contact}" for t, p in zip(totals, patches, strict=True))
+    words = " and ".join(
+        f"{number(t)} J/m in contact {p.contact}" for t, p in zip(totals, patches, strict=True)
+    )
     worst = int(np.argmax([p.max() for p in profiles]))
     place = float(patches[worst].x[int(np.argmax(profiles[worst]))])
     sentence = (
@@ -173,25 +210,29 @@ def plot_case(ds: xr.Dataset, out_dir: Path) -> list[style.FigureInfo]:
     Parameters
     ----------
     ds : xarray.Dataset
-        Result of `solve` for one case with the outputs 'contact', 'peak_stress', 'tractions' and 'subsurface'. A figure
-        whose output is missing is not drawn.
+        Result of `solve` for one case with the outputs 'contact', 'peak_stress', 'tractions' and
+        'subsurface'. A figure whose output is missing is not drawn.
     out_dir : pathlib.Path
         Folder for the figures; it is created if it does not exist.
 
     Returns
     -------
     list of FigureInfo
-        The figures drawn: `contact_shear`, `contact_energy`, and `contact_1_stress` and `contact_2_stress` with both
-        section planes of both bodies. A contact that has lifted off is left out.
+        The figures drawn: `contact_shear`, `contact_energy`, and `contact_1_stress` and
+        `contact_2_stress` with both section planes of both bodies. A contact that has lifted off is
+        left out.
 
     Raises
     ------
     InputError
-        If the data set has several cases, or a file of somebody else stands in the place of a figure.
+        If the data set has several cases, or a file of somebody else stands in the place of a
+        figure.
     """
     if "case" in ds.dims:
         if ds.sizes["case"] != 1:
-            raise InputError("ds", f"{ds.sizes['case']} cases", "one case at a time", "Use ds.isel(case=i).")
+            raise InputError(
+                "ds", f"{ds.sizes['case']} cases", "one case at a time", "Use ds.isel(case=i)."
+            )
         ds = ds.isel(case=0)
     with replacing(Path(out_dir)) as beside:
         beside.mkdir()

@@ -1,4 +1,6 @@
-"""The contact patches of one case, by Hertz's ellipse or by the loaded elements of a solved pressure; and its name."""
+"""The contact patches of one case, by Hertz's ellipse or by the loaded elements of a solved
+pressure; and its name.
+"""
 
 from __future__ import annotations
 
@@ -12,7 +14,8 @@ from trackroller.report.numbers import capital, level_text, listing, long_name, 
 from trackroller.roller.dataset import solved_by
 from trackroller.roller.stored_inputs import CASE, inputs_of, is_default
 
-SLIGHT = 1e-3  # share of the largest pressure; smaller values are residuals of the solution, not loads
+# share of the largest pressure; smaller values are residuals of the solution, not loads
+SLIGHT = 1e-3
 
 
 class Patch:
@@ -29,7 +32,9 @@ class Patch:
     @property
     def there(self) -> bool:
         """Return whether the contact exists."""
-        return bool(np.isfinite(self.x).all() and np.isfinite(self.y).all() and np.isfinite(self.a * self.b))
+        return bool(
+            np.isfinite(self.x).all() and np.isfinite(self.y).all() and np.isfinite(self.a * self.b)
+        )
 
     def field(self, name: str) -> np.ndarray:
         """Return a field with 0 where it is not defined."""
@@ -65,12 +70,18 @@ class Patch:
 
         The new elements have the value `rim`, or that of their neighbour.
         """
-        wide = [np.concatenate([[2 * v[0] - v[1]], v, [2 * v[-1] - v[-2]]]) for v in (self.x, self.y)]
-        return *wide, np.pad(field, 1, mode="edge") if rim is None else np.pad(field, 1, constant_values=rim)
+        wide = [
+            np.concatenate([[2 * v[0] - v[1]], v, [2 * v[-1] - v[-2]]]) for v in (self.x, self.y)
+        ]
+        return *wide, np.pad(field, 1, mode="edge") if rim is None else np.pad(
+            field, 1, constant_values=rim
+        )
 
     @property
     def spin_pole(self) -> tuple[float, float] | None:
-        """Return the place of the spin pole of full sliding [mm]; other contact models have no spin pole."""
+        """Return the place of the spin pole of full sliding [mm]; other contact models have no spin
+        pole.
+        """
         if "spin_pole_lateral" not in self.ds or solved_by(self.ds).item() != "sliding":
             return None
         return float(self.ds["spin_pole_lateral"]), float(self.ds.get("spin_pole_rolling", 0.0))
@@ -91,11 +102,17 @@ def _bears(part: xr.Dataset) -> np.ndarray:
 
 def _strips(part: xr.Dataset, axis: str) -> list[tuple[float, float]]:
     """Return the first and last edge [mm] of each run of loaded elements along 'x' or 'y'."""
-    centres, loaded = part[f"patch_{axis}"].values, np.any(_bears(part), axis=0 if axis == "x" else 1)
+    centres, loaded = (
+        part[f"patch_{axis}"].values,
+        np.any(_bears(part), axis=0 if axis == "x" else 1),
+    )
     half = 0.5 * (centres[1] - centres[0])
     steps = np.diff(np.concatenate([[0], loaded.astype(int), [0]]))
     starts, ends = np.flatnonzero(steps == 1), np.flatnonzero(steps == -1) - 1
-    return [(float(centres[i] - half), float(centres[k] + half)) for i, k in zip(starts, ends, strict=True)]
+    return [
+        (float(centres[i] - half), float(centres[k] + half))
+        for i, k in zip(starts, ends, strict=True)
+    ]
 
 
 def widths(part: xr.Dataset, axis: str) -> list[tuple[float, float]]:
@@ -109,7 +126,8 @@ def widths(part: xr.Dataset, axis: str) -> list[tuple[float, float]]:
     if semi not in part:
         return []
     middle = 0.0
-    if part.attrs.get("normal") == "halfspace" and axis == "x":  # the section is drawn about the middle of the patch
+    # the section is drawn about the middle of the patch
+    if part.attrs.get("normal") == "halfspace" and axis == "x":
         middle = float(np.mean(part["xz_x"].values))
     return [(middle - float(part[semi]), middle + float(part[semi]))]
 
@@ -129,9 +147,15 @@ def case_name(ds: xr.Dataset) -> str:
     if CASE not in ds.attrs:
         return "one case"
     given = {name: value for name, value in inputs_of(ds).items() if not is_default(name, value)}
-    said = [setting(n, v) for n, v in given.items() if n in PARAMETERS and isinstance(v, float) and v == v]
+    said = [
+        setting(n, v)
+        for n, v in given.items()
+        if n in PARAMETERS and isinstance(v, float) and v == v
+    ]
     pair = [str(inputs_of(ds)[name]) for name in MATERIAL_FIELDS]
-    said += [level_text("material_pair", " / ".join(pair))] if set(given) & set(MATERIAL_FIELDS) else []
+    said += (
+        [level_text("material_pair", " / ".join(pair))] if set(given) & set(MATERIAL_FIELDS) else []
+    )
     said += [long_name(name) for name in given if name in MAPPING_FIELDS]
     return listing(said) if said else "default case"
 
@@ -141,6 +165,10 @@ def case_text(ds: xr.Dataset, to_scale: bool) -> str:
     regime = int(ds["regime"]) if "regime" in ds else 0
     forces = ds["normal_force"].values if "normal_force" in ds else np.array([])
     text = f"{capital(case_name(ds))}. Regime: {REGIME_LABELS[regime]}"
-    loads = [f"{rounded(float(f), 4)} N in contact {i + 1}" for i, f in enumerate(forces) if np.isfinite(f)]
+    loads = [
+        f"{rounded(float(f), 4)} N in contact {i + 1}"
+        for i, f in enumerate(forces)
+        if np.isfinite(f)
+    ]
     text += f"; normal force {' and '.join(loads)}." if loads else "."
     return text if to_scale else f"{text} Axes not to one scale."

@@ -1,7 +1,8 @@
-"""Draw the von Mises stress of both bodies of a contact: in two planes through the peak, and on the surface.
+"""Draw the von Mises stress of both bodies of a contact: in two planes through the peak, and on the
+surface.
 
-The roller stands above the guide as in the drawing of the README: x lateral, y in the rolling direction, z into each
-body.
+The roller stands above the guide as in the drawing of the README: x lateral, y in the rolling
+direction, z into each body.
 """
 
 from __future__ import annotations
@@ -20,7 +21,10 @@ from trackroller.report.numbers import near, rounded
 from trackroller.results.columns import at_surface
 from trackroller.roller.stored_inputs import MATERIALS, materials_of
 
-PLANES = (("von_mises_xz", "xz_x", "xz_z", "x", "lateral"), ("von_mises_yz", "yz_y", "yz_z", "y", "rolling"))
+PLANES = (
+    ("von_mises_xz", "xz_x", "xz_z", "x", "lateral"),
+    ("von_mises_yz", "yz_y", "yz_z", "y", "rolling"),
+)
 TRACTIONS = ("pressure", "shear_lateral", "shear_rolling")
 AROUND = 0.25  # share of the traction grid by which the surface is shown beyond each of its ends
 SLENDER = 2.5  # ratio of the sections above which they are not drawn to one scale
@@ -28,18 +32,27 @@ ROW_MM, SHARE_MM = 36.0, 125.0  # height of a row; width that the panels of a ro
 
 
 def sections(ds: xr.Dataset, contact: int) -> style.Drawn:
-    """Draw lateral section, rolling section and surface of roller and guide under one contact, the peak marked.
+    """Draw lateral section, rolling section and surface of roller and guide under one contact, the
+    peak marked.
 
-    It answers: where does each body break first, at the surface or below it, and how far does the stress reach?
+    It answers: where does each body break first, at the surface or below it, and how far does the
+    stress reach?
     """
     if "von_mises_xz" not in ds:
         return None
     part = ds.sel(contact=contact)
-    bodies = [str(b) for b in part["body"].values if np.isfinite(part["von_mises_xz"].sel(body=b)).any()]
+    bodies = [
+        str(b) for b in part["body"].values if np.isfinite(part["von_mises_xz"].sel(body=b)).any()
+    ]
     if not bodies:
         return None
-    surfaces = {body: stress for body in bodies if (stress := surface_stress(ds, contact, body)) is not None}
-    shown = [*(part[plane[0]] for plane in PLANES), *([part["peak_stress"]] if "peak_stress" in part else [])]
+    surfaces = {
+        body: stress for body in bodies if (stress := surface_stress(ds, contact, body)) is not None
+    }
+    shown = [
+        *(part[plane[0]] for plane in PLANES),
+        *([part["peak_stress"]] if "peak_stress" in part else []),
+    ]
     top = float(np.nanmax([*(v.max() for v in shown), *(s[2].max() for s in surfaces.values())]))
     first = part.sel(body=bodies[0])
     spans = [float(np.ptp(first[name].values)) for name in ("xz_x", "yz_y")]
@@ -55,18 +68,24 @@ def sections(ds: xr.Dataset, contact: int) -> style.Drawn:
         for axes, plane in zip(row, PLANES, strict=False):
             image = _section(axes, part.sel(body=body), body, plane, (top, to_scale))
         if body in surfaces:
-            _surface(row[2], Patch(ds, contact), part.sel(body=body), surfaces[body], (top, to_scale))
+            _surface(
+                row[2], Patch(ds, contact), part.sel(body=body), surfaces[body], (top, to_scale)
+            )
     style.colour_bar(figure, image, list(grid.ravel()), "Von Mises stress [MPa]")
     style.head(figure, f"Von Mises stress under contact {contact}")
     caption = (
-        f"Von Mises stress (MPa) under contact {contact} in the lateral and the rolling section plane through the peak "
-        f"of each body{' and on its surface' if surfaces else ''}; z counts into the body. A cross marks the peak; on "
+        f"Von Mises stress (MPa) under contact {contact} in the lateral and the rolling section "
+        "plane through the peak "
+        f"of each body{' and on its surface' if surfaces else ''}; z counts into the body. A "
+        "cross marks the peak; on "
         f"the surface a ring marks a peak below it. {case_text(ds, to_scale)}"
     )
     return figure, style.FigureInfo(f"contact_{contact}_stress", caption, _sentence(part, bodies))
 
 
-def surface_stress(ds: xr.Dataset, contact: int, body: str) -> tuple[np.ndarray, np.ndarray, np.ndarray] | None:
+def surface_stress(
+    ds: xr.Dataset, contact: int, body: str
+) -> tuple[np.ndarray, np.ndarray, np.ndarray] | None:
     """Compute the von Mises stress on the surface of a body from the solved tractions.
 
     Parameters
@@ -75,8 +94,8 @@ def surface_stress(ds: xr.Dataset, contact: int, body: str) -> tuple[np.ndarray,
 
     Returns
     -------
-    x (nx) and y (ny) in the contact [mm] and the stress (ny, nx) [MPa], or None where tractions or materials are not
-    known
+    x (nx) and y (ny) in the contact [mm] and the stress (ny, nx) [MPa], or None where tractions or
+    materials are not known
     """
     patch = Patch(ds, contact) if {"patch_x", "patch_y", *TRACTIONS} <= set(ds.variables) else None
     if patch is None or not patch.there or MATERIALS not in ds.attrs:
@@ -95,7 +114,9 @@ def _widened(places: np.ndarray, margin: int) -> np.ndarray:
     return places[0] + step * np.arange(-margin, places.size + margin)
 
 
-def _section(axes: Axes, part: xr.Dataset, body: str, plane: tuple[str, ...], drawn: tuple[float, bool]) -> Any:
+def _section(
+    axes: Axes, part: xr.Dataset, body: str, plane: tuple[str, ...], drawn: tuple[float, bool]
+) -> Any:
     name, across, down, axis, words = plane
     x, z, stress = part[across].values, part[down].values, part[name].values
     image = _fill(axes, x, z, stress, drawn[0])
@@ -104,7 +125,15 @@ def _section(axes: Axes, part: xr.Dataset, body: str, plane: tuple[str, ...], dr
     axes.set_ylim((near_, far) if roller else (far, near_))
     axes.set_aspect("equal" if drawn[1] else "auto", anchor="S" if roller else "N")
     for ends in widths(part, axis):
-        axes.plot(ends, [0, 0], color="black", linewidth=2.2, solid_capstyle="butt", clip_on=False, zorder=4)
+        axes.plot(
+            ends,
+            [0, 0],
+            color="black",
+            linewidth=2.2,
+            solid_capstyle="butt",
+            clip_on=False,
+            zorder=4,
+        )
     other = "y" if axis == "x" else "x"
     place = ""
     if f"peak_{other}" in part:
@@ -132,15 +161,22 @@ def _labels(axes: Axes, across: str) -> None:
     axes.grid(False)
 
 
-def _surface(axes: Axes, patch: Patch, part: xr.Dataset, field: tuple, drawn: tuple[float, bool]) -> None:
-    """Draw the stress on the surface of one body, as far as the sections reach, with the edge of the patch."""
+def _surface(
+    axes: Axes, patch: Patch, part: xr.Dataset, field: tuple, drawn: tuple[float, bool]
+) -> None:
+    """Draw the stress on the surface of one body, as far as the sections reach, with the edge of
+    the patch.
+    """
     x, y, stress = field
     _fill(axes, x, y, stress, drawn[0])
     axes.add_patch(PathPatch(outline(patch), facecolor="none", edgecolor="black", linewidth=0.9))
     for limit, own, places in ((axes.set_xlim, "xz_x", x), (axes.set_ylim, "yz_y", y)):
         reach = part[own].values
         limit(max(float(reach[0]), float(places[0])), min(float(reach[-1]), float(places[-1])))
-    axes.set(title=f"{str(part['body'].item()).capitalize()}, surface", aspect="equal" if drawn[1] else "auto")
+    axes.set(
+        title=f"{str(part['body'].item()).capitalize()}, surface",
+        aspect="equal" if drawn[1] else "auto",
+    )
     axes.set_ylabel("$y_\\mathrm{C}$ (rolling) [mm]", labelpad=1)
     _labels(axes, "$x_\\mathrm{C}$ (lateral) [mm]")
     _mark_peak(axes, part, ("x", "y"))
@@ -153,7 +189,11 @@ def _mark_peak(axes: Axes, part: xr.Dataset, plane: tuple[str, str]) -> None:
     if not np.isfinite(x + y + value):
         return
     below = plane[1] == "y" and at_surface(part) == 0
-    look: dict[str, Any] = {"marker": "o" if below else "x", "markerfacecolor": "none", "clip_on": False}
+    look: dict[str, Any] = {
+        "marker": "o" if below else "x",
+        "markerfacecolor": "none",
+        "clip_on": False,
+    }
     axes.plot(x, y, color="white", markersize=7, markeredgewidth=2.6, zorder=5, **look)
     axes.plot(x, y, color="black", markersize=6, markeredgewidth=1.3, zorder=6, **look)
     if below:
@@ -161,7 +201,11 @@ def _mark_peak(axes: Axes, part: xr.Dataset, plane: tuple[str, str]) -> None:
     right = x < np.mean(axes.get_xlim())
     up = 9 if plane[1] == "y" or axes.get_ylim()[1] > axes.get_ylim()[0] else -9
     box = {"facecolor": "white", "edgecolor": "none", "pad": 1.0, "alpha": 0.9}
-    place: dict[str, Any] = {"xytext": (8 if right else -8, up), "textcoords": "offset points", "va": "center"}
+    place: dict[str, Any] = {
+        "xytext": (8 if right else -8, up),
+        "textcoords": "offset points",
+        "va": "center",
+    }
     place |= {"ha": "left" if right else "right", "zorder": 7, "bbox": box}
     axes.annotate(f"{value:.0f} MPa", (x, y), fontsize=7, **place)
 

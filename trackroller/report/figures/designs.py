@@ -25,10 +25,11 @@ _ARROWS = {"max": "→", "min": "←"}
 
 
 def pareto_front(front: xr.Dataset, results: Results | None = None) -> style.Drawn:
-    """Draw all allowed designs, coloured by the factor that decides the first goal, and the Pareto set.
+    """Draw all allowed designs, coloured by the factor that decides the first goal, and the Pareto
+    set.
 
-    It answers: what does more of one goal cost in another, and which choice leads to which end of the set? The panels
-    show the first goal over each other one.
+    It answers: what does more of one goal cost in another, and which choice leads to which end of
+    the set? The panels show the first goal over each other one.
 
     Parameters
     ----------
@@ -47,23 +48,40 @@ def pareto_front(front: xr.Dataset, results: Results | None = None) -> style.Dra
     colour, entries = _colours(front, results, goals[0][0])
     for axes, goal in zip(panels, others, strict=True):
         _trade(axes, front, goal, goals[0], colour, joined=len(goals) == 2)
-    entries.append(("Pareto set", {"marker": "D", "markerfacecolor": "white", "color": "0.1", "linestyle": "none"}))
+    entries.append(
+        (
+            "Pareto set",
+            {"marker": "D", "markerfacecolor": "white", "color": "0.1", "linestyle": "none"},
+        )
+    )
     legend(figure, entries)
-    wanted = listing([f"{front[n].attrs.get('long_name') or long_name(n)} {_WAYS[w]}" for n, w in goals])
-    return figure, style.FigureInfo("pareto-front", f"Pareto set for {wanted} (arrows on the axes).")
+    wanted = listing(
+        [f"{front[n].attrs.get('long_name') or long_name(n)} {_WAYS[w]}" for n, w in goals]
+    )
+    return figure, style.FigureInfo(
+        "pareto-front", f"Pareto set for {wanted} (arrows on the axes)."
+    )
 
 
 def _colours(front: xr.Dataset, results: Results | None, goal: str) -> tuple[np.ndarray, Entries]:
-    """Return the colour of each row by the factor that decides the goal, and the entries of the legend."""
+    """Return the colour of each row by the factor that decides the goal, and the entries of the
+    legend.
+    """
     rows = front["row"].values
     colour = np.full(len(rows), OTHER, dtype=object)
     entries: Entries = []
-    if results is not None and results.factors and front.attrs.get("kind", "design") != "design point":
+    if (
+        results is not None
+        and results.factors
+        and front.attrs.get("kind", "design") != "design point"
+    ):
         allowed = np.isin(np.arange(len(results.table)), rows)
         lead = next(iter(ranked_factors(results.analysis, goal, results.factors)))
         place = np.searchsorted(np.flatnonzero(allowed), rows)
         groups = coloured(results, lead, allowed)
-        for (text, mask), own in zip(groups, style.colours([t for t, _ in groups], lead in OF_MATERIALS), strict=True):
+        for (text, mask), own in zip(
+            groups, style.colours([t for t, _ in groups], lead in OF_MATERIALS), strict=True
+        ):
             colour[mask[place]] = own
             entries.append((text, {"marker": "o", "color": own, "linestyle": "none"}))
     if (colour == OTHER).any():
@@ -72,7 +90,12 @@ def _colours(front: xr.Dataset, results: Results | None, goal: str) -> tuple[np.
 
 
 def _trade(
-    axes: Any, front: xr.Dataset, across: tuple[str, str], upwards: tuple[str, str], colour: np.ndarray, joined: bool
+    axes: Any,
+    front: xr.Dataset,
+    across: tuple[str, str],
+    upwards: tuple[str, str],
+    colour: np.ndarray,
+    joined: bool,
 ) -> None:
     """Draw one goal over another; steps join the Pareto set of a study with two goals.
 
@@ -84,14 +107,26 @@ def _trade(
     shown = (front["optimal"].values == 1) & finite
     rest = np.random.default_rng(1).permutation(np.flatnonzero(finite & ~shown))
     size = 6 if len(rest) > 500 else 14
-    axes.scatter(xs[rest], ys[rest], s=size, c=colour[rest].tolist(), alpha=0.6, linewidth=0, rasterized=True)
+    axes.scatter(
+        xs[rest], ys[rest], s=size, c=colour[rest].tolist(), alpha=0.6, linewidth=0, rasterized=True
+    )
     if joined:
         order = np.argsort(xs[shown])
         step = {"max": "steps-pre", "min": "steps-post"}[up_x]
         axes.plot(xs[shown][order], ys[shown][order], color="0.1", linewidth=0.8, drawstyle=step)
-    axes.scatter(xs[shown], ys[shown], s=18, c=colour[shown].tolist(), marker="D", edgecolor="0.1", zorder=3)
+    axes.scatter(
+        xs[shown], ys[shown], s=18, c=colour[shown].tolist(), marker="D", edgecolor="0.1", zorder=3
+    )
     for name, axis, values in ((x, axes.xaxis, xs[finite]), (y, axes.yaxis, ys[finite])):
-        if values.size and is_life(statistic(name)[1]) and values.min() > 0 and values.max() > 20 * values.min():
+        if (
+            values.size
+            and is_life(statistic(name)[1])
+            and values.min() > 0
+            and values.max() > 20 * values.min()
+        ):
             (axes.set_xscale if name == x else axes.set_yscale)("log")
             style.log_ticks(axis, values.min(), values.max())
-    axes.set(xlabel=f"{goal_heading(front, x)} {_ARROWS[up_x]}", ylabel=f"{goal_heading(front, y)} {_ARROWS[up_y]}")
+    axes.set(
+        xlabel=f"{goal_heading(front, x)} {_ARROWS[up_x]}",
+        ylabel=f"{goal_heading(front, y)} {_ARROWS[up_y]}",
+    )

@@ -1,4 +1,6 @@
-"""Figures of a fit: S-N diagram with tests and band, predicted against observed lives, and pairs of the posterior."""
+"""Figures of a fit: S-N diagram with tests and band, predicted against observed lives, and pairs of
+the posterior.
+"""
 
 from __future__ import annotations
 
@@ -19,7 +21,9 @@ UP, DOWN = style.PAIR
 
 
 def sn_line(fit: Fit) -> style.Drawn:
-    """Draw stress over life: failures, run-outs as arrows, the line, and its 90 % band for 50 and 10 % failures."""
+    """Draw stress over life: failures, run-outs as arrows, the line, and its 90 % band for 50 and
+    10 % failures.
+    """
     if not fit.has("fatigue"):
         return None
     line = fit.group("fatigue").line
@@ -36,34 +40,49 @@ def sn_line(fit: Fit) -> style.Drawn:
             ends = np.clip(np.where(np.isfinite(ends), ends, np.sign(ends) * 60.0), -60.0, 60.0)
             known = np.isfinite(best)
             axes.plot(np.exp(best[known]), np.exp(fine[known]), color=colour, linestyle=dash)
-            # an end that jumps where a fatigue limit ends it must not swing, so that the curve keeps its monotony
+            # an end that jumps where a fatigue limit ends it must not swing, so that the curve
+            # keeps its monotony
             band = [np.exp(PchipInterpolator(stresses, end)(fine)) for end in ends.T]
             axes.fill_betweenx(np.exp(fine), *band, color=colour, alpha=0.15, lw=0)
             entries.append(
-                (f"{100 * probability:.0f} % fail, with its 90 % interval", {"color": colour, "linestyle": dash})
+                (
+                    f"{100 * probability:.0f} % fail, with its 90 % interval",
+                    {"color": colour, "linestyle": dash},
+                )
             )
     _marks(axes, np.exp(tests.middle), np.exp(tests.stress), failed)
     if not failed.all():
-        entries.append(("run-out or suspended", {"marker": ">", "linestyle": "none", "color": "0.1", "mfc": "white"}))
+        entries.append(
+            (
+                "run-out or suspended",
+                {"marker": ">", "linestyle": "none", "color": "0.1", "mfc": "white"},
+            )
+        )
     lives = np.exp(tests.middle)
     axes.set(xscale="log", yscale="log", xlim=(lives.min() / 5.0, lives.max() * 10.0))
     axes.set(xlabel="Cycles to failure $N$ [–]", ylabel="Stress amplitude [MPa]")
     style.log_ticks(axes.yaxis, *axes.get_ylim())
     legend(figure, entries)
     caption = (
-        "Tests, fitted line, and the interval that holds the true life in nine of ten fits, at each stress. Arrows: "
-        "tests that ended without a failure of this kind. Beyond the tests the line is extrapolated."
+        "Tests, fitted line, and the interval that holds the true life in nine of ten fits, at "
+        "each stress. Arrows: "
+        "tests that ended without a failure of this kind. Beyond the tests the line is "
+        "extrapolated."
     )
     return figure, style.FigureInfo("fit_sn_line", caption)
 
 
 def _marks(axes: Axes, x: np.ndarray, y: np.ndarray, failed: np.ndarray) -> None:
     axes.scatter(x[failed], y[failed], s=16, color="0.1", zorder=4)
-    axes.scatter(x[~failed], y[~failed], s=26, marker=">", facecolor="white", edgecolor="0.1", zorder=4)
+    axes.scatter(
+        x[~failed], y[~failed], s=26, marker=">", facecolor="white", edgecolor="0.1", zorder=4
+    )
 
 
 def predicted(fit: Fit) -> style.Drawn:
-    """Draw the observed over the predicted value of each test, with arrows for suspensions, one panel a kind of end."""
+    """Draw the observed over the predicted value of each test, with arrows for suspensions, one
+    panel a kind of end.
+    """
     groups = [own for own in fit.groups if own.line.tests.failed.any()]
     if not groups:
         return None
@@ -71,8 +90,10 @@ def predicted(fit: Fit) -> style.Drawn:
     for axes, own in zip(panels, groups, strict=True):
         _against(axes, own)
     caption = (
-        "Median by the fit and what was observed; an interval is drawn at its middle, and an arrow is a test that "
-        "ended without this failure. Dotted: between the lines lie nine of ten failures by the fitted scatter."
+        "Median by the fit and what was observed; an interval is drawn at its middle, and an "
+        "arrow is a test that "
+        "ended without this failure. Dotted: between the lines lie nine of ten failures by the "
+        "fitted scatter."
     )
     return figure, style.FigureInfo("fit_predicted", caption)
 
@@ -80,14 +101,18 @@ def predicted(fit: Fit) -> style.Drawn:
 def _against(axes: Axes, own: Group) -> None:
     line, failed = own.line, own.line.tests.failed
     median = np.array([float(line.log_life(line.best, x, 0.5)) for x in line.tests.stress])
-    straight = float(line.best.level) - float(line.best.slope) * (line.tests.stress - line.reference)
+    straight = float(line.best.level) - float(line.best.slope) * (
+        line.tests.stress - line.reference
+    )
     median = np.where(np.isfinite(median), median, straight)
     observed, scatter = line.tests.middle, 1.645 * math.exp(float(line.best.log_scatter))
     _marks(axes, np.exp(median), np.exp(observed), failed)
     both = np.concatenate([median, observed])
     ends = np.array([both.min() - 0.5, both.max() + 0.5])
     for shift, look in ((0.0, "-"), (-scatter, ":"), (scatter, ":")):
-        axes.plot(np.exp(ends), np.exp(ends + shift), color="0.5", linestyle=look, linewidth=0.8, zorder=1)
+        axes.plot(
+            np.exp(ends), np.exp(ends + shift), color="0.5", linestyle=look, linewidth=0.8, zorder=1
+        )
     words = {
         "fatigue": "cycles [–]",
         "wear": "travel over that of 1e-6 mm³/(N m) [–]",
@@ -116,7 +141,9 @@ def pairs(fit: Fit) -> style.Drawn:
         "scatter_in_stress": "$T_S$ [–]",
     }
     for axes, (first, second) in zip(panels, couples, strict=True):
-        x, y = (np.broadcast_to(own.values_of(name), weight.shape)[rows] for name in (first, second))
+        x, y = (
+            np.broadcast_to(own.values_of(name), weight.shape)[rows] for name in (first, second)
+        )
         axes.scatter(x, y, s=2, color=UP, alpha=0.25, linewidth=0)
         axes.plot(own.estimate(first), own.estimate(second), "+", color="0.1", markersize=9)
         axes.set(xlabel=labels[first], ylabel=labels[second], xscale="log", yscale="log")
@@ -125,7 +152,8 @@ def pairs(fit: Fit) -> style.Drawn:
         for axis, ends in ((axes.xaxis, low), (axes.yaxis, high)):
             style.log_ticks(axis, *ends)
     caption = (
-        f"{rounded(MOST_DRAWN)} points of the posterior; the cross is the most likely value. A narrow diagonal cloud "
+        f"{rounded(MOST_DRAWN)} points of the posterior; the cross is the most likely value. A "
+        "narrow diagonal cloud "
         "means that the tests know a combination of both values better than each of them."
     )
     return figure, style.FigureInfo("fit_pairs", caption)

@@ -15,7 +15,9 @@ COLOURS = 5  # most groups that get a colour each
 
 
 def short_levels(names: Sequence[str]) -> list[str]:
-    """Drop the part of names of pairs that all pairs share, because it does not distinguish them."""
+    """Drop the part of names of pairs that all pairs share, because it does not distinguish
+    them.
+    """
     parts = [_parts(name) for name in names]
     if len(set(names)) > 1 and all(len(p) == 2 for p in parts):
         for keep in (0, 1):
@@ -45,7 +47,9 @@ def _drive(low: float, high: float) -> str:
 
 def held_words(held: Mapping[str, Any]) -> str:
     """State the levels at which factors are held; an empty text if no factor is held."""
-    return f"Held: {'; '.join(setting(name, level) for name, level in held.items())}." if held else ""
+    return (
+        f"Held: {'; '.join(setting(name, level) for name, level in held.items())}." if held else ""
+    )
 
 
 def span(name: str, low: Any, high: Any) -> str:
@@ -56,14 +60,17 @@ def span(name: str, low: Any, high: Any) -> str:
 
 
 def class_words(name: str, end: Any) -> str:
-    """Write a level of a factor, or the ends (low, high) of a class, with the name of a factor that needs it."""
+    """Write a level of a factor, or the ends (low, high) of a class, with the name of a factor that
+    needs it.
+    """
     if isinstance(end, tuple):
         return f"{long_name(name)} {span(name, *end)}"
     return level_text(name, end) if isinstance(end, str) else setting(name, end)
 
 
 def coloured(results: Results, lead: str, rows: np.ndarray) -> list[tuple[str, np.ndarray]]:
-    """Return each level (or third) of the deciding factor in words, and which of the chosen rows have it.
+    """Return each level (or third) of the deciding factor in words, and which of the chosen rows
+    have it.
 
     Parameters
     ----------

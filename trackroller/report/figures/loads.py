@@ -17,7 +17,8 @@ from trackroller.results.results import Results
 from trackroller.study.design.levels import OF_MATERIALS
 
 SAME = 0.9  # rank correlation above which a factor carries the same information as the fit
-Groups = list[tuple[list[str], pd.DataFrame]]  # names of the levels that share a line, and their rows
+# names of the levels that share a line, and their rows
+Groups = list[tuple[list[str], pd.DataFrame]]
 MEDIANS = "Lines: medians of the cases; bands: 5 to 95 %."
 FORCES = (
     ("normal_force", "Normal force", r"$F_\mathrm{N}$"),
@@ -29,11 +30,13 @@ FORCES = (
 def stress_against_fit(results: Results) -> style.Drawn:
     """Draw peak stress over the fit, coloured by what decides it beside the fit.
 
-    It answers: how much stress does a closer groove save, and does it move the peak from below to the surface? Where
-    the cases of a line all have different fits, marks are filled if the peak lies at the surface; otherwise the
-    lines are medians with bands.
+    It answers: how much stress does a closer groove save, and does it move the peak from below to
+    the surface? Where the cases of a line all have different fits, marks are filled if the peak
+    lies at the surface; otherwise the lines are medians with bands.
     """
-    fits = next((f for f in map(results.behind, ("roller_profile_radius", "guide_profile_radius")) if f), ())
+    fits = next(
+        (f for f in map(results.behind, ("roller_profile_radius", "guide_profile_radius")) if f), ()
+    )
     bodies = [b for b in BODIES if results.has(f"peak_stress_{b}")]
     if not fits or not bodies:
         return None
@@ -49,7 +52,11 @@ def stress_against_fit(results: Results) -> style.Drawn:
     single = results.grid and not any(part["_fit"].duplicated().any() for _, part in groups)
     groups = _merged(groups, columns) if single else groups
     figure, panels = style.panels(
-        "Peak stress against fit", 64 + 3.6 * (len(groups) + 2), len(bodies), sharex=True, sharey=True
+        "Peak stress against fit",
+        64 + 3.6 * (len(groups) + 2),
+        len(bodies),
+        sharex=True,
+        sharey=True,
     )
     entries: Entries = []
     names = [text for text, _ in levels]
@@ -65,11 +72,17 @@ def stress_against_fit(results: Results) -> style.Drawn:
     panels[0].set_ylabel(with_unit(r"Peak von Mises stress $\sigma_\mathrm{DEH}$", "MPa"))
     if single:
         dot = {"color": "0.3", "marker": "o", "linestyle": "none"}
-        entries += [("filled: at the surface", dot), ("hollow: below it", {**dot, "markerfacecolor": "white"})]
+        entries += [
+            ("filled: at the surface", dot),
+            ("hollow: below it", {**dot, "markerfacecolor": "white"}),
+        ]
     legend(figure, entries, 2)
-    marks = "Filled marks: the peak lies at the surface; hollow marks: below it." if single else MEDIANS
+    marks = (
+        "Filled marks: the peak lies at the surface; hollow marks: below it." if single else MEDIANS
+    )
     caption = (
-        "Peak von Mises stress (MPa) of roller and guide, the worse of the two contacts, over the fit of groove and "
+        "Peak von Mises stress (MPa) of roller and guide, the worse of the two contacts, over "
+        "the fit of groove and "
         f"guide; rolling cases. {marks} {held_words(held)}"
     )
     return figure, style.FigureInfo("stress_against_fit", caption.strip())
@@ -82,7 +95,9 @@ def _hue(results: Results, column: str, fits: tuple[str, ...]) -> str:
     """
     fit = add_fit(results, results.table)[0]["_fit"]
     same = [
-        f for f in results.factors if results.numeric(f) and abs(fit.corr(results.table[f], method="spearman")) > SAME
+        f
+        for f in results.factors
+        if results.numeric(f) and abs(fit.corr(results.table[f], method="spearman")) > SAME
     ]
     others = tuple(f for f in results.factors if f not in fits and f not in same)
     return next(iter(ranked_factors(results.analysis, column, others)), "")
@@ -91,8 +106,8 @@ def _hue(results: Results, column: str, fits: tuple[str, ...]) -> str:
 def add_fit(results: Results, rows: pd.DataFrame) -> tuple[pd.DataFrame, str]:
     """Return rows with a column `_fit`, and its axis label.
 
-    Fit is groove over guide radius; where a roller is straight or convex the ratio is inverted, so that it passes
-    through 0 instead of infinity.
+    Fit is groove over guide radius; where a roller is straight or convex the ratio is inverted, so
+    that it passes through 0 instead of infinity.
     """
     rows = rows.copy()
     names = ("roller_profile_radius", "guide_profile_radius")
@@ -116,7 +131,9 @@ def _merged(groups: Groups, columns: list[str]) -> Groups:
     return list(alike.values())
 
 
-def _stress_series(axes: Any, part: pd.DataFrame, body: str, look: dict[str, Any], single: bool) -> None:
+def _stress_series(
+    axes: Any, part: pd.DataFrame, body: str, look: dict[str, Any], single: bool
+) -> None:
     part, y = part.sort_values("_fit"), f"peak_stress_{body}"
     if not single:
         return running(axes, part["_fit"].to_numpy(), part[y].to_numpy(), look)
@@ -136,18 +153,26 @@ def forces_against_axial(results: Results) -> style.Drawn:
     if not results.behind(x) or not results.numeric(x):
         return None
     kinds = [
-        k for k in FORCES if f"{k[0]}_1" in results.table and (results.has(f"{k[0]}_1") or results.has(f"{k[0]}_2"))
+        k
+        for k in FORCES
+        if f"{k[0]}_1" in results.table and (results.has(f"{k[0]}_1") or results.has(f"{k[0]}_2"))
     ]
     if not kinds:
         return None
     levels = results.levels("motor_force") if "motor_force" in results.factors else []
-    drives: list[Any] = levels if 0 < len(levels) <= 5 else [None]  # otherwise one line for all drives
+    # otherwise one line for all drives
+    drives: list[Any] = levels if 0 < len(levels) <= 5 else [None]
     shown = (*results.behind(x), *(["motor_force"] if drives != [None] else []))
     rows, held = results.hold(shown)
-    figure, panels = style.panels("Forces of both contacts against axial force", 74, len(kinds), sharex=True)
+    figure, panels = style.panels(
+        "Forces of both contacts against axial force", 74, len(kinds), sharex=True
+    )
     marks: list[dict[str, Any]] = [{"marker": "o"}, {"marker": "s"}]
     if results.grid:
-        marks = [{"marker": "o", "markersize": 3}, {"marker": "s", "markersize": 4.5, "markerfacecolor": "white"}]
+        marks = [
+            {"marker": "o", "markersize": 3},
+            {"marker": "s", "markersize": 4.5, "markerfacecolor": "white"},
+        ]
     looks = [{"color": colour} | mark for colour, mark in zip(style.PAIR, marks, strict=True)]
     for axes, (name, words, letter) in zip(panels, kinds, strict=True):
         for contact, (j, level) in ((c, d) for c in (1, 2) for d in enumerate(drives)):
@@ -164,11 +189,16 @@ def forces_against_axial(results: Results) -> style.Drawn:
         _shade_lift_off(panels, rows, x)
     entries: Entries = [(f"contact {c + 1}", looks[c] | {"linestyle": "none"}) for c in (0, 1)]
     dashes = [{"color": "0.2", "linestyle": style.LINES[j % 6]} for j in range(len(drives))]
-    entries += [(level_text("motor_force", d), look) for d, look in zip(drives, dashes, strict=True) if d is not None]
+    entries += [
+        (level_text("motor_force", d), look)
+        for d, look in zip(drives, dashes, strict=True)
+        if d is not None
+    ]
     legend(figure, entries, 5)
     each = f", for {len(drives)} motor forces" if len(drives) > 1 else ""
     caption = (
-        f"Forces (N) of contact 1 (circles) and contact 2 (squares) on the roller over the axial force{each}. "
+        "Forces (N) of contact 1 (circles) and contact 2 (squares) on the roller over the axial "
+        f"force{each}. "
         f"{held_words(held) if results.grid else MEDIANS}"
     )
     return figure, style.FigureInfo("forces_against_axial_force", caption.strip())
@@ -179,7 +209,13 @@ def _shade_lift_off(panels: Any, rows: pd.DataFrame, x: str) -> None:
     lifted = rows.groupby(x)["regime"].apply(lambda r: bool((r == 2).all()))
     values = lifted.index.to_numpy()
     halves = np.concatenate([values[:1], (values[1:] + values[:-1]) / 2, values[-1:]])
-    look = {"facecolor": style.REGIME_COLOURS[2], "alpha": 0.25, "hatch": "xxxx", "edgecolor": "white", "linewidth": 0}
+    look = {
+        "facecolor": style.REGIME_COLOURS[2],
+        "alpha": 0.25,
+        "hatch": "xxxx",
+        "edgecolor": "white",
+        "linewidth": 0,
+    }
     for i in np.flatnonzero(lifted.to_numpy()):
         for axes in panels:
             axes.axvspan(halves[i], halves[i + 1], zorder=0, **look)

@@ -16,7 +16,14 @@ from matplotlib.patches import Patch, Rectangle
 from trackroller.parameters import REGIME_LABELS
 from trackroller.report.figures import style
 from trackroller.report.figures.levels import held_words
-from trackroller.report.numbers import capital, factor_label, level_text, long_name, rounded, with_unit
+from trackroller.report.numbers import (
+    capital,
+    factor_label,
+    level_text,
+    long_name,
+    rounded,
+    with_unit,
+)
 from trackroller.results.by_tests import beyond_sn_data
 from trackroller.results.groups import BINS, classes
 from trackroller.results.ranking import ranked_factors
@@ -32,8 +39,8 @@ Pair = tuple[str, str]
 def life_map(results: Results) -> style.Drawn:
     """Draw life over the two numeric factors with most effect.
 
-    It answers: how long does the roller live, and where on the map has it no life? A small map has its lives written
-    in. The map of regimes says why a cell has no life.
+    It answers: how long does the roller live, and where on the map has it no life? A small map has
+    its lives written in. The map of regimes says why a cell has no life.
     """
     if results.life is None or not results.has(results.life[0]):
         return None
@@ -49,11 +56,20 @@ def life_map(results: Results) -> style.Drawn:
     figure, (axes,) = style.panels(over, 84)
     image = _life_cells(axes, results, rows, pair, column)
     extend = "max" if np.isposinf(rows[column]).any() else "neither"
-    bar = figure.colorbar(image, ax=axes, aspect=25, pad=0.02, extend=extend, label=with_unit(capital(words), unit))
+    bar = figure.colorbar(
+        image, ax=axes, aspect=25, pad=0.02, extend=extend, label=with_unit(capital(words), unit)
+    )
     style.log_ticks(bar.ax.yaxis, *image.get_clim())
     axes.set(xlabel=factor_label(pair[0]), ylabel=factor_label(pair[1]))
-    how = "Grey cells have no life" if results.grid else "Each cell is the median of its cases; grey cells have no life"
-    if axes.texts and (beyond_sn_data(results, column)[rows.index] & results.rolling[rows.index]).any():
+    how = (
+        "Grey cells have no life"
+        if results.grid
+        else "Each cell is the median of its cases; grey cells have no life"
+    )
+    if (
+        axes.texts
+        and (beyond_sn_data(results, column)[rows.index] & results.rolling[rows.index]).any()
+    ):
         how += "; lives in brackets lie beyond the S-N data"
     return figure, style.FigureInfo("life_map", f"{over}. {how}. {held_words(held)}".strip())
 
@@ -61,7 +77,8 @@ def life_map(results: Results) -> style.Drawn:
 def _life_pair(results: Results) -> Pair | None:
     """Return the pair of numeric factors with several levels and the largest effect on life.
 
-    None for a sample in which other factors have more effect than the pair: its map would show their scatter.
+    None for a sample in which other factors have more effect than the pair: its map would show
+    their scatter.
     """
     names = [f for f in results.factors if results.numeric(f) and len(results.levels(f)) > 1]
     column = results.life[0] if results.life else ""
@@ -82,14 +99,20 @@ def _life_pair(results: Results) -> Pair | None:
 
 
 def cell_name(name: str, end: Any) -> str:
-    """Write the level of a cell at an axis, short and without unit, or the ends (low, high) of its class."""
+    """Write the level of a cell at an axis, short and without unit, or the ends (low, high) of its
+    class.
+    """
     if isinstance(end, str):
-        return textwrap.fill(level_text(name, end).replace(" on ", " on\u00a0"), 24).replace("\u00a0", " ")
+        return textwrap.fill(level_text(name, end).replace(" on ", " on\u00a0"), 24).replace(
+            "\u00a0", " "
+        )
     return f"{end[0]:.3g}…{end[1]:.3g}" if isinstance(end, tuple) else rounded(end)
 
 
 def _table(values: pd.Series, keys: list[np.ndarray], shape: tuple[int, int]) -> np.ndarray:
-    """Return the medians over (second factor, first factor), shape (n_y, n_x); NaN where there is no case."""
+    """Return the medians over (second factor, first factor), shape (n_y, n_x); NaN where there is
+    no case.
+    """
     cells = np.full(shape, np.nan)
     medians = values.groupby([keys[1], keys[0]]).median()
     cells[medians.index.get_level_values(0), medians.index.get_level_values(1)] = medians
@@ -110,7 +133,9 @@ def _life_cells(axes: Axes, results: Results, rows: pd.DataFrame, pair: Pair, co
         set_ticks(axis, [cell_name(name, end) for end in ends])
     axes.grid(False)
     beyond = pd.Series(beyond_sn_data(results, column)[rows.index], rows.index, dtype=float)
-    _written(axes, life, _table(beyond.where(results.rolling[rows.index]), keys, shape) >= 0.5, image)
+    _written(
+        axes, life, _table(beyond.where(results.rolling[rows.index]), keys, shape) >= 0.5, image
+    )
     return image
 
 
@@ -134,9 +159,11 @@ def set_ticks(axis: Axis, texts: list[str]) -> None:
 
 
 def regime_map(results: Results) -> style.Drawn:
-    """Draw which combinations roll, slip or lift off, over the two factors that separate the regimes most.
+    """Draw which combinations roll, slip or lift off, over the two factors that separate the
+    regimes most.
 
-    It answers: where may the roller not be used? Return None if all cases roll, or nearly all cases of a sample.
+    It answers: where may the roller not be used? Return None if all cases roll, or nearly all cases
+    of a sample.
     """
     if len(results.factors) < 2:
         return None
@@ -144,7 +171,8 @@ def regime_map(results: Results) -> style.Drawn:
     if len(results.table) - most < (1 if results.grid else FEWEST):
         return None
     ranked = sorted(results.factors, key=lambda f: -_regime_spread(results, f))
-    # long names go on the vertical axis, where they have room; of two numbers the one with fewer levels goes there
+    # long names go on the vertical axis, where they have room; of two numbers the one with fewer
+    # levels goes there
     x, y = sorted(ranked[:2], key=lambda f: (not results.numeric(f), -len(results.levels(f))))
     pair = (x, y)
     figure, (axes,) = style.panels("Regimes: rolling, full slip, lift-off", 76)
@@ -155,9 +183,13 @@ def regime_map(results: Results) -> style.Drawn:
 
 
 def _regime_spread(results: Results, name: str) -> float:
-    """Return how much the share of a regime changes over the levels of a factor; it decides which factor is drawn."""
+    """Return how much the share of a regime changes over the levels of a factor; it decides which
+    factor is drawn.
+    """
     index, _ = classes(results.table, name, np.ones(len(results.table), dtype=bool), BINS)
-    shares = pd.crosstab(index, results.regime, normalize="index").reindex(columns=[1, 2, 3], fill_value=0.0)
+    shares = pd.crosstab(index, results.regime, normalize="index").reindex(
+        columns=[1, 2, 3], fill_value=0.0
+    )
     return float(np.ptp(shares.to_numpy(), axis=0).max())
 
 
@@ -167,7 +199,9 @@ def _regime_shares(axes: Axes, results: Results, pair: Pair) -> str:
     keys, ends = zip(*(classes(results.table, f, every, BINS) for f in pair), strict=True)
     texts = [[cell_name(f, end) for end in part] for f, part in zip(pair, ends, strict=True)]
     both = zip(style.REGIME_COLOURS, style.REGIME_HATCHES, strict=True)
-    looks: list[dict[str, Any]] = [{"facecolor": colour, "hatch": hatch, "edgecolor": "0.25"} for colour, hatch in both]
+    looks: list[dict[str, Any]] = [
+        {"facecolor": colour, "hatch": hatch, "edgecolor": "0.25"} for colour, hatch in both
+    ]
     gaps = [0.04 if len(t) <= 12 else 0.0 for t in texts]
     width, thin = 1 - 2 * gaps[0], 0.3 if all(gaps) else 0.0
     for i, j in np.ndindex(len(texts[0]), len(texts[1])):
@@ -175,13 +209,23 @@ def _regime_shares(axes: Axes, results: Results, pair: Pair) -> str:
         for code in range(4) if here.size else ():
             part = width * float((here == code).mean())
             if part > 0:
-                axes.add_patch(Rectangle((left, j + gaps[1]), part, 1 - 2 * gaps[1], linewidth=thin, **looks[code]))
+                axes.add_patch(
+                    Rectangle(
+                        (left, j + gaps[1]), part, 1 - 2 * gaps[1], linewidth=thin, **looks[code]
+                    )
+                )
             left += part
     axes.set(xlim=(0, len(texts[0])), ylim=(0, len(texts[1])))
     for axis, labels in ((axes.xaxis, texts[0]), (axes.yaxis, texts[1])):
         set_ticks(axis, labels)
     axes.grid(False)
-    handles = [Patch(label=REGIME_LABELS[c], **looks[c]) for c in range(4) if (results.regime == c).any()]
+    handles = [
+        Patch(label=REGIME_LABELS[c], **looks[c]) for c in range(4) if (results.regime == c).any()
+    ]
     axes.figure.legend(handles=handles, loc="outside lower left", ncols=4, handletextpad=0.5)
     others = len(results.factors) > 2
-    return "Each cell is divided by the share of its cases in each regime, over all other factors." if others else ""
+    return (
+        "Each cell is divided by the share of its cases in each regime, over all other factors."
+        if others
+        else ""
+    )

@@ -26,7 +26,8 @@ def capped(life: np.ndarray) -> tuple[np.ndarray, float | None]:
 
     Returns
     -------
-    Values with NaN where nothing can be drawn, and the height of the unlimited lives, None if all lives are finite.
+    Values with NaN where nothing can be drawn, and the height of the unlimited lives, None if all
+    lives are finite.
     """
     life = np.asarray(life, dtype=float)
     finite = life[np.isfinite(life) & (life > 0)]
@@ -36,22 +37,34 @@ def capped(life: np.ndarray) -> tuple[np.ndarray, float | None]:
 
 
 def legend(figure: Figure, entries: Entries | Mapping[str, Artist], columns: int = 3) -> None:
-    """Draw the legend under the axes, where it covers no data; `entries` are texts with looks, or artists by label.
+    """Draw the legend under the axes, where it covers no data; `entries` are texts with looks, or
+    artists by label.
 
     It has fewer columns where its texts are too long for the width of the figure.
     """
-    own = entries if isinstance(entries, Mapping) else {text: Line2D([], [], **look) for text, look in entries}
+    own = (
+        entries
+        if isinstance(entries, Mapping)
+        else {text: Line2D([], [], **look) for text, look in entries}
+    )
     for count in range(columns, 0, -1):
-        made = figure.legend(own.values(), own, loc="outside lower left", ncols=count, alignment="left")
+        made = figure.legend(
+            own.values(), own, loc="outside lower left", ncols=count, alignment="left"
+        )
         if count == 1 or made.get_window_extent().width <= figure.bbox.width:
             return
         made.remove()
 
 
 def quantiles(
-    values: np.ndarray, index: np.ndarray, count: int, shares: tuple[int, int, int] = (5, 50, 95), fewest: int = 1
+    values: np.ndarray,
+    index: np.ndarray,
+    count: int,
+    shares: tuple[int, int, int] = (5, 50, 95),
+    fewest: int = 1,
 ) -> np.ndarray:
-    """Return three percentiles of the values (n,) of each group, shape (3, count); NaN for a group of few values.
+    """Return three percentiles of the values (n,) of each group, shape (3, count); NaN for a group
+    of few values.
 
     Between two values it is their mean, as in the tables, which also holds for values without end.
     """
@@ -64,18 +77,25 @@ def quantiles(
     return percentiles
 
 
-def band(axes: Axes, at: np.ndarray, values: np.ndarray, look: dict[str, Any], ordered: bool) -> Any:
-    """Draw the middle of three percentiles, shape (3, groups), with a band, or with bars for unordered groups."""
+def band(
+    axes: Axes, at: np.ndarray, values: np.ndarray, look: dict[str, Any], ordered: bool
+) -> Any:
+    """Draw the middle of three percentiles, shape (3, groups), with a band, or with bars for
+    unordered groups.
+    """
     low, middle, high = values
     if ordered:
         axes.fill_between(at, low, high, color=look["color"], alpha=0.18, linewidth=0)
     else:
         axes.vlines(at, low, high, color=look["color"], alpha=0.35, linewidth=4)
-    return axes.plot(at, middle, **{"markersize": 3, **look, **({} if ordered else {"linestyle": "none"})})[0]
+    return axes.plot(
+        at, middle, **{"markersize": 3, **look, **({} if ordered else {"linestyle": "none"})}
+    )[0]
 
 
 def running(axes: Axes, x: np.ndarray, y: np.ndarray, look: dict[str, Any]) -> None:
-    """Draw the median of a sample along x, in classes of equally many rows, with a band from 5 to 95 %.
+    """Draw the median of a sample along x, in classes of equally many rows, with a band from 5 to
+    95 %.
 
     Parameters
     ----------

@@ -1,4 +1,6 @@
-"""Figures of one contact by itself: its creep curve, and pressure and tractions of one of its cases."""
+"""Figures of one contact by itself: its creep curve, and pressure and tractions of one of its
+cases.
+"""
 
 from __future__ import annotations
 
@@ -25,7 +27,9 @@ def along_cases(ds: xr.Dataset) -> xr.Dataset:
 
 
 def varied_creepage(ds: xr.Dataset) -> str:
-    """Return the creepage that varies between the cases; the longitudinal one if none or several do."""
+    """Return the creepage that varies between the cases; the longitudinal one if none or several
+    do.
+    """
     varied = [name for name in CREEPAGES if np.ptp(ds[name].values) > 0.0]
     return varied[0] if varied else CREEPAGES[0]
 
@@ -67,14 +71,16 @@ def creep_curve(ds: xr.Dataset) -> style.Drawn:
     axes.set(xlabel=words)
     legend(figure, entries)
     caption = (
-        "Friction forces against the creepage over the largest friction force at rest, and share of the adhesion area. "
+        "Friction forces against the creepage over the largest friction force at rest, and share "
+        "of the adhesion area. "
         "Each point is a solved case."
     )
     return figure, style.FigureInfo("patch_creep_curve", caption)
 
 
 def fields(ds: xr.Dataset) -> style.Drawn:
-    """Draw pressure and shear traction of one case: maps of an ellipse, and their course along the middle.
+    """Draw pressure and shear traction of one case: maps of an ellipse, and their course along the
+    middle.
 
     Parameters
     ----------
@@ -103,16 +109,23 @@ def fields(ds: xr.Dataset) -> style.Drawn:
         axes.plot(y, values, **look)
     axes.set(xlabel="rolling direction [mm]", ylabel="along the middle [MPa]", ylim=(0.0, None))
     if not discs:
-        for axes, values, words in zip(panels, (pressure, shear), ("pressure", "shear traction"), strict=False):
-            image = axes.pcolormesh(x, y, np.where(pressure > 0.0, values, np.nan), cmap="cividis", shading="nearest")
+        for axes, values, words in zip(
+            panels, (pressure, shear), ("pressure", "shear traction"), strict=False
+        ):
+            image = axes.pcolormesh(
+                x, y, np.where(pressure > 0.0, values, np.nan), cmap="cividis", shading="nearest"
+            )
             axes.grid(False)
             axes.set(title=f"{words} [MPa]", xlabel="lateral [mm]")
             figure.colorbar(image, ax=axes, location="bottom", pad=0.02)
         panels[0].set_ylabel("rolling direction [mm]")
     legend(figure, entries)
-    parts = ", ".join(f"{WORDS[name][0].split(' [')[0]} {_creepage_text(one, name)}" for name in CREEPAGES)
+    parts = ", ".join(
+        f"{WORDS[name][0].split(' [')[0]} {_creepage_text(one, name)}" for name in CREEPAGES
+    )
     caption = (
-        f"Case {case}: {parts}. New material enters at the largest place in the rolling direction. Where the traction "
+        f"Case {case}: {parts}. New material enters at the largest place in the rolling "
+        "direction. Where the traction "
         "is below the friction, the surfaces stick."
     )
     return figure, style.FigureInfo("patch_fields", caption)

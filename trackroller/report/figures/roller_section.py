@@ -17,14 +17,16 @@ from trackroller.roller.stored_inputs import inputs_of
 
 SIZE = np.array([340.0, 330.0])  # width and height of the drawing [px]
 LONGEST = 62.0  # the largest force [px]
-TALLEST = 4.2  # guide radii; an axis farther from the guide is drawn nearer, so that the groove stays visible
+# guide radii; an axis farther from the guide is drawn nearer, so that the groove stays visible
+TALLEST = 4.2
 LETTER, LINE = 6.4, 13.0  # width of a letter and height of a line of text [px]
 CLEAR = 2.5  # free space around a label [px]
 DOWN = 4.0  # from the middle of a label to the line on which it stands [px]
 ARC = 40  # points of an arc
 REACH = 0.5  # guide radii; a profile is drawn so far on both sides of its contact
 PROFILES = ("guide_profile", "roller_profile")
-TURNS = np.deg2rad([0, 30, -30, 60, -60, 90, -90, 120, -120, 150, -150, 180])  # label directions from an arrow's
+# label directions from an arrow's
+TURNS = np.deg2rad([0, 30, -30, 60, -60, 90, -90, 120, -120, 150, -150, 180])
 STEPS = (6.0, 14.0, 24.0, 36.0, 50.0)  # from the tip of an arrow to its label [px]
 Line = tuple[np.ndarray, np.ndarray]
 
@@ -42,11 +44,18 @@ class Labels:
         starts, ends = np.array(lines, dtype=float).transpose(1, 0, 2)
         steps = np.hypot(*(ends - starts).T).astype(int) + 1
         share = np.concatenate([np.arange(n + 1) / n for n in steps.tolist()])[:, None]
-        self.points = np.repeat(starts, steps + 1, axis=0) * (1 - share) + np.repeat(ends, steps + 1, axis=0) * share
+        self.points = (
+            np.repeat(starts, steps + 1, axis=0) * (1 - share)
+            + np.repeat(ends, steps + 1, axis=0) * share
+        )
         self.boxes: list[tuple[np.ndarray, np.ndarray]] = []
 
-    def place(self, text: str, index: str, tip: np.ndarray, direction: np.ndarray) -> dict[str, Any]:
-        """Return a text with its index and its place near `tip`, at best in a direction, both (2,) [px]."""
+    def place(
+        self, text: str, index: str, tip: np.ndarray, direction: np.ndarray
+    ) -> dict[str, Any]:
+        """Return a text with its index and its place near `tip`, at best in a direction, both (2,)
+        [px].
+        """
         half = 0.5 * np.array([LETTER * (len(text) + 0.8 * len(index)), LINE]) + CLEAR
         angles = math.atan2(direction[1], direction[0]) + TURNS
         toward = np.stack([np.cos(angles), np.sin(angles)], axis=1)
@@ -63,7 +72,8 @@ class Labels:
         return {"at": best + np.array([0.0, DOWN]), "text": text, "index": index}
 
     def _covered(self, middles: np.ndarray, half: np.ndarray) -> np.ndarray:
-        """Count the points of lines and the texts that boxes cover, (n,); a box outside the drawing covers a thousand.
+        """Count the points of lines and the texts that boxes cover, (n,); a box outside the drawing
+        covers a thousand.
 
         Parameters
         ----------
@@ -71,7 +81,10 @@ class Labels:
         half : half of their width and height, (2,) [px]
         """
         outside = ((middles < half) | (middles + half > SIZE)).any(axis=1)
-        texts = sum(((np.abs(middles - at) < half + own).all(axis=1) for at, own in self.boxes), np.zeros(len(middles)))
+        texts = sum(
+            ((np.abs(middles - at) < half + own).all(axis=1) for at, own in self.boxes),
+            np.zeros(len(middles)),
+        )
         near = [np.abs(self.points[:, i] - middles[:, i, None]) < half[i] for i in (0, 1)]
         return np.count_nonzero(near[0] & near[1], axis=1) + 100 * texts + 1000 * outside
 
@@ -86,9 +99,9 @@ def drawing(ds: xr.Dataset) -> str:
 
     Notes
     -----
-    Lengths are to scale, and so are the forces relative to each other. Drawn profiles appear as given. The width of
-    the roller is no parameter; it is drawn as twice the guide's radius. An axis farther than 4.2 guide radii is drawn
-    nearer.
+    Lengths are to scale, and so are the forces relative to each other. Drawn profiles appear as
+    given. The width of the roller is no parameter; it is drawn as twice the guide's radius. An axis
+    farther than 4.2 guide radii is drawn nearer.
     """
     return html.render("drawing.svg.j2", content_of(ds))
 
@@ -106,23 +119,40 @@ def content_of(ds: xr.Dataset) -> dict[str, Any]:
 
     outline = _roller(values, height)
     outlines = [place(_guide(values)), place(outline)]
-    axes = [place([(-1.8 * r_guide, height), (1.8 * r_guide, height)]), place([(-0.4, 0), (1.5 * r_guide, 0)])]
+    axes = [
+        place([(-1.8 * r_guide, height), (1.8 * r_guide, height)]),
+        place([(-0.4, 0), (1.5 * r_guide, 0)]),
+    ]
     forces = _forces(ds, values, alpha, height)
     largest = max((float(np.hypot(*force)) for *_, force in forces), default=1.0)
-    arrows = [(place(at), place(at) + LONGEST / largest * force * (1, -1)) for at, *_, force in forces]
+    arrows = [
+        (place(at), place(at) + LONGEST / largest * force * (1, -1)) for at, *_, force in forces
+    ]
     sizes = [
         (place(line), text, index, toward)
         for line, text, index, toward in _dimensions(values, r_guide, height, outline)
     ]
-    contacts = place(r_guide * np.array([[math.sin(alpha), math.cos(alpha)], [-math.sin(alpha), math.cos(alpha)]]))
+    contacts = place(
+        r_guide
+        * np.array([[math.sin(alpha), math.cos(alpha)], [-math.sin(alpha), math.cos(alpha)]])
+    )
     lines = [*arrows, *((line[0], line[1]) for line, *_ in sizes)]
-    edges = [edge for points in outlines for edge in zip(points, np.roll(points, -1, axis=0), strict=True)]
+    edges = [
+        edge
+        for points in outlines
+        for edge in zip(points, np.roll(points, -1, axis=0), strict=True)
+    ]
     labels = Labels([*lines, *edges, *((axis[0], axis[1]) for axis in axes)])
     middle = place([(0.0, 0.0)])[0]
     named = [
-        labels.place(str(i), "", at + 0.25 * (middle - at), np.array([0.0, 1.0])) for i, at in enumerate(contacts, 1)
+        labels.place(str(i), "", at + 0.25 * (middle - at), np.array([0.0, 1.0]))
+        for i, at in enumerate(contacts, 1)
     ]
-    named += [labels.place(text, index, line[0], np.array(toward)) for line, text, index, toward in sizes if text]
+    named += [
+        labels.place(text, index, line[0], np.array(toward))
+        for line, text, index, toward in sizes
+        if text
+    ]
     loads = [
         labels.place(f"F {rounded(size)} N", index, end, end - start)
         for (_, index, size, _), (start, end) in zip(forces, arrows, strict=True)
@@ -134,7 +164,10 @@ def content_of(ds: xr.Dataset) -> dict[str, Any]:
         "forces": arrows,
         "spans": [line for line, *_ in sizes],
         "contacts": contacts,
-        "labels": [*((label, "label") for label in named), *((label, "force-label") for label in loads)],
+        "labels": [
+            *((label, "label") for label in named),
+            *((label, "force-label") for label in loads),
+        ],
         "lines": lines,
         "boxes": labels.boxes,
     }
@@ -143,14 +176,23 @@ def content_of(ds: xr.Dataset) -> dict[str, Any]:
 def _dimensions(
     values: dict[str, Any], r_guide: float, height: float, outline: np.ndarray
 ) -> list[tuple[np.ndarray, str, str, tuple[float, float]]]:
-    """Return line [mm], text, index and direction of the label of the axis distance and of both profile radii."""
+    """Return line [mm], text, index and direction of the label of the axis distance and of both
+    profile radii.
+    """
     side, groove = 1.5 * r_guide, outline[int(1.72 * ARC)]  # a point on the right flank
     radius = values["roller_profile_radius"]
-    profile = ("straight profile", "") if math.isinf(radius) else (f"r {abs(radius):.5g} mm", "C,TR")
+    profile = (
+        ("straight profile", "") if math.isinf(radius) else (f"r {abs(radius):.5g} mm", "C,TR")
+    )
     profile = ("drawn profile", "") if values.get("roller_profile") else profile
     rim = r_guide * np.array([-0.8, -0.6])
     return [
-        (np.array([(side, height / 2), (side, height)]), f"A {values['axis_distance']:.5g} mm", "T", (1.0, 0.0)),
+        (
+            np.array([(side, height / 2), (side, height)]),
+            f"A {values['axis_distance']:.5g} mm",
+            "T",
+            (1.0, 0.0),
+        ),
         (np.array([(side, height / 2), (side, 0.0)]), "", "", (1.0, 0.0)),
         (np.stack([1.25 * rim, rim]), f"r {r_guide:.5g} mm", "C,G", (-1.0, 1.0)),
         (np.stack([groove + r_guide * np.array([0.9, -0.55]), groove]), *profile, (1.0, 1.0)),
@@ -158,19 +200,34 @@ def _dimensions(
 
 
 def _flank(values: dict[str, Any], body: str, side: int) -> np.ndarray:
-    """Return a body's section about a contact, from inside to outside, as seen at contact 1, (n, 2) [mm]."""
-    alpha, r_guide, radius = math.radians(values["contact_angle"]), *(values[f"{b}_radius"] for b in PROFILES)
+    """Return a body's section about a contact, from inside to outside, as seen at contact 1, (n, 2)
+    [mm].
+    """
+    alpha, r_guide, radius = (
+        math.radians(values["contact_angle"]),
+        *(values[f"{b}_radius"] for b in PROFILES),
+    )
     radius = r_guide if body == PROFILES[0] else radius
     try:
         shape = cross_section(
-            json.dumps(values.get(body)) if values.get(body) else "", body, radius, alpha, r_guide, side
+            json.dumps(values.get(body)) if values.get(body) else "",
+            body,
+            radius,
+            alpha,
+            r_guide,
+            side,
         )
-    except ShapeError:  # the case has failed, and its verdict names the shape; the nominal circle is drawn
+    except ShapeError:
+        # the case has failed, and its verdict names the shape; the nominal circle is drawn
         shape = cross_section("", body, radius, alpha, r_guide, side)
     low, high = shape.limits
     u = np.linspace(max(low, -REACH * r_guide), min(high, REACH * r_guide), ARC)[:, None]
-    height = shape.full_height(u) * (1.0 if body == PROFILES[0] else -1.0)  # over the tangent plane, out of the body
-    normal, outward = np.array([math.sin(alpha), math.cos(alpha)]), np.array([math.cos(alpha), -math.sin(alpha)])
+    # over the tangent plane, out of the body
+    height = shape.full_height(u) * (1.0 if body == PROFILES[0] else -1.0)
+    normal, outward = (
+        np.array([math.sin(alpha), math.cos(alpha)]),
+        np.array([math.cos(alpha), -math.sin(alpha)]),
+    )
     flank = (r_guide + height) * normal + u * outward
     return flank[flank[:, 0] > 0]
 
@@ -180,8 +237,12 @@ def _guide(values: dict[str, Any]) -> np.ndarray:
     radius = values["guide_profile_radius"]
     if not values.get("guide_profile"):
         return _arc(radius, 0.0, 2.0 * np.pi)
-    right, left = (_flank(values, "guide_profile", side) * (sign, 1) for side, sign in ((1, 1), (2, -1)))
-    (inner, outer), (far, near) = (np.arctan2(flank[[0, -1], 1], flank[[0, -1], 0]) for flank in (right, left))
+    right, left = (
+        _flank(values, "guide_profile", side) * (sign, 1) for side, sign in ((1, 1), (2, -1))
+    )
+    (inner, outer), (far, near) = (
+        np.arctan2(flank[[0, -1], 1], flank[[0, -1], 0]) for flank in (right, left)
+    )
     below, above = _arc(radius, outer, near - 2.0 * np.pi), _arc(radius, far, inner)
     return np.concatenate([right, below[1:-1], left[::-1], above[1:-1]])
 
@@ -192,7 +253,9 @@ def _arc(radius: float, start: float, end: float) -> np.ndarray:
 
 
 def _roller(values: dict[str, Any], height: float) -> np.ndarray:
-    """Outline of the roller's section: its profile about each contact, the outer ends, and the axis."""
+    """Outline of the roller's section: its profile about each contact, the outer ends, and the
+    axis.
+    """
     half = 1.25 * values["guide_profile_radius"]
     right, left = (_flank(values, "roller_profile", side) for side in (1, 2))
     ends = np.array([[half, right[-1, 1]], [half, height], [-half, height], [-half, left[-1, 1]]])
@@ -212,8 +275,12 @@ def _forces(
         along = np.array([math.cos(alpha), -sign * math.sin(alpha)])
         load, lateral = float(own["normal_force"]), float(own["lateral_force"])
         if math.isfinite(load):
-            forces.append((values["guide_profile_radius"] * normal, f"N{number}", load, load * normal))
+            forces.append(
+                (values["guide_profile_radius"] * normal, f"N{number}", load, load * normal)
+            )
         if math.isfinite(lateral) and abs(lateral) > 0.02 * abs(radial):
-            forces.append((values["guide_profile_radius"] * normal, f"T{number}", lateral, lateral * along))
+            forces.append(
+                (values["guide_profile_radius"] * normal, f"T{number}", lateral, lateral * along)
+            )
     forces.append((axle, "rad", radial, np.array([0.0, radial])))
     return forces + ([(axle, "ax", axial, np.array([axial, 0.0]))] if axial else [])

@@ -27,30 +27,47 @@ Points = dict[str, tuple[np.ndarray, np.ndarray]]
 
 
 def sn_diagram(results: Results) -> style.Drawn:
-    """Draw the S-N curve of every material with peak stress and life of the rolling cases, one panel a body.
+    """Draw the S-N curve of every material with peak stress and life of the rolling cases, one
+    panel a body.
 
-    It answers: where on its curve does each material work, above its strength, below it, or below its fatigue limit?
-    A body without a life on the axis gets no panel, because marks piled up at the edge would not be readable.
+    It answers: where on its curve does each material work, above its strength, below it, or below
+    its fatigue limit? A body without a life on the axis gets no panel, because marks piled up at
+    the edge would not be readable.
     """
     known, rule = _known(results), results.config.life_rule
     bodies = [(body, points) for body in BODIES if (points := _points(results, body, known, rule))]
     if not bodies:
         return None
-    ends = _ends([points[n] for _, points in bodies for n in points], [known[n] for _, p in bodies for n in p])
-    shown = [(b, points) for b, points in bodies if any((life <= ends[1]).any() for _, life in points.values())]
+    ends = _ends(
+        [points[n] for _, points in bodies for n in points],
+        [known[n] for _, p in bodies for n in p],
+    )
+    shown = [
+        (b, points)
+        for b, points in bodies
+        if any((life <= ends[1]).any() for _, life in points.values())
+    ]
     if not shown:
         return None
     names = list(dict.fromkeys(name for _, points in shown for name in points))[:MAX_MATERIALS]
     colours = dict(zip(names, style.colours(names, True), strict=True))
     figure, panels = style.panels(
-        "S-N diagram with the cases of the study", 68 + 2.4 * (len(names) + 3), len(shown), sharey=True
+        "S-N diagram with the cases of the study",
+        68 + 2.4 * (len(names) + 3),
+        len(shown),
+        sharey=True,
     )
     for axes, (body, points) in zip(panels, shown, strict=True):
         for i, name in enumerate(names):
             if name not in points:
                 continue
             _lines(axes, known[name], rule, colours[name], ends)
-            _cases(axes, *points[name], {"color": colours[name], "marker": style.MARKERS[i % 10]}, ends[1])
+            _cases(
+                axes,
+                *points[name],
+                {"color": colours[name], "marker": style.MARKERS[i % 10]},
+                ends[1],
+            )
         axes.set(xscale="log", yscale="log", xlim=ends, xlabel="Overrollings to failure $N$ [–]")
         axes.set_title(body.capitalize())
         style.log_ticks(axes.yaxis, *axes.get_ylim())
@@ -61,7 +78,11 @@ def sn_diagram(results: Results) -> style.Drawn:
 
 def _known(results: Results) -> dict[str, Material]:
     stored = stored_materials(results.data.attrs)
-    return {n: as_material({"name": n} | values) for n, values in stored.items() if set(REQUIRED) <= set(values)}
+    return {
+        n: as_material({"name": n} | values)
+        for n, values in stored.items()
+        if set(REQUIRED) <= set(values)
+    }
 
 
 def _points(results: Results, body: str, known: Mapping[str, Material], rule: str) -> Points:
@@ -85,7 +106,9 @@ def _points(results: Results, body: str, known: Mapping[str, Material], rule: st
 
 
 def _amplitude(results: Results) -> str:
-    """Name the result that entered the S-N curve: the peak stress, or that of another life criterion."""
+    """Name the result that entered the S-N curve: the peak stress, or that of another life
+    criterion.
+    """
     return "fatigue_stress" if results.has("fatigue_stress_roller") else "peak_stress"
 
 
@@ -99,20 +122,39 @@ def _ends(points: list, materials: list[Material]) -> tuple[float, float]:
     return max(low / 2, 1.0), top
 
 
-def _lines(axes: Axes, material: Material, rule: str, colour: Any, ends: tuple[float, float]) -> None:
+def _lines(
+    axes: Axes, material: Material, rule: str, colour: Any, ends: tuple[float, float]
+) -> None:
     """Draw the S-N curve of a material, with its scatter if it gives one."""
     at, median = np.geomspace(*ends, 400), SNCurve.of(material, rule)
     for probability in PROBABILITIES if median.scatters else (0.5,):
         stress = median.changed(failure_probability=probability).allowable_stress(at)
         width = 1.0 if probability == 0.5 else 0.8
-        axes.plot(at, stress, color=colour, linewidth=width, linestyle=_DASHES.get(probability, "-"), zorder=2)
-    points = [(cycles, stress) for stress, cycles in material.sn_line if ends[0] <= cycles <= ends[1]]
-    ends_look: dict[str, Any] = {"marker": "|", "markersize": 9, "markeredgewidth": 0.9, "linestyle": "none"}
+        axes.plot(
+            at,
+            stress,
+            color=colour,
+            linewidth=width,
+            linestyle=_DASHES.get(probability, "-"),
+            zorder=2,
+        )
+    points = [
+        (cycles, stress) for stress, cycles in material.sn_line if ends[0] <= cycles <= ends[1]
+    ]
+    ends_look: dict[str, Any] = {
+        "marker": "|",
+        "markersize": 9,
+        "markeredgewidth": 0.9,
+        "linestyle": "none",
+    }
     axes.plot(*zip(*points, strict=True), color="0.1", zorder=3, **ends_look)
 
 
-def _cases(axes: Axes, stress: np.ndarray, life: np.ndarray, look: dict[str, Any], top: float) -> None:
-    """Draw where the cases of a material lie on its curve: a thick line spans 90 % of them, a large mark is the median.
+def _cases(
+    axes: Axes, stress: np.ndarray, life: np.ndarray, look: dict[str, Any], top: float
+) -> None:
+    """Draw where the cases of a material lie on its curve: a thick line spans 90 % of them, a large
+    mark is the median.
 
     Cases beyond the end of the axis are left out.
     """
@@ -126,9 +168,12 @@ def _cases(axes: Axes, stress: np.ndarray, life: np.ndarray, look: dict[str, Any
     axes.scatter(life[middle], stress[middle], s=30, zorder=5, **large)
 
 
-def _entries(names: list[str], colours: Mapping[str, Any], known: Mapping[str, Material]) -> Entries:
+def _entries(
+    names: list[str], colours: Mapping[str, Any], known: Mapping[str, Material]
+) -> Entries:
     entries: Entries = [
-        (n, {"color": colours[n], "marker": style.MARKERS[i % 10], "markersize": 3}) for i, n in enumerate(names)
+        (n, {"color": colours[n], "marker": style.MARKERS[i % 10], "markersize": 3})
+        for i, n in enumerate(names)
     ]
     none = {"linestyle": "none", "color": "0.1"}
     entries.append(("90 % of the cases", {"color": "0.5", "linewidth": 4}))
@@ -142,10 +187,14 @@ def _entries(names: list[str], colours: Mapping[str, Any], known: Mapping[str, M
     return entries
 
 
-def _info(results: Results, shown: list, known: Mapping[str, Material], rule: str) -> style.FigureInfo:
+def _info(
+    results: Results, shown: list, known: Mapping[str, Material], rule: str
+) -> style.FigureInfo:
     caption = (
-        "S-N curves of the materials (failure probability 50 %, and 10 and 90 % where the material gives its scatter) "
-        f"with the {_WORDS[_amplitude(results)]} (MPa) and the life in overrollings of the rolling cases at the worse "
+        "S-N curves of the materials (failure probability 50 %, and 10 and 90 % where the "
+        "material gives its scatter) "
+        f"with the {_WORDS[_amplitude(results)]} (MPa) and the life in overrollings of the "
+        "rolling cases at the worse "
         "contact. "
         f"{CONVENTIONS[rule]}."
     )
@@ -156,7 +205,9 @@ def _info(results: Results, shown: list, known: Mapping[str, Material], rule: st
 
 
 def _scatter_words(known: Mapping[str, Material], names: Points) -> str:
-    """Say at which share of the median life one in ten has failed, for each material that gives its scatter."""
+    """Say at which share of the median life one in ten has failed, for each material that gives its
+    scatter.
+    """
     said = []
     for name in (n for n in names if SNCurve.of(known[n]).scatters):
         scatter = float(SNCurve.of(known[name]).scatter_ranges[0])

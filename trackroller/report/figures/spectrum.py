@@ -49,12 +49,24 @@ def damage_by_block(ds: xr.Dataset) -> style.Drawn:
         axes.set(xlim=(0, 125), xticks=range(0, 101, 25), xlabel=f"damage of the {body} [%]")
         axes.grid(axis="y", visible=False)
         most = int(np.argmax(part))
-        worst_blocks.append(f"{chance(float(part[most]))} of the damage of the {body} comes from '{names[most]}'")
+        worst_blocks.append(
+            f"{chance(float(part[most]))} of the damage of the {body} comes from '{names[most]}'"
+        )
     panels[0].invert_yaxis()
-    caption = "Share of each block in the damage of all blocks, in the track of each body that fails first."
-    missing = {body: listing(ds["block"].values[rows].tolist()) for body, rows in unknown.items() if rows.any()}
+    caption = (
+        "Share of each block in the damage of all blocks, in the track of each body that "
+        "fails first."
+    )
+    missing = {
+        body: listing(ds["block"].values[rows].tolist())
+        for body, rows in unknown.items()
+        if rows.any()
+    }
     if len(set(missing.values())) == 1 and len(missing) == len(unknown):
         caption += f" Blocks without known damage are not counted: {next(iter(missing.values()))}."
     else:
-        caption += "".join(f" Not counted for the {body}, without known damage: {m}." for body, m in missing.items())
+        caption += "".join(
+            f" Not counted for the {body}, without known damage: {m}."
+            for body, m in missing.items()
+        )
     return figure, style.FigureInfo("damage_by_block", caption, f"{listing(worst_blocks)}.")

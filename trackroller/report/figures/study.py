@@ -1,4 +1,6 @@
-"""All figures of a gathered study and of its analysis: each is drawn only when the study has what it needs."""
+"""All figures of a gathered study and of its analysis: each is drawn only when the study has what
+it needs.
+"""
 
 from __future__ import annotations
 

@@ -1,6 +1,8 @@
-"""One look for all figures: true printed sizes, colours and marks that survive grey print and colour blindness.
+"""One look for all figures: true printed sizes, colours and marks that survive grey print and
+colour blindness.
 
-Figures are built without pyplot, so that drawing needs no display and leaves the caller's own figures alone.
+Figures are built without pyplot, so that drawing needs no display and leaves the caller's own
+figures alone.
 """
 
 from __future__ import annotations
@@ -41,18 +43,23 @@ REGIME_HATCHES = ("", "////", "xxxx", "")
 
 @dataclass(frozen=True)
 class FigureInfo:
-    """A drawn figure: file stem, what it shows (caption), and its finding (sentence) where the page has no other."""
+    """A drawn figure: file stem, what it shows (caption), and its finding (sentence) where the page
+    has no other.
+    """
 
     name: str
     caption: str
     sentence: str = ""
 
 
-Drawn = tuple[Figure, FigureInfo] | None  # what a figure's function returns; None without anything to show
+# what a figure's function returns; None without anything to show
+Drawn = tuple[Figure, FigureInfo] | None
 
 
 def look() -> Any:
-    """Return a context that sets the common style for everything drawn inside; it is restored afterwards."""
+    """Return a context that sets the common style for everything drawn inside; it is restored
+    afterwards.
+    """
     return matplotlib.rc_context(fname=Path(__file__).with_name("trackroller.mplstyle"))
 
 
@@ -67,8 +74,8 @@ def palette(count: int) -> list[str]:
 def colours(texts: Sequence[str], materials: bool) -> list[str]:
     """Return a colour for each level of a factor.
 
-    A material has the same colour in all figures of all studies. Of pairs that share the roller's material, the
-    material of the guide counts.
+    A material has the same colour in all figures of all studies. Of pairs that share the roller's
+    material, the material of the guide counts.
 
     Parameters
     ----------
@@ -82,7 +89,9 @@ def colours(texts: Sequence[str], materials: bool) -> list[str]:
     known = builtin_database().names()
     names = [material_of_level(text) for text in short_levels(texts)]
     rest = len(COLOURS) - len(known)
-    places = [known.index(n) if n in known else len(known) + zlib.crc32(n.encode()) % rest for n in names]
+    places = [
+        known.index(n) if n in known else len(known) + zlib.crc32(n.encode()) % rest for n in names
+    ]
     return [COLOURS[place % len(COLOURS)] for place in places]
 
 
@@ -100,7 +109,9 @@ def head(figure: Figure, title: str, subtitle: str = "") -> None:
 
 
 def panels(title: str, height_mm: float, count: int = 1, **shared: Any) -> tuple[Figure, Any]:
-    """Return a figure with its title, and its empty axes side by side; `shared` says which axes they share."""
+    """Return a figure with its title, and its empty axes side by side; `shared` says which axes
+    they share.
+    """
     figure = new_figure(height_mm)
     head(figure, title)
     return figure, figure.subplots(1, count, squeeze=False, **shared)[0]
@@ -108,20 +119,25 @@ def panels(title: str, height_mm: float, count: int = 1, **shared: Any) -> tuple
 
 def colour_bar(figure: Figure, image: Any, axes: Sequence[Axes], label: str) -> None:
     """Draw the scale of the colours below maps."""
-    figure.colorbar(image, ax=axes, location="bottom", aspect=60, pad=0.02, ticks=MaxNLocator(6), label=label)
+    figure.colorbar(
+        image, ax=axes, location="bottom", aspect=60, pad=0.02, ticks=MaxNLocator(6), label=label
+    )
 
 
 def log_ticks(axis: Any, low: float, high: float) -> None:
     """Set ticks of a logarithmic axis.
 
-    An axis over many powers of ten has a tick at each power, an axis over few has plain numbers such as 1, 2 and 5.
+    An axis over many powers of ten has a tick at each power, an axis over few has plain numbers
+    such as 1, 2 and 5.
     """
     axis.set_minor_formatter(NullFormatter())
     powers = math.log10(high / low) if low > 0 and high > low else 0.0
     if not 0 < powers <= 1.6:
         return
     few = powers < 0.7
-    axis.set_major_locator(MaxNLocator(5, steps=[1, 2, 2.5, 5, 10]) if few else LogLocator(subs=(1.0, 2.0, 5.0)))
+    axis.set_major_locator(
+        MaxNLocator(5, steps=[1, 2, 2.5, 5, 10]) if few else LogLocator(subs=(1.0, 2.0, 5.0))
+    )
     axis.set_major_formatter(FuncFormatter(lambda value, _: number(float(f"{value:.3g}"))))
     axis.set_minor_locator(NullLocator())
 
@@ -129,10 +145,12 @@ def log_ticks(axis: Any, low: float, high: float) -> None:
 def save(figure: Figure, out_dir: Path, name: str) -> tuple[Path, Path]:
     """Write `name`.svg and `name`.png, both whole or not at all, and return the two paths."""
     figure.draw_without_rendering()
-    figure.set_layout_engine(None)  # both files have the same layout; with "none" each would be drawn twice
+    # both files have the same layout; with "none" each would be drawn twice
+    figure.set_layout_engine(None)
     paths = out_dir / f"{name}.svg", out_dir / f"{name}.png"
     for path in paths:
-        metadata = {"Date": None} if path.suffix == ".svg" else None  # the same data gives the same file
+        # the same data gives the same file
+        metadata = {"Date": None} if path.suffix == ".svg" else None
         drawn = io.BytesIO()
         figure.savefig(drawn, format=path.suffix[1:], metadata=metadata)
         write_whole(path, partial(Path.write_bytes, data=drawn.getvalue()))
@@ -160,5 +178,8 @@ def draw_all(jobs: Iterable[Callable[[], Drawn]], out_dir: Path) -> list[FigureI
 
 def write_index(infos: Sequence[FigureInfo], out_dir: Path) -> Path:
     """Write captions and sentences of the figures in `out_dir`, for the report."""
-    write_text(out_dir / "index.json", json.dumps([asdict(i) for i in infos], indent=1, ensure_ascii=False) + "\n")
+    write_text(
+        out_dir / "index.json",
+        json.dumps([asdict(i) for i in infos], indent=1, ensure_ascii=False) + "\n",
+    )
     return out_dir / "index.json"

@@ -1,4 +1,6 @@
-"""Figures of a roller that wears: the two profiles at five travels, and the course of depth, pressure and damage."""
+"""Figures of a roller that wears: the two profiles at five travels, and the course of depth,
+pressure and damage.
+"""
 
 from __future__ import annotations
 
@@ -52,12 +54,15 @@ def profiles(ds: xr.Dataset) -> style.Drawn:
     panels[-1].legend(loc="upper center", frameon=False)
     magnified = reach * 1e3 / max(float(np.ptp(new)), 1e-9)
     caption = (
-        "Worn surfaces of roller and guide over the new surface of the guide, moved together until they touch. Grey: "
+        "Worn surfaces of roller and guide over the new surface of the guide, moved together "
+        "until they touch. Grey: "
         f"width of the patch under load. Heights are magnified about {rounded(magnified, 1)} times."
     )
     depth = 1e3 * float(own["groove_depth"].isel(travel=-1).sum("body"))
     wide = f"The patch grows from {rounded(2 * half[0])} to {rounded(2 * half[-1])} mm"
-    return figure, style.FigureInfo("wear_profiles", caption, f"{wide} while {rounded(depth)} µm are worn off.")
+    return figure, style.FigureInfo(
+        "wear_profiles", caption, f"{wide} while {rounded(depth)} µm are worn off."
+    )
 
 
 def over_patch(ds: xr.Dataset) -> style.Drawn:
@@ -73,7 +78,11 @@ def over_patch(ds: xr.Dataset) -> style.Drawn:
     The figure and its caption, or None.
     """
     names = {"run_in_distance", "wear_depth_per_km", "pressure", "slip_lateral", "slip_rolling"}
-    if not names <= set(ds) or ds.attrs.get("wear_law") != "archard" or not np.isfinite(float(ds["run_in_distance"])):
+    if (
+        not names <= set(ds)
+        or ds.attrs.get("wear_law") != "archard"
+        or not np.isfinite(float(ds["run_in_distance"]))
+    ):
         return None
     rate = (ds["pressure"] * np.hypot(ds["slip_lateral"], ds["slip_rolling"])).sum("y")
     shape = rate / rate.max("x")
@@ -85,11 +94,17 @@ def over_patch(ds: xr.Dataset) -> style.Drawn:
             depth = 1e3 * float(own["run_in_distance"] * own["wear_depth_per_km"])
             if np.isfinite(depth):
                 x = ds["patch_x"].sel(contact=contact)
-                axes.plot(x, depth * shape.sel(contact=contact), color=colour, ls=line, lw=1.2, label=body)
+                axes.plot(
+                    x, depth * shape.sel(contact=contact), color=colour, ls=line, lw=1.2, label=body
+                )
         axes.set(title=f"contact {contact}", xlabel="lateral place [mm]")
-    panels[0].set(ylabel="worn depth [µm]", ylim=(0.0, 1.5 * panels[0].get_ylim()[1]))  # room for the legend
+    # room for the legend
+    panels[0].set(ylabel="worn depth [µm]", ylim=(0.0, 1.5 * panels[0].get_ylim()[1]))
     panels[-1].legend(frameon=False, loc="upper left")
-    caption = f"Worn depth after the run-in distance of {rounded(float(ds['run_in_distance']))} km, at the first rate."
+    caption = (
+        f"Worn depth after the run-in distance of {rounded(float(ds['run_in_distance']))} "
+        "km, at the first rate."
+    )
     return figure, style.FigureInfo("wear_depth", caption, "")
 
 
@@ -116,11 +131,22 @@ def course(ds: xr.Dataset) -> style.Drawn:
                 if np.isnan(values).all() or ("body" not in own.dims and body == BODIES[1]):
                     continue
                 of = f"{body}, contact {contact}" if "body" in own.dims else f"contact {contact}"
-                axes.plot(travel, values, color=colour if "body" in own.dims else "0.25", ls=line, marker=".", label=of)
+                axes.plot(
+                    travel,
+                    values,
+                    color=colour if "body" in own.dims else "0.25",
+                    ls=line,
+                    marker=".",
+                    label=of,
+                )
         axes.set(title=words, xlabel="travel [km]")
-        axes.set_ylim(0.0, (1.6 if "body" in ds[name].dims else 1.0) * axes.get_ylim()[1])  # room for the legend
+        # room for the legend
+        axes.set_ylim(0.0, (1.6 if "body" in ds[name].dims else 1.0) * axes.get_ylim()[1])
         axes.legend(frameon=False)
-    error, relative = 1e3 * float(ds["groove_depth_error"][-1]), 100 * float(ds["pressure_error"].max())
+    error, relative = (
+        1e3 * float(ds["groove_depth_error"][-1]),
+        100 * float(ds["pressure_error"].max()),
+    )
     caption = (
         "Points are solved states. Steps and elements cause an estimated error of the depth of "
         f"{rounded(error, 2)} µm, and of the pressure of {rounded(relative, 2)} % at most."

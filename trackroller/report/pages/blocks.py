@@ -1,7 +1,8 @@
-"""The blocks of a page that shows an answer: title line, headline, table, picture, what was not checked, warnings.
+"""The blocks of a page that shows an answer: title line, headline, table, picture, what was not
+checked, warnings.
 
-`screen_of` makes them from the record, and `templates/blocks.html.j2` writes them. Study, sheet, spectrum, carriage and
-wear take the same blocks.
+`screen_of` makes them from the record, and `templates/blocks.html.j2` writes them. Study, sheet,
+spectrum, carriage and wear take the same blocks.
 """
 
 from __future__ import annotations
@@ -92,17 +93,22 @@ def screen_of(answer: Answer) -> dict[str, Any]:
     Returns
     -------
     dict
-        `title`, `description`, `facts`, `headline`, `table`, `others` (columns that do not fit), `transposed`,
-        `shared`, `picture`, `effects`, `effects_first`, `effects_caption`, `map`, `not_checked`, `not_used`,
-        `not_given`, `warnings`, `ends`, `outputs`, `definitions`, `limits` (their words and what they mean),
-        `parts` (further tables with their rows), `download`.
+        `title`, `description`, `facts`, `headline`, `table`, `others` (columns that do not fit),
+        `transposed`, `shared`, `picture`, `effects`, `effects_first`, `effects_caption`, `map`,
+        `not_checked`, `not_used`, `not_given`, `warnings`, `ends`, `outputs`, `definitions`,
+        `limits` (their words and what they mean), `parts` (further tables with their rows),
+        `download`.
     """
     with on_duty(answer.facts.get("duty")):
         picture = picture_of(answer)
         shown = table_of(answer)
         beside = picture is not None and picture.beside
         effects = curves.effects(answer)
-        first = MOST_EFFECTS if _curves_are_the_picture(answer, picture is not None or bool(shown.bars)) else 0
+        first = (
+            MOST_EFFECTS
+            if _curves_are_the_picture(answer, picture is not None or bool(shown.bars))
+            else 0
+        )
         return {
             "title": str(answer.facts.get("name", "")),
             "description": str(answer.facts.get("description") or ""),
@@ -124,7 +130,9 @@ def screen_of(answer: Answer) -> dict[str, Any]:
             "ends": ends_table(answer),
             "outputs": _outputs(answer),
             "definitions": list(definitions(answer)),
-            "limits": [(limit.word, limit.title) for limit in judged() if limit.word != limit.title],
+            "limits": [
+                (limit.word, limit.title) for limit in judged() if limit.word != limit.title
+            ],
             "parts": [(part, part_rows(answer, part)) for part in answer.parts],
             "download": download_of(answer),
             "output_heads": OUTPUT_HEADS,
@@ -140,11 +148,16 @@ def _outputs(answer: Answer) -> list[tuple[str, ...]]:
         return []
     rows = answer.outputs.to_dict("records")
     numbers = ("smallest", "median", "largest")
-    return [(row["output"], unit_text(row["units"]), *(carried(row[name]) for name in numbers)) for row in rows]
+    return [
+        (row["output"], unit_text(row["units"]), *(carried(row[name]) for name in numbers))
+        for row in rows
+    ]
 
 
 def transposed_names(answer: Answer) -> list[str]:
-    """Return the names of the rows that stand as columns beside a picture: those of the headline."""
+    """Return the names of the rows that stand as columns beside a picture: those of the
+    headline.
+    """
     named = len(answer.picture.get("named", ())) or len(answer.table)
     return row_names(answer, min(named, len(answer.table), MOST_TRANSPOSED))
 
@@ -170,12 +183,20 @@ def facts_line(answer: Answer) -> str:
     size = f"{cases}: {', '.join(sizes)}" if cases and sizes else cases
     models = facts.get("models", "")
     models = models if isinstance(models, str) else ", ".join(map(str, models))
-    parts = [answer.question, str(facts.get("date") or "")[:10], size, models, str(facts.get("accuracy") or "")]
+    parts = [
+        answer.question,
+        str(facts.get("date") or "")[:10],
+        size,
+        models,
+        str(facts.get("accuracy") or ""),
+    ]
     return " · ".join(part for part in parts if part)
 
 
 def _conditions(number: Any) -> str:
-    """Return how many conditions candidates have, as one number or as a range; '' for one condition."""
+    """Return how many conditions candidates have, as one number or as a range; '' for one
+    condition.
+    """
     ends = [number, number] if isinstance(number, int) else list(number or ())
     if not ends or max(ends) < 2:
         return ""
@@ -183,13 +204,17 @@ def _conditions(number: Any) -> str:
 
 
 def table_of(answer: Answer) -> Shown:
-    """Return the table of an answer with its bars; columns that do not fit the page are left to the proof."""
+    """Return the table of an answer with its bars; columns that do not fit the page are left to the
+    proof.
+    """
     fit = fit_columns(answer, _bar_columns(answer))
     rows = rows_of(answer, fit.shown)
     names = [column.name for column in fit.shown]
     bars = Bars.of(answer)
     key = tuple(bars.key()) if bars else ()
-    return Shown(rows, tuple(_drawn(answer, names)), key, rows_before_fold(answer), len(answer.table))
+    return Shown(
+        rows, tuple(_drawn(answer, names)), key, rows_before_fold(answer), len(answer.table)
+    )
 
 
 def _bar_columns(answer: Answer) -> int:
@@ -233,7 +258,9 @@ def warnings_of(answer: Answer) -> list[tuple[str, str, str]]:
 
 
 def download_of(answer: Answer) -> str:
-    """Return the table of an answer as a link to a CSV file with all digits; '' if it is too long for a page."""
+    """Return the table of an answer as a link to a CSV file with all digits; '' if it is too long
+    for a page.
+    """
     if len(answer.table) > MOST_DOWNLOADED:
         return ""
     text = io.StringIO()

@@ -1,4 +1,6 @@
-"""The page of a carriage: its record, and its picture with the forces of the rollers; the record on a terminal."""
+"""The page of a carriage: its record, and its picture with the forces of the rollers; the record on
+a terminal.
+"""
 
 from __future__ import annotations
 
@@ -19,7 +21,8 @@ KIND = "carriage on track rollers"
 
 @lives_in_years
 def write_carriage(ds: xr.Dataset, path: Path | str, file: str = "carriage.yaml") -> Path:
-    """Write the page of a carriage as one HTML file that stands alone, or as PDF by the name of the file.
+    """Write the page of a carriage as one HTML file that stands alone, or as PDF by the name of the
+    file.
 
     Parameters
     ----------
@@ -43,14 +46,20 @@ def write_carriage(ds: xr.Dataset, path: Path | str, file: str = "carriage.yaml"
         KIND,
         f"trackroller carriage {shlex.quote(file)} --report {shlex.quote(Path(path).name)}",
         first_figures=list(drawn.values()),
-        notes={"Conventions": [f"{capital(text)}." for text in str(ds.attrs["conventions"]).split("; ")]},
+        notes={
+            "Conventions": [
+                f"{capital(text)}." for text in str(ds.attrs["conventions"]).split("; ")
+            ]
+        },
     )
     return html.write_page(Path(path), text)
 
 
 @lives_in_years
 def print_carriage(ds: xr.Dataset) -> None:
-    """Print the record of a carriage: loads and margins, and at the end its rollers, warnings, and what ends it."""
+    """Print the record of a carriage: loads and margins, and at the end its rollers, warnings, and
+    what ends it.
+    """
     answer = answer_of_carriage(ds)
     print_record(answer)
     if end_of_carriage(answer):

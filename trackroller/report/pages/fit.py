@@ -1,4 +1,6 @@
-"""The page of a fit: values with their intervals, figures, what the tests cannot tell, and the tests themselves."""
+"""The page of a fit: values with their intervals, figures, what the tests cannot tell, and the
+tests themselves.
+"""
 
 from __future__ import annotations
 
@@ -43,19 +45,33 @@ def value_table(fit: Fit) -> Table:
                 after = f"{cell(band[1])} ({cell(band[0])} to {cell(band[2])})"
             else:
                 after = "–"
-            rows.append([with_unit(SYMBOLS[name], unit), estimate, _ends(low, high), after, _prior(own, name)])
+            rows.append(
+                [
+                    with_unit(SYMBOLS[name], unit),
+                    estimate,
+                    _ends(low, high),
+                    after,
+                    _prior(own, name),
+                ]
+            )
     heads = ["Value", "Most likely", "90 % interval", "Posterior: median (5 to 95 %)", "Prior"]
     return Table("fit_values", "Fitted values", heads, rows)
 
 
 def _prior(own: Group, name: str) -> str:
-    key = {"woehler_exponent": "slope", "scatter_in_cycles": "log_scatter", "fatigue_limit": "log_strength"}.get(name)
+    key = {
+        "woehler_exponent": "slope",
+        "scatter_in_cycles": "log_scatter",
+        "fatigue_limit": "log_strength",
+    }.get(name)
     if key is None or key not in own.priors:
         return "flat" if name in ("woehler_exponent",) else "flat in its logarithm"
     prior = own.priors[key]
     if key == "slope":
         return f"{cell(prior.mean)} ± {cell(prior.deviation)}"
-    middle = math.exp(prior.mean) if key == "log_strength" else math.exp(2.563 * math.exp(prior.mean))
+    middle = (
+        math.exp(prior.mean) if key == "log_strength" else math.exp(2.563 * math.exp(prior.mean))
+    )
     return f"median {cell(middle)}, ± {cell(prior.deviation)} in ln"
 
 
@@ -64,15 +80,23 @@ def _ends(low: float, high: float) -> str:
         return "any value"
     if math.isinf(high):
         return f"at least {cell(low)}"
-    return f"at most {cell(high)}" if low <= 0 or math.isinf(low) else f"{cell(low)} to {cell(high)}"
+    return (
+        f"at most {cell(high)}" if low <= 0 or math.isinf(low) else f"{cell(low)} to {cell(high)}"
+    )
 
 
 def sentences(fit: Fit) -> list[str]:
-    """Return the statements at the head of the page: what was fitted, and what is not identified."""
+    """Return the statements at the head of the page: what was fitted, and what is not
+    identified.
+    """
     said = []
     for own in fit.groups:
         failed, size = int(own.line.tests.failed.sum()), own.line.size
-        ends = {"fatigue": "failed by fatigue", "wear": "reached a depth", "friction": "gave a drive force"}[own.kind]
+        ends = {
+            "fatigue": "failed by fatigue",
+            "wear": "reached a depth",
+            "friction": "gave a drive force",
+        }[own.kind]
         values = []
         for name in own.names:
             unit = "" if WORDS[name][0] == "1" else f" {WORDS[name][0]}"
@@ -80,25 +104,36 @@ def sentences(fit: Fit) -> list[str]:
             if name in own.unidentified:
                 values.append(f"{_short(name)} not identified ({_ends(low, high)}{unit})")
             else:
-                values.append(f"{_short(name)} {cell(own.estimate(name))}{unit} ({_ends(low, high)})")
-        said.append(f"{failed} of {size} tests {ends}: {', '.join(values)}; 90 % intervals in brackets.")
+                values.append(
+                    f"{_short(name)} {cell(own.estimate(name))}{unit} ({_ends(low, high)})"
+                )
+        said.append(
+            f"{failed} of {size} tests {ends}: {', '.join(values)}; 90 % intervals in brackets."
+        )
     return said
 
 
 def _short(name: str) -> str:
     return {
-        "fatigue_limit": "fatigue strength", "woehler_exponent": "slope", "scatter_in_cycles": "T_N",
+        "fatigue_limit": "fatigue strength",
+        "woehler_exponent": "slope",
+        "scatter_in_cycles": "T_N",
         "scatter_in_stress": "T_S",
-    }.get(name, name.replace("_", " "))  # fmt: skip
+    }.get(name, name.replace("_", " "))
 
 
 def cannot_tell(fit: Fit) -> list[str]:
     """Return sentences on what the tests do not tell."""
     said = []
     for name in fit.unidentified:
-        said.append(f"The tests do not identify the {_short(name)}: its estimate lies at a bound, and is no number.")
+        said.append(
+            f"The tests do not identify the {_short(name)}: its estimate lies at a bound, "
+            "and is no number."
+        )
     if fit.has("fatigue"):
-        said += _of_fatigue(fit.group("fatigue"), fit.knee if "fatigue_limit" in fit.material else math.nan)
+        said += _of_fatigue(
+            fit.group("fatigue"), fit.knee if "fatigue_limit" in fit.material else math.nan
+        )
     return [*said, *fit.notes, *fit.not_given]
 
 
@@ -106,11 +141,15 @@ def _of_fatigue(own: Group, knee: float) -> list[str]:
     """Return sentences on the range of a line, and on how wide its lives are."""
     low, high, longest = own.tested
     said = [
-        f"Stresses of {rounded(low)} to {rounded(high)} MPa and up to {rounded(longest)} cycles were tested. A life at "
+        f"Stresses of {rounded(low)} to {rounded(high)} MPa and up to {rounded(longest)} cycles "
+        "were tested. A life at "
         "another stress, or a longer one, is an extrapolation of the line."
     ]
     if not own.line.knee and knee > 1.05 * longest:
-        said.append(f"The strength is stated at {rounded(knee)} cycles, beyond the longest test: it is extrapolated.")
+        said.append(
+            f"The strength is stated at {rounded(knee)} cycles, beyond the longest test: "
+            "it is extrapolated."
+        )
     if own.line.tests.failed.any():
         ends = own.line.interval_of_life(math.log(low), 0.1)
         width = math.exp(min(ends.high - ends.low, 50.0))
@@ -120,7 +159,8 @@ def _of_fatigue(own: Group, knee: float) -> list[str]:
                 "`trackroller fit next` says which test narrows it most."
             )
     said.append(
-        "B10 lies below its interval in up to some 8 % of the fits where 5 % are nominal (page 'Intervals of fitted "
+        "B10 lies below its interval in up to some 8 % of the fits where 5 % are nominal (page "
+        "'Intervals of fitted "
         "S-N lines')."
     )
     return said
@@ -129,17 +169,21 @@ def _of_fatigue(own: Group, knee: float) -> list[str]:
 def table_of_tests(fit: Fit) -> Table:
     """List the tests as they were given."""
     names = list(dict.fromkeys(name for row in fit.tests.rows for name in row))
-    rows = [[str(fit.tests.lines[i]), *(fit.tests.text(i, name) for name in names)] for i in fit.tests]
+    rows = [
+        [str(fit.tests.lines[i]), *(fit.tests.text(i, name) for name in names)] for i in fit.tests
+    ]
     return Table("fit_tests", "Tests", ["Row", *names], rows)
 
 
 def write_fit(fit: Fit, path: Path | str) -> Path:
-    """Write the page of a fit as one HTML file that stands alone, or as PDF by the name of the file.
+    """Write the page of a fit as one HTML file that stands alone, or as PDF by the name of the
+    file.
 
     Parameters
     ----------
     fit : Fit
-        Result of `trackroller.fit_sn`, `trackroller.fit_bench` or `trackroller.fit.depths.fit_wear`.
+        Result of `trackroller.fit_sn`, `trackroller.fit_bench` or
+        `trackroller.fit.depths.fit_wear`.
     path : Path or str
         The file to write.
 
@@ -150,7 +194,9 @@ def write_fit(fit: Fit, path: Path | str) -> Path:
     """
     from trackroller.report.figures import fit as figures  # heavy: matplotlib
 
-    drawn = pictures(partial(figures.sn_line, fit), partial(figures.predicted, fit), partial(figures.pairs, fit))
+    drawn = pictures(
+        partial(figures.sn_line, fit), partial(figures.predicted, fit), partial(figures.pairs, fit)
+    )
     under = [f"{capital(key.replace('_', ' '))}: {value}" for key, value in fit.given.items()]
     digest = f", sha256 {fit.tests.digest[:16]}" if fit.tests.digest else ""
     content = {
@@ -194,20 +240,25 @@ def next_rows(ds: xr.Dataset, most: int = 8) -> tuple[list[str], list[list[str]]
 
 
 def _factor(ds: xr.Dataset, deviation: float) -> str:
-    """Write the high over the low end of B10 after tests that leave so much of the deviation of its logarithm.
+    """Write the high over the low end of B10 after tests that leave so much of the deviation of its
+    logarithm.
 
     The interval by the tests so far narrows as the deviation does.
     """
     low, high = np.log(ds["interval_now"].values)
     width = high - low if math.isfinite(high - low) else 2.0 * 1.645 * float(ds["deviation_now"])
-    return f"a factor of {rounded(math.exp(min(width * deviation / float(ds['deviation_now']), 50.0)), 2)}"
+    return (
+        "a factor of "
+        f"{rounded(math.exp(min(width * deviation / float(ds['deviation_now']), 50.0)), 2)}"
+    )
 
 
 def next_sentences(ds: xr.Dataset) -> list[str]:
     """Return sentences on the plan of `trackroller.next_tests`."""
     chosen = [str(int(i) + 1) for i in ds["chosen"].values]
     now, after, random = (
-        _factor(ds, float(d)) for d in (ds["deviation_now"], ds["deviation_after"][-1], ds["deviation_random"])
+        _factor(ds, float(d))
+        for d in (ds["deviation_now"], ds["deviation_after"][-1], ds["deviation_random"])
     )
     hours = float(ds["hours"].values[ds["chosen"].values].sum())
     low, high = ds["interval_now"].values
@@ -220,7 +271,8 @@ def next_sentences(ds: xr.Dataset) -> list[str]:
     )
     return [
         f"B10 of the design is {known} by the tests so far (90 %), {now} between both ends.",
-        f"Test {listing([f'candidate {i}' for i in chosen])}, about {rounded(hours)} h in all: on average that leaves "
+        f"Test {listing([f'candidate {i}' for i in chosen])}, about {rounded(hours)} h in all: on "
+        "average that leaves "
         f"{after}. As many random candidates leave {random}.",
     ]
 
@@ -229,20 +281,29 @@ def until_sentences(ds: xr.Dataset, factor: float) -> list[str]:
     """Return sentences on how many more tests are needed, from the campaigns of `tests_until`."""
     tests, hours, most = ds["tests"].values, ds["hours"].values, int(ds.attrs["most"])
     if not tests.max() > 0:
-        return [f"The ends of B10 lie within a factor of {cell(factor)} already: no further test is needed."]
+        return [
+            f"The ends of B10 lie within a factor of {cell(factor)} already: no further test "
+            "is needed."
+        ]
     ends = np.quantile(tests, (0.05, 0.5, 0.95), method="inverted_cdf")
     if math.isinf(ends[1]):
         many = int(np.isinf(tests).sum())
         return [
-            f"For a factor of {cell(factor)} more than {most} tests are needed, in {many} of {len(tests)} simulated "
+            f"For a factor of {cell(factor)} more than {most} tests are needed, in {many} of "
+            f"{len(tests)} simulated "
             "campaigns that repeat this plan. Give other candidates, or a wider factor."
         ]
-    low, middle, high = (str(int(end)) if math.isfinite(end) else f"more than {most}" for end in ends)
+    low, middle, high = (
+        str(int(end)) if math.isfinite(end) else f"more than {most}" for end in ends
+    )
     times = np.quantile(hours, (0.05, 0.5, 0.95), method="inverted_cdf")
     longest = f"to {rounded(times[2], 2)} h" if math.isfinite(times[2]) else "h or more"
     return [
-        f"For a factor of {cell(factor)} about {middle} more tests are needed, {rounded(times[1], 2)} h of testing.",
-        f"That is the median of {len(tests)} simulated campaigns that repeat this plan, each by a line that the tests "
-        f"allow; nine of ten need {low} to {high} tests, {rounded(times[0], 2)} {longest}. Ask again after each "
+        f"For a factor of {cell(factor)} about {middle} more tests are needed, "
+        f"{rounded(times[1], 2)} h of testing.",
+        f"That is the median of {len(tests)} simulated campaigns that repeat this plan, each by a "
+        "line that the tests "
+        f"allow; nine of ten need {low} to {high} tests, {rounded(times[0], 2)} {longest}. Ask "
+        "again after each "
         "test.",
     ]

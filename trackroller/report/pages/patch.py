@@ -1,4 +1,6 @@
-"""The page of one contact by itself: its table, creep curve and fields; and the table on a terminal."""
+"""The page of one contact by itself: its table, creep curve and fields; and the table on a
+terminal.
+"""
 
 from __future__ import annotations
 
@@ -18,7 +20,12 @@ from trackroller.report.pages.record import pictures, versions_text
 from trackroller.report.tables.table import Table, cell
 from trackroller.report.terminal import print_table, print_text
 
-IN_PER_CENT = (*CREEPAGES[:2], "friction_force_share", "stick_area_fraction", "force_error_estimate")
+IN_PER_CENT = (
+    *CREEPAGES[:2],
+    "friction_force_share",
+    "stick_area_fraction",
+    "force_error_estimate",
+)
 HEADS = {  # of the columns that every table has
     "driving_force": "F_y",
     "lateral_force": "F_x",
@@ -31,7 +38,8 @@ HEADS = {  # of the columns that every table has
     "semi_axis_lateral": "Half width",
     "semi_axis_rolling": "Half length",
 }
-NO_FORCE = 1e-6  # share of mu F_N below which a force in every case is rounding, so that its column is left out
+# share of mu F_N below which a force in every case is rounding, so that its column is left out
+NO_FORCE = 1e-6
 
 
 def table_of_cases(ds: xr.Dataset) -> Table:
@@ -65,7 +73,9 @@ def _head(ds: xr.Dataset, name: str) -> str:
 
 
 def table_of_inputs(ds: xr.Dataset) -> Table:
-    """List load, shape, friction and materials; of a value that varies its least and its largest."""
+    """List load, shape, friction and materials; of a value that varies its least and its
+    largest.
+    """
     rows = []
     for name in PATCH_FIELDS:
         if name not in ds or name in CREEPAGES or name in HEADS:
@@ -82,25 +92,36 @@ def table_of_inputs(ds: xr.Dataset) -> Table:
 
 
 def sentences(ds: xr.Dataset) -> list[str]:
-    """Return the statements at the head of the page: the largest force, and cases without a solution."""
+    """Return the statements at the head of the page: the largest force, and cases without a
+    solution.
+    """
     own = along_cases(ds)
     used = own["friction_force_share"]
     said = []
     if used.notnull().any():
         best = own.isel(case=int(np.nanargmax(used.values.round(4))))  # the first of equal ones
         creepages = ", ".join(
-            f"{best[name].attrs['long_name']} {rounded(_shown(best, name))} {'/mm' if name == 'spin' else '%'}"
+            f"{best[name].attrs['long_name']} {rounded(_shown(best, name))} "
+            f"{'/mm' if name == 'spin' else '%'}"
             for name in CREEPAGES
             if float(best[name]) != 0.0
         )
         share = rounded(PER_CENT * float(best["friction_force_share"]))
-        said.append(f"The largest friction force is {share} % of mu F_N, at {creepages or 'no creepage'}.")
+        said.append(
+            f"The largest friction force is {share} % of mu F_N, at {creepages or 'no creepage'}."
+        )
     missed = int((own["converged"] == 0).sum())
     if missed:
-        said.append(f"{missed} of {own.sizes['case']} cases have not converged: the friction law is not met there.")
+        said.append(
+            f"{missed} of {own.sizes['case']} cases have not converged: the friction law is not "
+            "met there."
+        )
     steep = int((own["steep_friction"] == 1).sum())
     if steep:
-        said.append(f"{capital(own['steep_friction'].attrs['long_name'])} in {steep} of {own.sizes['case']} cases.")
+        said.append(
+            f"{capital(own['steep_friction'].attrs['long_name'])} in {steep} of "
+            f"{own.sizes['case']} cases."
+        )
     return said
 
 
@@ -108,8 +129,11 @@ def _shown(one: xr.Dataset, name: str) -> float:
     return float(one[name]) * (PER_CENT if name in IN_PER_CENT else 1.0)
 
 
-def write_patch(ds: xr.Dataset, path: Path | str, file: str = "patch.yaml", creepage: str | None = None) -> Path:
-    """Write the page of one contact as one HTML file that stands alone, or as PDF by the name of the file.
+def write_patch(
+    ds: xr.Dataset, path: Path | str, file: str = "patch.yaml", creepage: str | None = None
+) -> Path:
+    """Write the page of one contact as one HTML file that stands alone, or as PDF by the name of
+    the file.
 
     Parameters
     ----------
@@ -136,7 +160,9 @@ def write_patch(ds: xr.Dataset, path: Path | str, file: str = "patch.yaml", cree
         "name": ds.attrs["patch"],
         "description": ds.attrs["description"],
         "said": sentences(ds),
-        "figures": list(pictures(partial(patch.creep_curve, ds), partial(patch.fields, ds)).values()),
+        "figures": list(
+            pictures(partial(patch.creep_curve, ds), partial(patch.fields, ds)).values()
+        ),
         "cases": table_of_cases(ds),
         "inputs": table_of_inputs(ds),
         "conventions": [f"{capital(text)}." for text in str(ds.attrs["conventions"]).split("; ")],

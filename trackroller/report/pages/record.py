@@ -1,4 +1,6 @@
-"""The page of a record that is no study: of one roller, a spectrum, a carriage, or a roller that wears."""
+"""The page of a record that is no study: of one roller, a spectrum, a carriage, or a roller that
+wears.
+"""
 
 from __future__ import annotations
 
@@ -23,7 +25,8 @@ from trackroller.roller.duty import duty_of
 from trackroller.roller.requirement import KEY
 from trackroller.study.store.provenance import versions
 
-DECISIVE = ("contact_model", "spin_model", "accuracy", "normal", "life_rule")  # a command always states them
+# a command always states them
+DECISIVE = ("contact_model", "spin_model", "accuracy", "normal", "life_rule")
 FIELDS: dict[str, Any] = {  # of the template; a page states those that it has
     "signed": (),
     "drawing": "",
@@ -61,7 +64,9 @@ def record_text(answer: Answer, kind: str, command: str, **fields: Any) -> str:
 
 
 def print_record(answer: Answer) -> None:
-    """Print the further tables of a record, and at the end its table, what was not checked, and its warnings."""
+    """Print the further tables of a record, and at the end its table, what was not checked, and its
+    warnings.
+    """
     for part in answer.parts:
         print_part(answer, part)
     print_answer(answer)
@@ -69,7 +74,10 @@ def print_record(answer: Answer) -> None:
 
 def inputs_apart(rows: Sequence[Row]) -> dict[str, list[Row]]:
     """Return the inputs that were given, and those that were not."""
-    return {"given": [row for row in rows if not row.default], "not_given": [row for row in rows if row.default]}
+    return {
+        "given": [row for row in rows if not row.default],
+        "not_given": [row for row in rows if row.default],
+    }
 
 
 def pictures(*jobs: Callable[[], Any]) -> dict[str, dict[str, str]]:
@@ -78,7 +86,9 @@ def pictures(*jobs: Callable[[], Any]) -> dict[str, dict[str, str]]:
 
     with tempfile.TemporaryDirectory() as place:
         infos = style.draw_all(jobs, Path(place))
-        return {i.name: vars(i) | {"source": html.data_uri(Path(place, f"{i.name}.svg"))} for i in infos}
+        return {
+            i.name: vars(i) | {"source": html.data_uri(Path(place, f"{i.name}.svg"))} for i in infos
+        }
 
 
 def versions_text() -> str:
@@ -87,12 +97,18 @@ def versions_text() -> str:
 
 
 def options_text(ds: xr.Dataset) -> str:
-    """Return the options of a solved case, and the contact model that solved it if it is not the chosen one."""
-    return ", ".join(f"{plain(name)} {ds.attrs[name]}{_used(ds, name)}" for name in OPTIONS if ds.attrs.get(name))
+    """Return the options of a solved case, and the contact model that solved it if it is not the
+    chosen one.
+    """
+    return ", ".join(
+        f"{plain(name)} {ds.attrs[name]}{_used(ds, name)}" for name in OPTIONS if ds.attrs.get(name)
+    )
 
 
 def _used(ds: xr.Dataset, option: str) -> str:
-    """Name the contact model that solved the case if it is not the chosen one; an empty text for other options."""
+    """Name the contact model that solved the case if it is not the chosen one; an empty text for
+    other options.
+    """
     if option != "contact_model" or "contact_model_used" not in ds or ds["contact_model_used"].ndim:
         return ""
     used = solved_by(ds).item()
@@ -102,8 +118,15 @@ def _used(ds: xr.Dataset, option: str) -> str:
 def body_materials(materials: Mapping[str, Mapping[str, Any]]) -> list[tuple[str, list[Row], str]]:
     """Return head, values and source of each material, once if both bodies are of the same."""
     roller, guide = (materials[f"{body}_material"] for body in BODIES)
-    by_body = [("roller and guide", roller)] if roller == guide else [("roller", roller), ("guide", guide)]
-    return [(head, material_rows(record.as_material(values)), material_source(values)) for head, values in by_body]
+    by_body = (
+        [("roller and guide", roller)]
+        if roller == guide
+        else [("roller", roller), ("guide", guide)]
+    )
+    return [
+        (head, material_rows(record.as_material(values)), material_source(values))
+        for head, values in by_body
+    ]
 
 
 def command_of(ds: xr.Dataset, words: tuple[str, ...] = ("solve",)) -> str:
@@ -111,7 +134,8 @@ def command_of(ds: xr.Dataset, words: tuple[str, ...] = ("solve",)) -> str:
     left_out = record.names_not_given(ds.attrs)
     given = {name: value for name, value in record.inputs_of(ds).items() if name not in left_out}
     plain_values = {
-        n: v if v is None or isinstance(v, Mapping) else str(v).removesuffix(".0") for n, v in given.items()
+        n: v if v is None or isinstance(v, Mapping) else str(v).removesuffix(".0")
+        for n, v in given.items()
     }
     beside = {"duty": duty_of(ds), KEY: json.loads(ds.attrs.get(KEY, "{}")) or None}
     return record.solve_command(plain_values | _options_of(ds) | beside, words)

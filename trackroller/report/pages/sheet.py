@@ -29,7 +29,12 @@ from trackroller.report.pages.record import (
 from trackroller.report.printed import print_answer, print_below_headline, print_part
 from trackroller.report.tables.inputs import Row, input_rows
 from trackroller.report.terminal import print_table, print_text
-from trackroller.report.words.assumptions import assumptions, friction_sentence, standards, strength_sentences
+from trackroller.report.words.assumptions import (
+    assumptions,
+    friction_sentence,
+    standards,
+    strength_sentences,
+)
 from trackroller.results.answer import Answer
 from trackroller.results.answers import answer_of
 from trackroller.results.flags import flags_of
@@ -39,20 +44,29 @@ from trackroller.roller.dataset import solved_by
 from trackroller.roller.duty import OVERROLLINGS, duty_of, duty_words, strokes_of, years
 from trackroller.roller.output_names import is_life
 from trackroller.roller.settings import SHEET_FIELDS, sheet_of
-from trackroller.roller.stored_inputs import doubts_of, friction_records, inputs_of, is_default, materials_of
+from trackroller.roller.stored_inputs import (
+    doubts_of,
+    friction_records,
+    inputs_of,
+    is_default,
+    materials_of,
+)
 from trackroller.study.store.provenance import versions
 
-SHOWN = ("contact_shear", "contact_1_stress", "contact_2_stress", "wear_depth")  # figures of the sheet, if drawn
+# figures of the sheet, if drawn
+SHOWN = ("contact_shear", "contact_1_stress", "contact_2_stress", "wear_depth")
 KIND = "sheet of a track roller"
 
 
 def write_sheet(ds: xr.Dataset, path: Path | str, name: str = "") -> Path:
-    """Write the sheet of a solved roller as one HTML file that stands alone, or as PDF by the name of the file.
+    """Write the sheet of a solved roller as one HTML file that stands alone, or as PDF by the name
+    of the file.
 
     Parameters
     ----------
     ds : xarray.Dataset
-        Result of `trackroller.solve` for one case. Figures need the outputs `tractions` and `subsurface`.
+        Result of `trackroller.solve` for one case. Figures need the outputs `tractions` and
+        `subsurface`.
     path : Path or str
         The file to write.
     name : str
@@ -86,7 +100,9 @@ def render(ds: xr.Dataset, name: str = "") -> str:
         answer,
         KIND,
         command_of(ds),
-        signed=[(head.capitalize(), sheet_of(ds).get(head, "")) for head in (*SHEET_FIELDS, "signature")],
+        signed=[
+            (head.capitalize(), sheet_of(ds).get(head, "")) for head in (*SHEET_FIELDS, "signature")
+        ],
         drawing=drawing(ds) if "normal_force" in ds else "",
         figures=[drawn[one] for one in SHOWN if one in drawn],
         figures_title="Shear and stress",
@@ -110,12 +126,21 @@ def notes_of_sheet(ds: xr.Dataset) -> dict[str, list[str]]:
     """Return what the proof of a sheet states, by its head."""
     materials = materials_of_case(ds, inputs_of(ds))
     data = [text for text in (friction_sentence(ds), *strength_sentences(materials)) if text]
-    return {"Values of the materials": data, "Assumptions": assumptions(ds), "Standards": [standards(ds)]}
+    return {
+        "Values of the materials": data,
+        "Assumptions": assumptions(ds),
+        "Standards": [standards(ds)],
+    }
 
 
 def sheet_inputs(ds: xr.Dataset) -> list[Row]:
-    """Return the inputs of a roller as they were given: outer radius, groove depth and duty first."""
-    rows = [Row(f"{plain(name)} of the roller", number(value), "mm") for name, value in record.radii_of(ds).items()]
+    """Return the inputs of a roller as they were given: outer radius, groove depth and duty
+    first.
+    """
+    rows = [
+        Row(f"{plain(name)} of the roller", number(value), "mm")
+        for name, value in record.radii_of(ds).items()
+    ]
     duty = duty_of(ds)
     if duty:
         rows.append(Row("duty", duty_words(duty, strokes_of(ds))))
@@ -127,14 +152,20 @@ def sheet_inputs(ds: xr.Dataset) -> list[Row]:
 
 
 def _less_stressed(ds: xr.Dataset) -> str:
-    """Name the stress figure that the print leaves out: that of the contact with the lower peak stress."""
-    peaks = np.nan_to_num(ds["peak_stress"].max("body").values) if "peak_stress" in ds else np.zeros(2)
+    """Name the stress figure that the print leaves out: that of the contact with the lower peak
+    stress.
+    """
+    peaks = (
+        np.nan_to_num(ds["peak_stress"].max("body").values) if "peak_stress" in ds else np.zeros(2)
+    )
     return f"contact_{np.argmin(peaks) + 1}_stress"
 
 
 @lives_in_years
 def print_facts(ds: xr.Dataset) -> None:
-    """Print the record of a solved roller: its headline first, then inputs and numbers, and its limits at the end."""
+    """Print the record of a solved roller: its headline first, then inputs and numbers, and its
+    limits at the end.
+    """
     answer = answer_of_roller(ds)
     print_text(headline_of(answer).text)
     converged = "converged" if answer.facts["converged"] else "NOT converged"
@@ -142,7 +173,9 @@ def print_facts(ds: xr.Dataset) -> None:
     rows = [[row.words, row.value, row.unit, row.origin] for row in sheet_inputs(ds)]
     print_table(["input", "value", "unit", "from"], rows, (1,))
     if any(row[3] == "example" for row in rows):
-        print_text("Values from 'example' were not given: the paper's example has them. Give yours.")
+        print_text(
+            "Values from 'example' were not given: the paper's example has them. Give yours."
+        )
     print_text(options_text(ds), "options")
     if answer.facts["regime"] == "failed":  # nothing else is known
         for caution in answer.warnings:
@@ -171,11 +204,12 @@ _RECORDS = ("case", "materials", "friction", "doubts")  # attributes with keys o
 
 
 def as_json(ds: xr.Dataset) -> str:
-    """Return a result as JSON: every variable with dims, units and values; NaN is null, infinity a text.
+    """Return a result as JSON: every variable with dims, units and values; NaN is null, infinity a
+    text.
 
-    Lives in hours also have years where the duty is known, and `doubts` holds a sentence for each unusual value. The
-    result of one case also has its inputs and which of them are defaults, its materials with sources, its flags in
-    words, the options and the versions.
+    Lives in hours also have years where the duty is known, and `doubts` holds a sentence for each
+    unusual value. The result of one case also has its inputs and which of them are defaults, its
+    materials with sources, its flags in words, the options and the versions.
     """
     content: dict[str, Any] = {
         str(name): {
@@ -205,7 +239,9 @@ def as_json(ds: xr.Dataset) -> str:
         content["answer"] = answer.to_dict()
     if "case" in ds.attrs:
         inputs = inputs_of(ds)
-        content["inputs"] = {name: {"value": _plain(v), "default": is_default(name, v)} for name, v in inputs.items()}
+        content["inputs"] = {
+            name: {"value": _plain(v), "default": is_default(name, v)} for name, v in inputs.items()
+        }
         content["materials"], content["friction"] = materials_of(ds), friction_records(ds.attrs)
         content["flags"] = [vars(flag) for flag in flags_of(ds)]
         content["options"] = {k: _plain(v) for k, v in ds.attrs.items() if k not in _RECORDS}

@@ -11,7 +11,13 @@ import xarray as xr
 
 from trackroller.report import html
 from trackroller.report.numbers import lives_in_years
-from trackroller.report.pages.record import body_materials, inputs_apart, pictures, print_record, record_text
+from trackroller.report.pages.record import (
+    body_materials,
+    inputs_apart,
+    pictures,
+    print_record,
+    record_text,
+)
 from trackroller.report.tables.inputs import input_rows
 from trackroller.results.spectrum_answer import answer_of_spectrum
 from trackroller.roller.stored_inputs import NOT_GIVEN
@@ -21,7 +27,8 @@ KIND = "load spectrum of a track roller"
 
 @lives_in_years
 def write_spectrum(ds: xr.Dataset, path: Path | str, file: str = "spectrum.yaml") -> Path:
-    """Write the page of a load spectrum as one HTML file that stands alone, or as PDF by the name of the file.
+    """Write the page of a load spectrum as one HTML file that stands alone, or as PDF by the name
+    of the file.
 
     Parameters
     ----------
@@ -54,5 +61,7 @@ def write_spectrum(ds: xr.Dataset, path: Path | str, file: str = "spectrum.yaml"
 
 @lives_in_years
 def print_spectrum(ds: xr.Dataset) -> None:
-    """Print the record of a load spectrum: blocks and lives, and at the end its limits and warnings."""
+    """Print the record of a load spectrum: blocks and lives, and at the end its limits and
+    warnings.
+    """
     print_record(answer_of_spectrum(ds))

@@ -13,7 +13,14 @@ from trackroller import parameters
 from trackroller.methods import METHODS
 from trackroller.report.explorer.page import explorer, secured
 from trackroller.report.html import render
-from trackroller.report.numbers import capital, lives_in_years, long_name, part_of, percent_up, rounded
+from trackroller.report.numbers import (
+    capital,
+    lives_in_years,
+    long_name,
+    part_of,
+    percent_up,
+    rounded,
+)
 from trackroller.report.pages.blocks import screen_of
 from trackroller.report.tables import inputs
 from trackroller.report.tables.failures import reason_table, validity_table
@@ -31,20 +38,24 @@ from trackroller.study.store.put import put_text, replacing
 
 OPTIONS = tuple(option.name for option in parameters.OPTIONS.values() if option.recorded)
 _ELSEWHERE = (
-    "notice study materials friction comment title coordinates Conventions life_conventions sign_conventions design"
+    "notice study materials friction comment title coordinates Conventions "
+    "life_conventions sign_conventions design"
 )
-_NO_RECORD = {*_ELSEWHERE.split(), *OPTIONS, OPTIMUM, UNTIL, NOT_GIVEN}  # attributes that do not stand in the record
+# attributes that do not stand in the record
+_NO_RECORD = {*_ELSEWHERE.split(), *OPTIONS, OPTIMUM, UNTIL, NOT_GIVEN}
 
 
 def write_report(results: Results, out_html: Path) -> Path:
-    """Write the report of a gathered study as one self-contained HTML file, and its tables beside it.
+    """Write the report of a gathered study as one self-contained HTML file, and its tables beside
+    it.
 
     Parameters
     ----------
     results : Results
         The solved study.
     out_html : pathlib.Path
-        File to write, completely or not at all. The tables are written to the folder `tables` beside it.
+        File to write, completely or not at all. The tables are written to the folder `tables`
+        beside it.
 
     Returns
     -------
@@ -65,26 +76,37 @@ def report_text(results: Results) -> str:
 
 
 def page_text(answer: Answer, proof: dict[str, Any], shown: dict[str, Any] | None) -> str:
-    """Return the page of an answer as HTML, from its record, its proof and its explorer (None for none)."""
+    """Return the page of an answer as HTML, from its record, its proof and its explorer (None for
+    none).
+    """
     content = {"screen": screen_of(answer), "proof": proof, "explorer": shown}
     return secured(render("report.html.j2", content, cell=cell))
 
 
 @lives_in_years
 def proof_of(results: Results) -> dict[str, Any]:
-    """Return what the folded part of the page needs: inputs, materials, errors, failed cases, versions and papers."""
+    """Return what the folded part of the page needs: inputs, materials, errors, failed cases,
+    versions and papers.
+    """
     settings = results.study.as_dict()
     attrs = dict(results.data.attrs)
     merged = {name: settings[name] for name in OPTIONS if name in settings} | attrs
     texts = {name: _option_text(_levels(results, name, merged.get(name, ""))) for name in OPTIONS}
     options = [inputs.Row(capital(long_name(name)), text) for name, text in texts.items() if text]
-    solution = [*options, *models_used(results.data), *inputs.correlation_row(results), *solution_facts(results)]
+    solution = [
+        *options,
+        *models_used(results.data),
+        *inputs.correlation_row(results),
+        *solution_facts(results),
+    ]
     return {
         "notice": attrs.get("notice", ""),
         "factors": inputs.factor_table(results),
         "base": inputs.base_rows(results),
         "doubts": _doubts(results),
-        "materials": [t for t in (inputs.materials_table(attrs), inputs.friction_table(attrs)) if t],
+        "materials": [
+            t for t in (inputs.materials_table(attrs), inputs.friction_table(attrs)) if t
+        ],
         "solution": solution,
         "tables": [t for t in (validity_table(results), reason_table(results.data)) if t],
         "used": defaultdict(str, merged),
@@ -105,7 +127,11 @@ def tables_of(results: Results) -> list[Table]:
 
 def _doubts(results: Results) -> list[str]:
     """Return a sentence for each unusual value of the cases."""
-    varied = {name: results.table[name].to_numpy() for name in results.table if name in parameters.PARAMETERS}
+    varied = {
+        name: results.table[name].to_numpy()
+        for name in results.table
+        if name in parameters.PARAMETERS
+    }
     materials = map(as_material, inputs.stored_materials(results.data.attrs).values())
     return doubts({**results.base, **varied}, materials)
 
@@ -121,7 +147,9 @@ def _option_text(value: Any) -> str:
 
 
 def models_used(ds: xr.Dataset) -> list[inputs.Row]:
-    """Say how many cases each contact model solved, where another model than the chosen one solved some of them."""
+    """Say how many cases each contact model solved, where another model than the chosen one solved
+    some of them.
+    """
     if "contact_model_used" not in ds or "contact_model" in ds.coords:
         return []
     used = solved_by(ds)
@@ -141,10 +169,19 @@ def solution_facts(results: Results) -> list[inputs.Row]:
         rows.append(inputs.Row("Converged cases", part_of(done, len(results.table))))
     residual = _finite(ds, "residual")
     if residual.size:
-        rows.append(inputs.Row("Largest relative residual of the equilibrium", rounded(float(residual.max()), 2)))
+        rows.append(
+            inputs.Row(
+                "Largest relative residual of the equilibrium", rounded(float(residual.max()), 2)
+            )
+        )
     error = _finite(ds, "error_estimate")
     if error.size:
-        rows.append(inputs.Row("Largest estimated relative error of the peak stress", percent_up(float(error.max()))))
+        rows.append(
+            inputs.Row(
+                "Largest estimated relative error of the peak stress",
+                percent_up(float(error.max())),
+            )
+        )
     return rows
 
 

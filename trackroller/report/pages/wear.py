@@ -24,7 +24,8 @@ KIND = "wear over the travel"
 
 
 def write_wear(ds: xr.Dataset, path: Path | str) -> Path:
-    """Write the page of a roller that wears as one HTML file that stands alone, or as PDF by the name of the file.
+    """Write the page of a roller that wears as one HTML file that stands alone, or as PDF by the
+    name of the file.
 
     Parameters
     ----------
@@ -44,7 +45,9 @@ def write_wear(ds: xr.Dataset, path: Path | str) -> Path:
     text = record_text(
         answer_of_wear(ds),
         KIND,
-        command_of(ds, ("wear", "--to", f"{float(ds.attrs['to']):g}km", "--report", Path(path).name)),
+        command_of(
+            ds, ("wear", "--to", f"{float(ds.attrs['to']):g}km", "--report", Path(path).name)
+        ),
         first_figures=list(drawn.values()),
         materials=body_materials(materials_of(ds)),
         options=options_text(ds),

@@ -10,7 +10,8 @@ import numpy as np
 
 from trackroller.report.numbers import grouped
 
-LETTER = 6.6  # mean width of a letter of a picture [px], measured in Chromium with DejaVu Sans of 11 px
+# mean width of a letter of a picture [px], measured in Chromium with DejaVu Sans of 11 px
+LETTER = 6.6
 WIDE_RATIO = 5.0  # largest over smallest value from which an axis of positive values is logarithmic
 ROOM = 0.04  # of the axis that stays free at each end
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
@@ -31,7 +32,9 @@ class Axis:
     logarithmic: bool = False
 
     @classmethod
-    def of(cls, values: Iterable[float], logarithmic: bool | None = None, room: float = ROOM) -> Axis:
+    def of(
+        cls, values: Iterable[float], logarithmic: bool | None = None, room: float = ROOM
+    ) -> Axis:
         """Return an axis that holds values; by their ratio it is logarithmic unless that is said.
 
         Infinite and undefined values stand at its ends, and so does 0 on a logarithmic axis.
@@ -63,10 +66,14 @@ class Axis:
         return 100 * min(1.0, max(0.0, share))
 
     def ticks(self, length: float) -> list[tuple[float, str]]:
-        """Return values of ticks with their texts, so that texts do not collide along an axis of this length [px]."""
+        """Return values of ticks with their texts, so that texts do not collide along an axis of
+        this length [px].
+        """
         best: list[tuple[float, str]] = []
         for values in self._candidates():
-            ticks = [(value, tick_text(value)) for value in values if self.low <= value <= self.high]
+            ticks = [
+                (value, tick_text(value)) for value in values if self.low <= value <= self.high
+            ]
             if len(ticks) > len(best) and self._fit(ticks, length):
                 best = ticks
         return best
@@ -76,7 +83,9 @@ class Axis:
         best: list[tuple[float, str]] = []
         most = max(2, int(height / 22))
         for values in self._candidates():
-            ticks = [(value, tick_text(value)) for value in values if self.low <= value <= self.high]
+            ticks = [
+                (value, tick_text(value)) for value in values if self.low <= value <= self.high
+            ]
             if len(best) < len(ticks) <= most:
                 best = ticks
         return best
@@ -103,9 +112,14 @@ class Axis:
         first = math.floor(math.log10(self.low))
         last = math.ceil(math.log10(self.high))
         decades = range(first, last + 1)
-        sets = [[10.0**power for power in decades if power % step == 0] for step in (1, 2, 3, 4, 5, 10, 20)]
+        sets = [
+            [10.0**power for power in decades if power % step == 0]
+            for step in (1, 2, 3, 4, 5, 10, 20)
+        ]
         if last - first <= 2:
-            sets += [[one * 10.0**power for power in decades for one in of] for of in ((1, 3), (1, 2, 5))]
+            sets += [
+                [one * 10.0**power for power in decades for one in of] for of in ((1, 3), (1, 2, 5))
+            ]
         if self.high < 10 * self.low:
             sets += _steps(self.low, self.high)
         return sets
@@ -127,9 +141,13 @@ def _linear_ends(low: float, high: float, room: float) -> tuple[float, float]:
 
 
 def _steps(low: float, high: float) -> list[list[float]]:
-    """Return multiples of round steps between two ends, for steps of a twentieth to a half of the range."""
+    """Return multiples of round steps between two ends, for steps of a twentieth to a half of the
+    range.
+    """
     power = math.floor(math.log10(high - low)) - 1
-    steps = sorted(one * 10.0**exponent for exponent in (power, power + 1) for one in (1, 2, 2.5, 5))
+    steps = sorted(
+        one * 10.0**exponent for exponent in (power, power + 1) for one in (1, 2, 2.5, 5)
+    )
     found = []
     for step in steps:
         first = math.ceil(low / step - 1e-9)

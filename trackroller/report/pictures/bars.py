@@ -1,4 +1,6 @@
-"""Bars of a table: one axis for all rows, worst, median and best of a candidate or a share with its interval."""
+"""Bars of a table: one axis for all rows, worst, median and best of a candidate or a share with its
+interval.
+"""
 
 from __future__ import annotations
 
@@ -12,7 +14,16 @@ from markupsafe import Markup
 from trackroller.report.numbers import capital, carried_range, grouped, unit_text
 from trackroller.report.pictures.axis import Axis
 from trackroller.report.pictures.frame import bounds_of
-from trackroller.report.pictures.marks import dot, element, joined, label, line, picture, upright, width_of
+from trackroller.report.pictures.marks import (
+    dot,
+    element,
+    joined,
+    label,
+    line,
+    picture,
+    upright,
+    width_of,
+)
 from trackroller.results.answer import Answer, Column
 
 LENGTH = 190.0  # smallest width of the bars of a table [px]
@@ -59,7 +70,9 @@ class Bars:
         if shares:
             return cls(capital(first.title), "%", Axis(0.0, 1.0), columns, True, (), state)
         bounds = tuple(bounds_of(answer))
-        names = [name for column in columns.values() for name in (column.name, column.until) if name]
+        names = [
+            name for column in columns.values() for name in (column.name, column.until) if name
+        ]
         values = answer.table[names].to_numpy(dtype=float).ravel()
         axis = Axis.of([*values, *(value for value, _ in bounds)])
         unit = unit_text(answer.output[2]).replace("–", "")
@@ -108,12 +121,20 @@ class Bars:
             if math.isnan(low):
                 continue
             if column.until:
-                yield line("q", self.axis.place(low), "50%", self.axis.place(float(row[column.until])), "50%")
+                yield line(
+                    "q",
+                    self.axis.place(low),
+                    "50%",
+                    self.axis.place(float(row[column.until])),
+                    "50%",
+                )
             else:
                 yield line("w", 0.0, "50%", self.axis.place(low), "50%")
 
     def _range_marks(self, row: Mapping[Any, Any]) -> Iterator[Markup]:
-        """Yield the best condition as a line, the range of the worst one as a bar, the median as a stroke."""
+        """Yield the best condition as a line, the range of the worst one as a bar, the median as a
+        stroke.
+        """
         first = next(iter(self.columns.values()))
         low = float(row[first.name])
         high = float(row[first.until]) if first.until else low
@@ -150,7 +171,10 @@ class Bars:
         """Return the marks of a bar with their words."""
         if self.shares:
             drawn = [column for column in self.columns.values() if column.until]
-            return [(_sample(line("q", 8, "50%", 92, "50%")), f"{column.title} interval") for column in drawn]
+            return [
+                (_sample(line("q", 8, "50%", 92, "50%")), f"{column.title} interval")
+                for column in drawn
+            ]
         first = next(iter(self.columns.values()))
         marks = [(_sample(dot("d", 50, "50%", 4.5)), first.title.lower())]
         if first.until:
@@ -165,7 +189,9 @@ class Bars:
 
 
 def drawn_columns(answer: Answer) -> dict[str, Column]:
-    """Return the columns that the bars of a table draw: those of role `bar`, otherwise those of a share."""
+    """Return the columns that the bars of a table draw: those of role `bar`, otherwise those of a
+    share.
+    """
     found = [column for column in answer.columns if column.role == "bar"]
     if not found:
         found = [column for column in answer.columns if column.kind == "share"]

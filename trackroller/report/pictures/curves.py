@@ -1,4 +1,6 @@
-"""Effects of factors as small pictures on one output axis: the curve with its spread, or dots for single levels."""
+"""Effects of factors as small pictures on one output axis: the curve with its spread, or dots for
+single levels.
+"""
 
 from __future__ import annotations
 
@@ -47,7 +49,10 @@ def effects(answer: Answer) -> list[Effect]:
     ends = [*(_inside(curve) for curve in curves)]
     bounds = bounds_of_output(answer)
     axis = Axis.of([*np.concatenate(ends), *bounds])
-    return [Effect(capital(curve.title), height_words(curve), _drawn(answer, curve, axis)) for curve in curves]
+    return [
+        Effect(capital(curve.title), height_words(curve), _drawn(answer, curve, axis))
+        for curve in curves
+    ]
 
 
 def height_words(curve: Curve) -> str:
@@ -61,7 +66,9 @@ def height_words(curve: Curve) -> str:
 
 def _inside(curve: Curve) -> np.ndarray:
     """Return the finite numbers of a curve, which its axis holds."""
-    every = np.concatenate([np.asarray(ends, dtype=float) for ends in (curve.middle, curve.low, curve.high)])
+    every = np.concatenate(
+        [np.asarray(ends, dtype=float) for ends in (curve.middle, curve.low, curve.high)]
+    )
     return every[np.isfinite(every)]
 
 
@@ -78,7 +85,11 @@ def _drawn(answer: Answer, curve: Curve, axis: Axis) -> Markup:
         parts += _dots(curve, axis, places) if len(places) <= MOST_NAMES else []
         parts.append(_below(curve))
     else:
-        parts += [*_posts(curve, axis, places), required_levels(answer, axis), *_dots(curve, axis, places)]
+        parts += [
+            *_posts(curve, axis, places),
+            required_levels(answer, axis),
+            *_dots(curve, axis, places),
+        ]
         texts = [_text(curve, level) for level in curve.levels]
         if len(texts) > MOST_NAMES:
             texts = [str(place) for place in range(1, len(texts) + 1)]
@@ -117,14 +128,26 @@ def _below(curve: Curve) -> Markup:
 
 
 def _band(curve: Curve, axis: Axis, places: Sequence[float]) -> Markup:
-    """Return the spread of a curve as a band, and its middle as a line; levels without a value part both."""
+    """Return the spread of a curve as a band, and its middle as a line; levels without a value part
+    both.
+    """
     layers = []
     for rows in _runs(np.isfinite(curve.middle)):
-        upper = [(places[i], 100 - axis.place(float(curve.high[i]))) for i in rows if np.isfinite(curve.high[i])]
-        lower = [(places[i], 100 - axis.place(float(curve.low[i]))) for i in rows if np.isfinite(curve.low[i])]
+        upper = [
+            (places[i], 100 - axis.place(float(curve.high[i])))
+            for i in rows
+            if np.isfinite(curve.high[i])
+        ]
+        lower = [
+            (places[i], 100 - axis.place(float(curve.low[i])))
+            for i in rows
+            if np.isfinite(curve.low[i])
+        ]
         middle = [(places[i], 100 - axis.place(float(curve.middle[i]))) for i in rows]
         if len(upper) > 1 and len(lower) > 1:
-            layers.append(element("polygon", class_="f cm", points=points([*upper, *reversed(lower)])))
+            layers.append(
+                element("polygon", class_="f cm", points=points([*upper, *reversed(lower)]))
+            )
         layers.append(element("polyline", class_="l cm", points=points(middle)))
     return stretched(joined(layers), HEIGHT)
 
@@ -152,7 +175,9 @@ def _dots(curve: Curve, axis: Axis, places: Sequence[float]) -> list[Markup]:
 
 def _posts(curve: Curve, axis: Axis, places: Sequence[float]) -> list[Markup]:
     """Return the spread at levels without an order, one post each."""
-    known = [i for i in range(len(places)) if np.isfinite(curve.low[i]) and np.isfinite(curve.high[i])]
+    known = [
+        i for i in range(len(places)) if np.isfinite(curve.low[i]) and np.isfinite(curve.high[i])
+    ]
     return [
         line(
             "p cm",
@@ -168,13 +193,24 @@ def _posts(curve: Curve, axis: Axis, places: Sequence[float]) -> list[Markup]:
 def caption(answer: Answer) -> str:
     """Return what the pictures of effects draw."""
     title = with_unit(capital(answer.output[1]), answer.output[2])
-    text = f"{title}: fit or median of like cases at each level; band from the 10th to the 90th hundredth of the cases"
+    text = (
+        f"{title}: fit or median of like cases at each level; band from the 10th to the 90th "
+        "hundredth of the cases"
+    )
     if any(math.isfinite(end) for one in answer.required for end in (one.least, one.most)):
         text += "; dashed: required"
     text += ". × is the largest over the smallest middle."
-    numbered = [curve for curve in answer.curves if not curve.ordered and len(curve.levels) > MOST_NAMES]
+    numbered = [
+        curve for curve in answer.curves if not curve.ordered and len(curve.levels) > MOST_NAMES
+    ]
     for curve in numbered:
-        names = ", ".join(f"{place} {_text(curve, level)}" for place, level in enumerate(curve.levels, 1))
+        names = ", ".join(
+            f"{place} {_text(curve, level)}" for place, level in enumerate(curve.levels, 1)
+        )
         text += f" {curve.title}: {names}."
     left = [f"{curve.title} {curve.left_out:,}" for curve in answer.curves if curve.left_out]
-    return f"{text} Valid cases without a partner at some level are left out: {', '.join(left)}." if left else text
+    return (
+        f"{text} Valid cases without a partner at some level are left out: {', '.join(left)}."
+        if left
+        else text
+    )

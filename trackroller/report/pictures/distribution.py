@@ -42,10 +42,14 @@ STROKES = ("", "dashed", "dotted", "chain")
 def draw_distribution(answer: Answer, data: Mapping[str, Any]) -> Picture:
     """Draw which share of the conditions reaches each value, for each candidate."""
     names = row_names(answer, len(data["values"]))
-    values = {name: np.asarray(one, dtype=float) for name, one in zip(names, data["values"], strict=True)}
+    values = {
+        name: np.asarray(one, dtype=float) for name, one in zip(names, data["values"], strict=True)
+    }
     shown = dict(list(values.items())[:MOST_LINES])
     bounds = bounds_of(answer)
-    every = np.concatenate([one[np.isfinite(one)] for one in shown.values()]) if shown else np.empty(0)
+    every = (
+        np.concatenate([one[np.isfinite(one)] for one in shown.values()]) if shown else np.empty(0)
+    )
     across = Axis.of([*every[every > 0], *(value for value, _ in bounds)])
     up = Axis(0.0, 100.0)
     lines = [_reached(one, across, place) for place, one in enumerate(shown.values())]
@@ -57,10 +61,20 @@ def draw_distribution(answer: Answer, data: Mapping[str, Any]) -> Picture:
     parts += _names_of_lines(shown, across)
     if not _near_left(bounds, across):
         parts.append(label("reached by [%]", 0, "0", "start", dx=-42, dy=-7))
-    words = "; ".join(f"{name}: median {grouped(float(np.median(one)), 3)}" for name, one in shown.items() if one.size)
+    words = "; ".join(
+        f"{name}: median {grouped(float(np.median(one)), 3)}"
+        for name, one in shown.items()
+        if one.size
+    )
     drawn = framed(joined(parts), FLAT, words, left=46, right=14, top=24)
-    more = f" {len(values) - len(shown):,} more candidates are not drawn." if len(values) > len(shown) else ""
-    return Picture(drawn, caption_of(data, f"Share of the conditions that reach a value [%].{more}"))
+    more = (
+        f" {len(values) - len(shown):,} more candidates are not drawn."
+        if len(values) > len(shown)
+        else ""
+    )
+    return Picture(
+        drawn, caption_of(data, f"Share of the conditions that reach a value [%].{more}")
+    )
 
 
 def _near_left(bounds: Sequence[tuple[float, str]], across: Axis) -> bool:
@@ -68,7 +82,9 @@ def _near_left(bounds: Sequence[tuple[float, str]], across: Axis) -> bool:
 
 
 def _reached(values: np.ndarray, across: Axis, place: int) -> Markup:
-    """Return a falling line: the share of values that are at least as large as a place on the axis."""
+    """Return a falling line: the share of values that are at least as large as a place on the
+    axis.
+    """
     ordered = np.sort(np.where(np.isnan(values), -np.inf, values))
     if not ordered.size:
         return Markup()
@@ -82,7 +98,9 @@ def _reached(values: np.ndarray, across: Axis, place: int) -> Markup:
     if math.isfinite(last):
         line.append((across.place(last), 100.0))
     kind = "cm" if place == 0 else "cg"
-    return element("polyline", class_=f"l {kind} {STROKES[place % len(STROKES)]}".rstrip(), points=points(line))
+    return element(
+        "polyline", class_=f"l {kind} {STROKES[place % len(STROKES)]}".rstrip(), points=points(line)
+    )
 
 
 def _names_of_lines(shown: Mapping[str, np.ndarray], across: Axis) -> list[Markup]:
@@ -99,5 +117,15 @@ def _names_of_lines(shown: Mapping[str, np.ndarray], across: Axis) -> list[Marku
         end = x > 70
         kind = "strong cm" if place == 0 else "strong"
         y = percent_place(100 * float(rows[place]))
-        parts.append(label(cut(name, WIDE / 2), x, y, "end" if end else "start", kind, dx=-10 if end else 10, dy=-2))
+        parts.append(
+            label(
+                cut(name, WIDE / 2),
+                x,
+                y,
+                "end" if end else "start",
+                kind,
+                dx=-10 if end else 10,
+                dy=-2,
+            )
+        )
     return parts

@@ -1,4 +1,6 @@
-"""The one picture of the first screen, by the arrays that an answer holds: front, history, distribution or ratios."""
+"""The one picture of the first screen, by the arrays that an answer holds: front, history,
+distribution or ratios.
+"""
 
 from __future__ import annotations
 
@@ -14,7 +16,9 @@ from trackroller.results.answer import Answer
 
 
 def picture_of(answer: Answer) -> Picture | None:
-    """Return the picture of the first screen of an answer, None if its table or its curves are the picture."""
+    """Return the picture of the first screen of an answer, None if its table or its curves are the
+    picture.
+    """
     for name, draw in DRAWINGS.items():
         if answer.picture.get(name) is not None:
             return draw(answer, answer.picture)

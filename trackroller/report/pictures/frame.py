@@ -62,7 +62,9 @@ def lower_axis(axis: Axis, title: str, width: float, lines: bool = False) -> Mar
 
 
 def lower_names(names: Sequence[str], places: Sequence[float], width: float) -> Markup:
-    """Return names below a picture; a name that is longer than its share of the width is cut, its title is whole."""
+    """Return names below a picture; a name that is longer than its share of the width is cut, its
+    title is whole.
+    """
     share = width / max(1, len(names))
     parts = []
     for name, place in zip(names, places, strict=True):
@@ -91,12 +93,18 @@ def cut(text: str, width: float) -> str:
     return f"{text[:letters]}…"
 
 
-def framed(content: Markup, height: float, words: str, left: float = 52, right: float = 10, top: float = 6) -> Markup:
+def framed(
+    content: Markup, height: float, words: str, left: float = 52, right: float = 10, top: float = 6
+) -> Markup:
     """Return a picture with room for its axes [px].
 
-    The style sheet of a page holds the steps of this room, because its policy forbids styles of single elements.
+    The style sheet of a page holds the steps of this room, because its policy forbids styles of
+    single elements.
     """
-    steps = [f"{side}{math.ceil(room / STEP) * STEP}" for side, room in (("l", left), ("r", right), ("t", top))]
+    steps = [
+        f"{side}{math.ceil(room / STEP) * STEP}"
+        for side, room in (("l", left), ("r", right), ("t", top))
+    ]
     return element("div", picture(content, height, words), class_=" ".join(["frame", *steps]))
 
 

@@ -30,11 +30,13 @@ from trackroller.results.answer import Answer
 
 TALL = 260.0  # height of a front and of a history [px]
 LINE = 15.0  # height of a line of text in a picture [px]
-MOST_POINTS = 800  # of a front that are drawn; of more, those of the front and an even part of the others
+# of a front that are drawn; of more, those of the front and an even part of the others
+MOST_POINTS = 800
 
 
 def draw_front(answer: Answer, data: Mapping[str, Any]) -> Picture | None:
-    """Draw a front: its designs as dots, other ones as rings, the named ones large; upwards the first goal.
+    """Draw a front: its designs as dots, other ones as rings, the named ones large; upwards the
+    first goal.
 
     None is drawn where no design has two known goals.
     """
@@ -47,7 +49,12 @@ def draw_front(answer: Answer, data: Mapping[str, Any]) -> Picture | None:
     parts = [upright_axis(up, TALL)]
     rows = _thinned(front)
     parts += [
-        dot("d small cm" if front[i] else "ring", across.place(values[i, 0]), 100 - up.place(values[i, 1]), 2.6)
+        dot(
+            "d small cm" if front[i] else "ring",
+            across.place(values[i, 0]),
+            100 - up.place(values[i, 1]),
+            2.6,
+        )
         for i in rows
         if known[i]
     ]
@@ -63,7 +70,9 @@ def draw_front(answer: Answer, data: Mapping[str, Any]) -> Picture | None:
     left = left_room(up, TALL)
     title = with_unit(capital(words[0]), units[0])
     parts.append(label(title, 0, "0", "start", dx=2 - left, dy=-7))
-    spoken = "; ".join(f"{one['title']}: {grouped(one['x'], 3)}, {grouped(one['y'], 3)}" for one in named)
+    spoken = "; ".join(
+        f"{one['title']}: {grouped(one['x'], 3)}, {grouped(one['y'], 3)}" for one in named
+    )
     drawn = framed(joined(parts), TALL, spoken or title, left=left, right=14, top=24)
     said = f"Small dots: {int(front.sum()):,} designs that no other one beats"
     if (~front).any():
@@ -91,7 +100,9 @@ def _thinned(best: np.ndarray) -> list[int]:
 
 
 def _named_dots(named: Sequence[Mapping[str, Any]], across: Axis, up: Axis) -> list[Markup]:
-    """Return large dots with their titles, on the side that has room, at heights that do not collide."""
+    """Return large dots with their titles, on the side that has room, at heights that do not
+    collide.
+    """
     places = [(across.place(float(one["x"])), 100 - up.place(float(one["y"]))) for one in named]
     heights = [y * TALL / 100 for _, y in places]
     texts = spread_labels(heights, LINE, LINE / 2, TALL - LINE / 2)

@@ -40,15 +40,26 @@ def draw_history(answer: Answer, data: Mapping[str, Any]) -> Picture | None:
         return None
     across = Axis.of(steps, False, room=0.0)
     up = Axis.of(best[known])
-    line = [(across.place(x), 100 - up.place(y)) for x, y in zip(steps[known], best[known], strict=True)]
+    line = [
+        (across.place(x), 100 - up.place(y)) for x, y in zip(steps[known], best[known], strict=True)
+    ]
     stairs = [place for i, place in enumerate(line) for place in _stair(line, i)]
     layer = stretched(element("polyline", class_="l cm", points=points(stairs)), TALL)
     title = with_unit(capital(data["words"][0]), data["units"][0])
     left = left_room(up, TALL)
     parts = [upright_axis(up, TALL), layer, required_levels(answer, up)]
-    parts += [lower_axis(across, "designs solved", WIDE), label(title, 0, "0", "start", dx=2 - left, dy=-7)]
-    drawn = framed(joined(parts), TALL, f"{title} of the best design so far", left=left, right=14, top=24)
-    return Picture(drawn, caption_of(data, "Best design so far, over the designs that were solved."), beside=True)
+    parts += [
+        lower_axis(across, "designs solved", WIDE),
+        label(title, 0, "0", "start", dx=2 - left, dy=-7),
+    ]
+    drawn = framed(
+        joined(parts), TALL, f"{title} of the best design so far", left=left, right=14, top=24
+    )
+    return Picture(
+        drawn,
+        caption_of(data, "Best design so far, over the designs that were solved."),
+        beside=True,
+    )
 
 
 def _stair(line: Sequence[tuple[float, float]], i: int) -> list[tuple[float, float]]:

@@ -40,20 +40,37 @@ def ratios_of(own: Any, other: Any) -> np.ndarray:
 def draw_like(answer: Answer, data: Mapping[str, Any]) -> Picture:
     """Draw ratios of results on like rows, one row of dots for each model and output."""
     ratios = {model: ratios_of(one["y"], one["x"]) for model, one in data["points"].items()}
-    every = np.concatenate([one[np.isfinite(one)] for one in ratios.values()]) if ratios else np.empty(0)
+    every = (
+        np.concatenate([one[np.isfinite(one)] for one in ratios.values()])
+        if ratios
+        else np.empty(0)
+    )
     across = Axis.of([*every, 1.0])
     height = max(60.0, 44.0 * len(ratios))
     left = max([width_of(cut(name, 150)) for name in ratios], default=40.0) + 16
-    parts = [lower_axis(across, f"÷ {data['base']}", WIDE, lines=True), upright("x", across.place(1.0))]
+    parts = [
+        lower_axis(across, f"÷ {data['base']}", WIDE, lines=True),
+        upright("x", across.place(1.0)),
+    ]
     for place, (name, one) in enumerate(ratios.items()):
         y = 100 * (place + 0.5) / len(ratios)
         parts.append(label(cut(name, 150), 0, percent_place(y), "end", dx=-10, dy=4))
         known = one[np.isfinite(one)]
-        kept = known if known.size <= MOST_DOTS else np.quantile(known, np.linspace(0, 1, MOST_DOTS))
+        kept = (
+            known if known.size <= MOST_DOTS else np.quantile(known, np.linspace(0, 1, MOST_DOTS))
+        )
         spread = 30.0 / len(ratios)
         for number_of, value in enumerate(kept):
-            moved = y + spread * (((number_of * 0.618034) % 1) - 0.5)  # golden section: an even scatter without chance
-            parts.append(dot("d faint cm" if place % 2 == 0 else "d faint co", across.place(float(value)), moved, 3))
+            # golden section: an even scatter without chance
+            moved = y + spread * (((number_of * 0.618034) % 1) - 0.5)
+            parts.append(
+                dot(
+                    "d faint cm" if place % 2 == 0 else "d faint co",
+                    across.place(float(value)),
+                    moved,
+                    3,
+                )
+            )
     words = "; ".join(
         f"{name}: {grouped(float(np.nanmin(one)), 3)} to {grouped(float(np.nanmax(one)), 3)}"
         for name, one in ratios.items()
@@ -63,5 +80,9 @@ def draw_like(answer: Answer, data: Mapping[str, Any]) -> Picture:
     drawn = framed(joined(parts), height, words, left=left, right=14)
     thinned = f", {MOST_DOTS} of them drawn evenly" if pairs > MOST_DOTS else ""
     return Picture(
-        drawn, caption_of(data, f"Each result over that of {data['base']} in the same case: {pairs:,} pairs{thinned}.")
+        drawn,
+        caption_of(
+            data,
+            f"Each result over that of {data['base']} in the same case: {pairs:,} pairs{thinned}.",
+        ),
     )

@@ -44,7 +44,9 @@ def dot(kind: str, x: float, y: float | str, radius: float) -> Markup:
     return element("circle", class_=kind, cx=percent_place(x), cy=height, r=radius)
 
 
-def label(text: str, x: float, y: str, anchor: str = "middle", kind: str = "", **shift: float) -> Markup:
+def label(
+    text: str, x: float, y: str, anchor: str = "middle", kind: str = "", **shift: float
+) -> Markup:
     """Return a text at a place in percent, moved by `dx` and `dy` [px]."""
     anchor = "" if anchor == "start" else anchor
     return element("text", text, class_=kind, x=percent_place(x), y=y, text_anchor=anchor, **shift)
@@ -63,14 +65,21 @@ def joined(parts: Iterable[Markup]) -> Markup:
 
 
 def picture(content: Markup, height: float, words: str, kind: str = "") -> Markup:
-    """Return an SVG as wide as its place, of this height [px], with words for those who cannot see it."""
+    """Return an SVG as wide as its place, of this height [px], with words for those who cannot see
+    it.
+    """
     return element("svg", content, class_=kind, height=f"{height:g}", role="img", aria_label=words)
 
 
 def stretched(content: Markup, height: float) -> Markup:
     """Return a layer of paths in percent, which is stretched with the width of the picture."""
     return element(
-        "svg", content, viewBox="0 0 100 100", preserveAspectRatio="none", width="100%", height=f"{height:g}"
+        "svg",
+        content,
+        viewBox="0 0 100 100",
+        preserveAspectRatio="none",
+        width="100%",
+        height=f"{height:g}",
     )
 
 
@@ -80,7 +89,8 @@ def width_of(text: str) -> float:
 
 
 def spread_labels(heights: list[float], least: float, top: float, bottom: float) -> list[float]:
-    """Move heights of labels apart so that neighbours differ by `least`, between `top` and `bottom` [px].
+    """Move heights of labels apart so that neighbours differ by `least`, between `top` and `bottom`
+    [px].
 
     The order stays; labels that stand apart already stay where they are.
     """

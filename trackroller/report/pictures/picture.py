@@ -26,7 +26,9 @@ class Picture:
 
 
 def caption_of(data: Mapping[str, Any], said: str) -> str:
-    """Return what a picture draws: the words of the record if it has some, otherwise those of the picture."""
+    """Return what a picture draws: the words of the record if it has some, otherwise those of the
+    picture.
+    """
     parts = [data.get("caption") or said, left_out_words(data)]
     return " ".join(part for part in parts if part)
 
@@ -45,4 +47,8 @@ def row_names(answer: Answer, count: int) -> list[str]:
 def _level_words(column: Column, value: Any) -> str:
     if isinstance(value, str) or column.name in NAMED:
         return level_text(column.name, value)
-    return f"{grouped(float(value))} {unit_text(column.units)}".replace("–", "").strip().replace(" °", "°")
+    return (
+        f"{grouped(float(value))} {unit_text(column.units)}".replace("–", "")
+        .strip()
+        .replace(" °", "°")
+    )

@@ -1,4 +1,6 @@
-"""Bars of how far limits are used: from 0 to 150 %, with a line at 100 %, and both ends of a range."""
+"""Bars of how far limits are used: from 0 to 150 %, with a line at 100 %, and both ends of a
+range.
+"""
 
 from __future__ import annotations
 
@@ -49,17 +51,25 @@ class UseBars:
     def head(self) -> Markup:
         """Return the axis that stands in the head of the table."""
         ends = {0.0: "start", FULL: "end"}
-        parts = [label(text, self.axis.place(use), "24", ends.get(use, "middle")) for use, text in TICKS]
+        parts = [
+            label(text, self.axis.place(use), "24", ends.get(use, "middle")) for use, text in TICKS
+        ]
         parts.append(label("100 %", self.axis.place(1.0), "10", "middle", "rt"))
         return element("svg", joined(parts), height=28, aria_hidden="true")
 
     def row(self, row: Mapping[Any, Any]) -> Markup:
-        """Return the bar of a row: from 0 to the use, or from the low to the high end of a range."""
+        """Return the bar of a row: from 0 to the use, or from the low to the high end of a
+        range.
+        """
         low, high = float(row[self.column.name]), float(row[self.column.until])
         grid = [upright("g", self.axis.place(use)) for use, _ in TICKS]
         marks = [*grid, upright("r", self.axis.place(1.0))]
         if not math.isnan(low):
             start, end = self.axis.place(low), self.axis.place(high)
             marks.append(line("w", 0.0 if end - start < DIFFERENT else start, "50%", end, "50%"))
-        words = "not known" if math.isnan(low) else f"{carried_range(100 * low, 100 * high)} % of the limit"
+        words = (
+            "not known"
+            if math.isnan(low)
+            else f"{carried_range(100 * low, 100 * high)} % of the limit"
+        )
         return picture(joined(marks), ROW, words, COLOURS.get(str(row.get(self.state, "")), "cm"))

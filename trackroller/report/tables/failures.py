@@ -34,11 +34,17 @@ def validity_table(results: Results) -> Table | None:
 
 
 def reason_table(ds: xr.Dataset) -> Table | None:
-    """List why cases failed or miss their tolerance, the most frequent reason first, with the first case of each."""
+    """List why cases failed or miss their tolerance, the most frequent reason first, with the first
+    case of each.
+    """
     if "reason" not in ds:
         return None
-    texts, first, counts = np.unique(ds["reason"].values.astype(str).ravel(), return_index=True, return_counts=True)
+    texts, first, counts = np.unique(
+        ds["reason"].values.astype(str).ravel(), return_index=True, return_counts=True
+    )
     known = zip(counts.tolist(), texts.tolist(), first.tolist(), strict=True)
-    rows = [{"Cases": cases, "Reason": text, "First case": case} for cases, text, case in known if text]
+    rows = [
+        {"Cases": cases, "Reason": text, "First case": case} for cases, text, case in known if text
+    ]
     rows.sort(key=lambda row: -row["Cases"])
     return Table.of("reasons", "Why cases failed or miss their tolerance", rows[:MOST_REASONS])

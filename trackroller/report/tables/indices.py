@@ -1,4 +1,6 @@
-"""Tables of sensitivity indices in numbers: each index with the ends of its 95 % interval in columns of their own."""
+"""Tables of sensitivity indices in numbers: each index with the ends of its 95 % interval in
+columns of their own.
+"""
 
 from __future__ import annotations
 
@@ -15,7 +17,9 @@ from trackroller.results.ranking import estimate, index_words, method_of, order
 
 
 def index_tables(sens: xr.Dataset) -> list[Table]:
-    """Return all indices of all outputs, those of groups, and those within the levels of a category."""
+    """Return all indices of all outputs, those of groups, and those within the levels of a
+    category.
+    """
     tables = [_all_indices(sens), _groups(sens), _levels(sens)]
     return [table for table in tables if table is not None]
 
@@ -30,7 +34,11 @@ def of_output(sens: xr.Dataset, output: str) -> str:
 def effect_unit(sens: xr.Dataset, output: str) -> str:
     """Name the unit of an effect; on the logarithmic scale it is a power of ten."""
     part = sens.sel(output=output)
-    return "powers of ten" if str(part["scale"].item()) == "log10" else unit_text(str(part["output_units"].item()))
+    return (
+        "powers of ten"
+        if str(part["scale"].item()) == "log10"
+        else unit_text(str(part["output_units"].item()))
+    )
 
 
 def category(sens: xr.Dataset) -> str:
@@ -71,7 +79,14 @@ def _all_indices(sens: xr.Dataset) -> Table | None:
         for rank in order(sens, output):
             one = part.sel(factor=rank.factor)
             row = {"Output": of_output(sens, output), "Unit of effects": effect_unit(sens, output)}
-            rows.append({**row, "Factor": rank.name, **dict(_row(one, keys)), "From": str(part["note"].item())})
+            rows.append(
+                {
+                    **row,
+                    "Factor": rank.name,
+                    **dict(_row(one, keys)),
+                    "From": str(part["note"].item()),
+                }
+            )
     return Table.of("indices", "Indices", rows)
 
 

@@ -1,4 +1,6 @@
-"""Tables of a study's inputs for the report: factors, values that are the same in all cases, materials, record."""
+"""Tables of a study's inputs for the report: factors, values that are the same in all cases,
+materials, record.
+"""
 
 from __future__ import annotations
 
@@ -10,10 +12,26 @@ from typing import TYPE_CHECKING, Any
 from trackroller.materials import Material
 from trackroller.materials.properties import ALTERNATIVES, PROPERTIES, REQUIRED
 from trackroller.methods.factor import ROWS
-from trackroller.parameters import MAPPING_FIELDS, MATERIAL_FIELDS, MECHANICAL_MAPPINGS, OF_LIMITS, PARAMETERS
+from trackroller.parameters import (
+    MAPPING_FIELDS,
+    MATERIAL_FIELDS,
+    MECHANICAL_MAPPINGS,
+    OF_LIMITS,
+    PARAMETERS,
+)
 from trackroller.parameters.carriage_fields import parameter_of
 from trackroller.parameters.example import ABSENT
-from trackroller.report.numbers import capital, level_text, long_name, near, number, plain, rounded, row_unit, unit_text
+from trackroller.report.numbers import (
+    capital,
+    level_text,
+    long_name,
+    near,
+    number,
+    plain,
+    rounded,
+    row_unit,
+    unit_text,
+)
 from trackroller.report.tables.table import Table
 from trackroller.roller.stored_inputs import friction_records, is_default
 from trackroller.study.design.levels import NAMED, entries
@@ -23,14 +41,21 @@ if TYPE_CHECKING:
 
 SHOWN = (  # values of a material on a sheet
     *("youngs_modulus", "poisson_ratio", "tensile_strength", "fatigue_limit"),
-    *("cycles_at_tensile_strength", "cycles_at_fatigue_limit", "scatter_in_cycles", "scatter_in_stress"),
+    *(
+        "cycles_at_tensile_strength",
+        "cycles_at_fatigue_limit",
+        "scatter_in_cycles",
+        "scatter_in_stress",
+    ),
     *("yield_strength", "hardness", "wear_coefficient"),
 )
 
 
 @dataclass(frozen=True)
 class Row:
-    """A quantity in words with its value, its unit, and whether it is the default of an input or of the database."""
+    """A quantity in words with its value, its unit, and whether it is the default of an input or of
+    the database.
+    """
 
     words: str
     value: str
@@ -47,24 +72,33 @@ class Row:
 
 
 def input_rows(
-    inputs: Mapping[str, Any], not_given: Collection[str] | None = None, database: Collection[str] = ()
+    inputs: Mapping[str, Any],
+    not_given: Collection[str] | None = None,
+    database: Collection[str] = (),
 ) -> list[Row]:
-    """Return the inputs that stand on a sheet: mappings, the guide and fields of limits only if they are given.
+    """Return the inputs that stand on a sheet: mappings, the guide and fields of limits only if
+    they are given.
 
     A drawn profile of the roller takes the place of the example's radius.
 
-    With `not_given`, the values of these names are marked as defaults, otherwise those that equal their default. Values
-    of the names in `database` are those of the database.
+    With `not_given`, the values of these names are marked as defaults, otherwise those that equal
+    their default. Values of the names in `database` are those of the database.
     """
     rows = []
     for name, value in inputs.items():
-        drawn = name == "roller_profile_radius" and inputs.get("roller_profile") and is_default(name, value)
+        drawn = (
+            name == "roller_profile_radius"
+            and inputs.get("roller_profile")
+            and is_default(name, value)
+        )
         optional = name in (*MAPPING_FIELDS, "guide_overrollings_per_hour") and value is None
         absent = name in (*OF_LIMITS, *ABSENT) and is_default(name, value)
         if not (drawn or optional or absent):
             row = input_row(name, value)
             if not_given is not None:
-                row = replace(row, default=name in not_given or name in database, database=name in database)
+                row = replace(
+                    row, default=name in not_given or name in database, database=name in database
+                )
             rows.append(row)
     return rows
 
@@ -73,13 +107,21 @@ def input_row(name: str, value: Any) -> Row:
     """Return an input with its unit; mark the default."""
     if name in PARAMETERS:
         parameter = PARAMETERS[name]
-        shown = "not given" if value is None else number(value) if isinstance(value, (int, float)) else str(value)
+        shown = (
+            "not given"
+            if value is None
+            else number(value)
+            if isinstance(value, (int, float))
+            else str(value)
+        )
         words = f"{parameter.long_name} {parameter.symbol}"
         return Row(words, shown, row_unit(parameter.unit), is_default(name, value))
     if name in MAPPING_FIELDS and name not in MECHANICAL_MAPPINGS:
         shown = entries(json.loads(value) if isinstance(value, str) else value)
     elif name in MAPPING_FIELDS:
-        shown = level_text(name, value if isinstance(value, str) else json.dumps(value, sort_keys=True))
+        shown = level_text(
+            name, value if isinstance(value, str) else json.dumps(value, sort_keys=True)
+        )
     else:
         shown = str(value.get("name", "inline")) if isinstance(value, Mapping) else str(value)
     return Row(plain(name), shown, "", is_default(name, value))
@@ -91,22 +133,36 @@ def material_rows(material: Material) -> list[Row]:
     for one in map({**PROPERTIES, **ALTERNATIVES}.__getitem__, SHOWN):
         value = getattr(material, one.name)
         # a symbol that the words or the unit hold already is not repeated
-        words = one.label if one.symbol in f"{one.label} {one.unit}" else f"{one.label} {one.symbol}"
-        rows.append(Row(words, "not given") if value is None else Row(words, number(value), row_unit(one.unit)))
+        words = (
+            one.label if one.symbol in f"{one.label} {one.unit}" else f"{one.label} {one.symbol}"
+        )
+        rows.append(
+            Row(words, "not given")
+            if value is None
+            else Row(words, number(value), row_unit(one.unit))
+        )
     rows.append(Row("exponent k of the S-N curve", rounded(material.woehler_exponent)))
     if material.second_exponent is not None:
-        rows.append(Row(f"{PROPERTIES['second_exponent'].label} k_2", rounded(material.second_exponent)))
+        rows.append(
+            Row(f"{PROPERTIES['second_exponent'].label} k_2", rounded(material.second_exponent))
+        )
     if material.sn_points:
-        shown = "; ".join(f"{rounded(stress)} MPa at {rounded(cycles)}" for stress, cycles in material.sn_points)
+        shown = "; ".join(
+            f"{rounded(stress)} MPa at {rounded(cycles)}" for stress, cycles in material.sn_points
+        )
         rows.append(Row("S-N curve by points", shown))
     return rows
 
 
 def factor_table(results: Results) -> Table | None:
-    """List factors and derived parameters: symbol, unit, values as found and as set, number of levels."""
+    """List factors and derived parameters: symbol, unit, values as found and as set, number of
+    levels.
+    """
     specs = {name: _spec(spec) for name, spec in results.config.factors.items()}
     follows = [
-        n for n, spec in specs.items() if n not in results.factors and spec.startswith("=") and n in results.table
+        n
+        for n, spec in specs.items()
+        if n not in results.factors and spec.startswith("=") and n in results.table
     ]
     rows = []
     for name in (*results.factors, *follows):
@@ -117,9 +173,19 @@ def factor_table(results: Results) -> Table | None:
             values = ", ".join(level_text(name, v, unit=name in NAMED) for v in levels)
         symbol, unit = (parameter.symbol, unit_text(parameter.unit)) if parameter else ("", "")
         rows.append(
-            [f"{capital(long_name(name))} {symbol}", unit, values, specs.get(name) or "listed values", len(levels)]
+            [
+                f"{capital(long_name(name))} {symbol}",
+                unit,
+                values,
+                specs.get(name) or "listed values",
+                len(levels),
+            ]
         )
-    return Table("factors", "Factors", ["Factor", "Unit", "Values", "Set as", "Number"], rows) if rows else None
+    return (
+        Table("factors", "Factors", ["Factor", "Unit", "Values", "Set as", "Number"], rows)
+        if rows
+        else None
+    )
 
 
 def _spec(spec: Any) -> str:
@@ -130,7 +196,10 @@ def _spec(spec: Any) -> str:
     if kind == "expression":
         return f"= {value}"
     if kind == ROWS:
-        return f"rows of a table with {', '.join(long_name(column) for column in value[0] if column != 'name')}"
+        return (
+            "rows of a table with "
+            f"{', '.join(long_name(column) for column in value[0] if column != 'name')}"
+        )
     return "" if kind == "values" else f"{kind} {', '.join(f'{v:g}' for v in value)}"
 
 
@@ -145,32 +214,58 @@ def correlation_row(results: Results) -> list[Row]:
 
 def base_rows(results: Results) -> list[Row]:
     """List the inputs that are the same in all cases."""
-    names = [*PARAMETERS, *(MATERIAL_FIELDS if "material_pair" not in results.factors else ()), *MAPPING_FIELDS]
-    given = {name: results.base.get(name) for name in names if name not in (*results.factors, *results.table)}
+    names = [
+        *PARAMETERS,
+        *(MATERIAL_FIELDS if "material_pair" not in results.factors else ()),
+        *MAPPING_FIELDS,
+    ]
+    given = {
+        name: results.base.get(name)
+        for name in names
+        if name not in (*results.factors, *results.table)
+    }
     radius = "roller_profile_radius"
-    if is_default(radius, given.get(radius)) and ("roller_profile" in results.factors or given.get("roller_profile")):
+    if is_default(radius, given.get(radius)) and (
+        "roller_profile" in results.factors or given.get("roller_profile")
+    ):
         given.pop(radius)  # a drawn profile takes the place of the example's radius
-    rows = [input_row(name, value) for name, value in given.items() if value not in (None, "") and value == value]
+    rows = [
+        input_row(name, value)
+        for name, value in given.items()
+        if value not in (None, "") and value == value
+    ]
     return [replace(row, words=capital(row.words)) for row in rows]
 
 
 def materials_table(attrs: Mapping[str, Any]) -> Table | None:
     """List the values of the materials used."""
-    heads = ["Name", *(f"{PROPERTIES[n].symbol} [{unit_text(PROPERTIES[n].unit)}]" for n in REQUIRED), "Source"]
+    heads = [
+        "Name",
+        *(f"{PROPERTIES[n].symbol} [{unit_text(PROPERTIES[n].unit)}]" for n in REQUIRED),
+        "Source",
+    ]
     rows = [
-        [name, *(float(values[n]) if n in values else "–" for n in REQUIRED), material_source(values)]
+        [
+            name,
+            *(float(values[n]) if n in values else "–" for n in REQUIRED),
+            material_source(values),
+        ]
         for name, values in stored_materials(attrs).items()
     ]
     return Table("materials", "Materials", heads, rows) if rows else None
 
 
 def stored_materials(attrs: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
-    """Return the values of the materials that a result stores, by name; {} for a result of another program."""
+    """Return the values of the materials that a result stores, by name; {} for a result of another
+    program.
+    """
     try:
         stored = json.loads(str(attrs.get("materials", "{}")))
     except ValueError:
         return {}
-    return {n: v for n, v in stored.items() if isinstance(v, dict)} if isinstance(stored, dict) else {}
+    return (
+        {n: v for n, v in stored.items() if isinstance(v, dict)} if isinstance(stored, dict) else {}
+    )
 
 
 def material_source(values: Mapping[str, Any]) -> str:
@@ -178,14 +273,21 @@ def material_source(values: Mapping[str, Any]) -> str:
     source = "; ".join(dict.fromkeys(values.get("sources", {}).values())) or "not given"
     guesses = values.get("guesses", ())
     return f"{source}." + (
-        f" Guesses without a source: {', '.join(map(plain, guesses))}. Measure them." if guesses else ""
+        f" Guesses without a source: {', '.join(map(plain, guesses))}. Measure them."
+        if guesses
+        else ""
     )
 
 
 def friction_table(attrs: Mapping[str, Any]) -> Table | None:
     """List the friction coefficients that a result took from the database; None if it took none."""
     rows = [
-        [level_text("material_pair", one["material_pair"]), one["level"], float(one["value"]), friction_source(one)]
+        [
+            level_text("material_pair", one["material_pair"]),
+            one["level"],
+            float(one["value"]),
+            friction_source(one),
+        ]
         for one in friction_records(attrs)
     ]
     heads = ["Pair", "Level", "Friction coefficient μ", "Source"]
@@ -193,7 +295,9 @@ def friction_table(attrs: Mapping[str, Any]) -> Table | None:
 
 
 def friction_source(record: Mapping[str, Any]) -> str:
-    """Return where a friction coefficient of the database comes from, its note, and whether it is a placeholder."""
+    """Return where a friction coefficient of the database comes from, its note, and whether it is a
+    placeholder.
+    """
     note = f"; {record['note']}" if record.get("note") else ""
     return f"{record['source']}{' (placeholder)' * record['placeholder']}{note}"
 

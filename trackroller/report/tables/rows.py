@@ -1,4 +1,6 @@
-"""The table of an answer: heads, cells as texts and numbers, what all rows share, and what does not fit the page."""
+"""The table of an answer: heads, cells as texts and numbers, what all rows share, and what does not
+fit the page.
+"""
 
 from __future__ import annotations
 
@@ -22,7 +24,8 @@ from trackroller.report.pictures.axis import tick_text
 from trackroller.results.answer import Answer, Column
 from trackroller.study.design.levels import NAMED
 
-STATE_SIGNS = {"met": "● met", "open": "◐ open", "missed": "✕ missed", "none": "– none"}  # of a candidate
+# of a candidate
+STATE_SIGNS = {"met": "● met", "open": "◐ open", "missed": "✕ missed", "none": "– none"}
 STATE_SIGNS |= {
     "kept": "● kept",
     "finite": "● finite",
@@ -93,9 +96,13 @@ def rows_of(answer: Answer, columns: Iterable[Column] | None = None) -> Rows:
     records = answer.table.head(MOST_SHOWN).to_dict("records")
     heads = tuple(head_of(answer, column) for column in shown)
     pairs = list(zip(shown, heads, strict=True))
-    cells = tuple(tuple(cell_of(answer, column, row, head.kind) for column, head in pairs) for row in records)
+    cells = tuple(
+        tuple(cell_of(answer, column, row, head.kind) for column, head in pairs) for row in records
+    )
     first = records[0] if records else {}
-    said = [_shared_text(answer, column, first) for column in answer.columns if column.name in shared]
+    said = [
+        _shared_text(answer, column, first) for column in answer.columns if column.name in shared
+    ]
     if any(column.units == "h" for column in shown):
         said.append(year_words())
     return Rows(heads, cells, tuple(text for text in said if text))
@@ -108,7 +115,13 @@ def _is_hidden(column: Column) -> bool:
 
 def head_of(answer: Answer, column: Column) -> Head:
     """Return the head of a column."""
-    return Head(column.name, capital(column.title), unit_of(column), column.meaning, classes_of(answer, column))
+    return Head(
+        column.name,
+        capital(column.title),
+        unit_of(column),
+        column.meaning,
+        classes_of(answer, column),
+    )
 
 
 def unit_of(column: Column) -> str:
@@ -180,7 +193,9 @@ def text_of(answer: Answer, column: Column, row: Mapping[Any, Any]) -> str:
 FIGURES = {"count": 12, "whole": 4}  # of a number by the kind of its column
 
 
-def _range_text(answer: Answer, column: Column, row: Mapping[Any, Any], ends: tuple[float, float]) -> str:
+def _range_text(
+    answer: Answer, column: Column, row: Mapping[Any, Any], ends: tuple[float, float]
+) -> str:
     """Return what a cell says of a number or of a range."""
     if column.kind in ("share", "error"):
         return _percent_range(*ends)
@@ -272,7 +287,9 @@ class ColumnSplit:
 
 
 def fit_columns(answer: Answer, bars: int, width: float = PAGE) -> ColumnSplit:
-    """Return the columns that fit a width, from the first one on; columns that name a row or are drawn stay."""
+    """Return the columns that fit a width, from the first one on; columns that name a row or are
+    drawn stay.
+    """
     shared = answer.shared
     left = width - bars * (BARS if bars == 1 else HALF_BARS)
     shown, others = [], []
@@ -306,7 +323,9 @@ def _width(answer: Answer, column: Column) -> float:
 
 def _longest(answer: Answer, column: Column) -> int:
     """Return the letters of the longest cell of a column."""
-    texts = [text_of(answer, column, row) for row in answer.table.head(MOST_SHOWN).to_dict("records")]
+    texts = [
+        text_of(answer, column, row) for row in answer.table.head(MOST_SHOWN).to_dict("records")
+    ]
     return max([len(text) for text in texts], default=1)
 
 
@@ -320,7 +339,9 @@ def definitions(answer: Answer) -> Iterator[tuple[str, str]]:
 
 
 def ends_table(answer: Answer) -> tuple[list[str], list[list[str]], str]:
-    """Return heads and rows of the counts of what ends the cases, and what ends all of them if that is one thing."""
+    """Return heads and rows of the counts of what ends the cases, and what ends all of them if that
+    is one thing.
+    """
     ends = answer.ends
     if ends.empty:
         return [], [], ""

@@ -28,7 +28,8 @@ from trackroller.study.design.levels import NAMED
 class Table:
     """A table: `name` of its files, title, heads with units, rows of numbers and texts, and a note.
 
-    `marks` are the cells (row, column) that stand out; the first column holds the heads of the rows.
+    `marks` are the cells (row, column) that stand out; the first column holds the heads of the
+    rows.
     """
 
     name: str
@@ -39,9 +40,17 @@ class Table:
     marks: frozenset[tuple[int, int]] = frozenset()
 
     @classmethod
-    def of(cls, name: str, title: str, rows: Sequence[Mapping[str, Any]], note: str = "") -> Table | None:
-        """Return a table, or None if it has no row; each row maps the heads of all columns to its cells."""
-        return cls(name, title, list(rows[0]), [list(row.values()) for row in rows], note) if rows else None
+    def of(
+        cls, name: str, title: str, rows: Sequence[Mapping[str, Any]], note: str = ""
+    ) -> Table | None:
+        """Return a table, or None if it has no row; each row maps the heads of all columns to its
+        cells.
+        """
+        return (
+            cls(name, title, list(rows[0]), [list(row.values()) for row in rows], note)
+            if rows
+            else None
+        )
 
 
 def cell(value: Any) -> str:
@@ -64,14 +73,18 @@ def heading(name: str) -> str:
 
 
 def factor_cell(name: str, value: Any) -> Any:
-    """Return a level for a table: a number if the head of the column holds the unit, otherwise words."""
+    """Return a level for a table: a number if the head of the column holds the unit, otherwise
+    words.
+    """
     if isinstance(value, str) or name in NAMED or not np.isfinite(value):
         return level_text(name, value)
     return float(value)
 
 
 def goal_heading(front: xr.Dataset, name: str) -> str:
-    """Return the words and the unit of a goal or a factor of a Pareto set, as the head of a column."""
+    """Return the words and the unit of a goal or a factor of a Pareto set, as the head of a
+    column.
+    """
     attrs = front[name].attrs
     units = str(attrs.get("units", "")) or getattr(parameter_of(name), "unit", "")
     text = capital(str(attrs.get("long_name") or long_name(name)))

@@ -1,4 +1,6 @@
-"""What a sheet rests on: assumptions, standards, friction from the database, and the database's own warnings."""
+"""What a sheet rests on: assumptions, standards, friction from the database, and the database's own
+warnings.
+"""
 
 from __future__ import annotations
 
@@ -15,38 +17,53 @@ from trackroller.roller.stored_inputs import friction_records
 
 ALWAYS = (
     "Dry contact: no lubricant and no dirt.",
-    "Isothermal: no value of a material and no friction changes with temperature, and nothing expands.",
-    "Smooth surfaces, elastic half-spaces, steady rolling and constant loads; no shocks and no vibration.",
+    "Isothermal: no value of a material and no friction changes with temperature, and "
+    "nothing expands.",
+    "Smooth surfaces, elastic half-spaces, steady rolling and constant loads; no shocks and "
+    "no vibration.",
     "Pressure limit: R_m stands for the yield strength.",
 )
 NO_WEAR = "No wear: the profiles stay as given."
 
 
 def assumptions(ds: xr.Dataset) -> list[str]:
-    """Return the assumptions of a solved case, those of the limits that were computed among them."""
+    """Return the assumptions of a solved case, those of the limits that were computed among
+    them.
+    """
     wear = LIMITS["wear"].assumes if "run_in_distance" in ds else (NO_WEAR,)
-    others = (sentence for name in _computed(ds) if name != "wear" for sentence in LIMITS[name].assumes)
+    others = (
+        sentence for name in _computed(ds) if name != "wear" for sentence in LIMITS[name].assumes
+    )
     return [*ALWAYS, *wear, *others]
 
 
 def standards(ds: xr.Dataset) -> str:
     """Return the standards that the computed limits follow, in one sentence."""
-    standards = [f"{LIMITS[name].standard} ({name})" for name in _computed(ds) if LIMITS[name].standard]
+    standards = [
+        f"{LIMITS[name].standard} ({name})" for name in _computed(ds) if LIMITS[name].standard
+    ]
     return f"{capital('; '.join(standards))}." if standards else "No standard is followed."
 
 
 def _computed(ds: xr.Dataset) -> list[str]:
-    """Return the limits that have a utilisation or a life; those of the output `life` without the verdict too."""
+    """Return the limits that have a utilisation or a life; those of the output `life` without the
+    verdict too.
+    """
     if "utilisation" not in ds:
         return ["fatigue"] if "life_cycles" in ds else []
     known = ds.variables["utilisation"].notnull() | ds.variables["life_hours_by_limit"].notnull()
-    return ds["limit"].values[known.any([dim for dim in known.dims if dim != "limit"]).values].tolist()
+    return (
+        ds["limit"].values[known.any([dim for dim in known.dims if dim != "limit"]).values].tolist()
+    )
 
 
 def friction_sentence(ds: xr.Dataset) -> str:
-    """Say which entry of the database the friction coefficient is; an empty text if the case gives the number."""
+    """Say which entry of the database the friction coefficient is; an empty text if the case gives
+    the number.
+    """
     sentences = [
-        f"Friction coefficient {number(r['value'])}: {r['level']} value of the database for {r['material_pair']}, "
+        f"Friction coefficient {number(r['value'])}: {r['level']} value of the database for "
+        f"{r['material_pair']}, "
         f"source: {friction_source(r)}."
         for r in friction_records(ds.attrs)
     ]
@@ -63,7 +80,12 @@ def strength_sentences(materials: Mapping[str, Material]) -> list[str]:
             if (value := getattr(material, name)) is not None
         ]
         yields = (
-            f"shakedown and standard rating use {listing(given)}" if given else "neither yield strength nor hardness"
+            f"shakedown and standard rating use {listing(given)}"
+            if given
+            else "neither yield strength nor hardness"
         )
-        out.append(f"{material.name}: {yields}; the pressure limit uses R_m = {number(material.tensile_strength)} MPa.")
+        out.append(
+            f"{material.name}: {yields}; the pressure limit uses R_m = "
+            f"{number(material.tensile_strength)} MPa."
+        )
     return out
