@@ -35,8 +35,12 @@ def test_one_module_chooses_the_options_of_the_compiler():
         path.name
         for path, tree in TREES.items()
         for node in ast.walk(tree)
-        if (isinstance(node, ast.Name) and node.id in compilers)
-        or (isinstance(node, ast.Attribute) and node.attr in compilers)
+        if (
+            isinstance(node, ast.ImportFrom)
+            and "numba" in str(node.module)
+            and compilers & {n.name for n in node.names}
+        )
+        or (isinstance(node, ast.Attribute) and node.attr in compilers and ast.unparse(node.value).startswith("numba"))
     }
     assert where == {"compiled.py"}
 

@@ -46,7 +46,7 @@ OVERLOAD = "overload"  # end of the name of the study with all forces times the 
 class Sizing:
     """Which rollers of a shelf are enough.
 
-    Attributes
+    Parameters
     ----------
     table : one row a roller, the least one that is enough first: `roller`, `verdict` (one of
         `VERDICTS`), the columns of the shelf, `life_hours` (low end of the life to the first limit,
