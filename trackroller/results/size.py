@@ -48,15 +48,21 @@ class Sizing:
 
     Parameters
     ----------
-    table : one row a roller, the least one that is enough first: `roller`, `verdict` (one of
+    table : pandas.DataFrame
+        One row a roller, the least one that is enough first: `roller`, `verdict` (one of
         `VERDICTS`), the columns of the shelf, `life_hours` (low end of the life to the first limit,
         worst condition), `life_ratio` (over the required life), `ends` (what ends it), `overload`
-        (held, exceeded or not judged) and `excluded_by`
-    least : name of the roller to take; '' if none is surely enough
-    least_of : column or output by which the rollers rank; '' for the longest life
-    unranked : rollers of which this value is not known, so that they do not rank by it
-    results : the study at the loads of the case; None if no life is required
-    overload : the study with all forces times the safety; None without a safety
+        (held, exceeded or not judged) and `excluded_by`.
+    least : str
+        Name of the roller to take; '' if none is surely enough.
+    least_of : str
+        Column or output by which the rollers rank; '' for the longest life.
+    unranked : tuple of str
+        Rollers of which this value is not known, so that they do not rank by it.
+    results : Results, optional
+        The study at the loads of the case; None if no life is required.
+    overload : Results, optional
+        The study with all forces times the safety; None without a safety.
     """
 
     table: pd.DataFrame
