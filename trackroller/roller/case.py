@@ -143,9 +143,9 @@ class Case(_Numbers):
     >>> case.contact_angle
     30.0
     >>> tr.Case(contact_angle=95)
-    Traceback (most recent call last): trackroller.errors.InputError: contact_angle = 95 is not
-    usable. Allowed: a number for the contact \
-angle [deg], >= 1e-06 deg, < 90 deg, finite. \
+    Traceback (most recent call last):
+    trackroller.errors.InputError: contact_angle = 95 is not usable. Allowed: a number for \
+the contact angle [deg], >= 1e-06 deg, < 90 deg, finite. \
 Write a number that is allowed, such as 30.
     """
 

@@ -12,10 +12,11 @@ from validation.derivations.potentials import KERNELS, LOADS, check_dilatation, 
 
 _HEADER = '''"""Stresses of point loads and corner functions of loaded rectangles. GENERATED: do not edit.
 
-Written by `python -m validation.derivations.kernel_writer`; `validation/derivations/potentials.py` derives them.
-Every function returns 36 numbers: A for the loads x, y, z (slowest) and the components xx, yy, zz, xy, yz, xz,
-then B in the same order; the stress is A + nu B. Lengths of corner functions are in units of the grid spacing:
-FLOOR is the distance below which logarithms stop growing, which keeps a step of traction finite on its edge.
+Written by `python -m validation.derivations.kernel_writer`; `validation/derivations/potentials.py`
+derives them. Every function returns 36 numbers: A for the loads x, y, z (slowest) and the
+components xx, yy, zz, xy, yz, xz, then B in the same order; the stress is A + nu B. Lengths of
+corner functions are in units of the grid spacing: FLOOR is the distance below which logarithms stop
+growing, which keeps a step of traction finite on its edge.
 """
 
 from math import asinh, atan2, log, sqrt
