@@ -96,9 +96,7 @@ def point_kernel(x, y, z):
 
 @compiled
 def bilinear_corner(x, y, z):
-    """Return the corner function of bilinear tractions: d4/dx2dy2 gives `point_kernel`
-    [length^2].
-    """
+    """Return the corner function of bilinear tractions; d4/dx2dy2: `point_kernel` [length^2]."""
     x2, y2, z2 = x * x, y * y, z * z
     R = sqrt(x2 + y2 + z2)
     S = R + z

@@ -44,7 +44,7 @@ _CORNER = """    P = x2 + z2
 _ROWS = ("load_x", "load_y", "load_z", "nu_x", "nu_y", "nu_z")  # six components for each load, A and then B
 _TITLES = {
     "point_kernel": "Return the stresses at (x, y, z) due to unit forces at the origin [1/length^2].",
-    "bilinear_corner": "Return the corner function of bilinear tractions: d4/dx2dy2 gives `point_kernel` [length^2].",
+    "bilinear_corner": "Return the corner function of bilinear tractions; d4/dx2dy2: `point_kernel` [length^2].",
 }
 
 
