@@ -45,14 +45,20 @@ def answer_how_it_behaves(results: SolvedCases) -> Answer:
         "at_smallest": first["at_smallest"],
         "at_largest": first["at_largest"],
         "error": float(first["error"]),
-        "ends": [{"limit": str(end), "body": "", "count": int(n)} for end, n in ends.items() if end != UNKNOWN],
+        "ends": [
+            {"limit": str(end), "body": "", "count": int(n)}
+            for end, n in ends.items()
+            if end != UNKNOWN
+        ],
         "of": int(results.of_one_model().sum()),
         "lost": int((results.of_one_model() & ~rows).sum()),
     }
     return _answer(results, ranges, table, told)
 
 
-def _answer(results: SolvedCases, ranges: CaseRanges, table: pd.DataFrame, told: dict[str, Any]) -> Answer:
+def _answer(
+    results: SolvedCases, ranges: CaseRanges, table: pd.DataFrame, told: dict[str, Any]
+) -> Answer:
     known = bool(told)
     columns: tuple[Column, ...] = COLUMNS if known else COLUMNS[:1]
     if known and table["error"].isna().all():
