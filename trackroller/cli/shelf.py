@@ -21,15 +21,13 @@ from trackroller.report.terminal import print_table, print_text
 from trackroller.study.design.entries import SHELVES, SIZES
 from trackroller.study.design.levels import entries, in_words
 from trackroller.study.file.load import parse_study
-from trackroller.study.file.shelf import with_rows, without_overridden
+from trackroller.study.file.shelf import ROLLER, base_of_case, with_rows, without_overridden
 from trackroller.study.file.study import Study
 from trackroller.study.store.crate import write_crate
 from trackroller.study.store.ledger import study_folder
 
 if TYPE_CHECKING:
     from trackroller.results.size import Sizing
-
-SHELF = "roller"
 
 
 def print_shelf(file: Path, of: str, case: Path | None, settings: list[str] | None) -> None:
@@ -88,7 +86,7 @@ def print_size(  # noqa: PLR0913 - one argument for each option of the command
         )
     if sizing.unranked:
         print_text(f"{', '.join(sizing.unranked)}: no {sizing.least_of}, and so not ranked by it")
-    units = {**solved[0].study.parsed[SHELF].units, "life_hours": "h"}
+    units = {**solved[0].study.parsed[ROLLER].units, "life_hours": "h"}
     heads = [_head(str(name), units) for name in sizing.table]
     print_table(
         heads, [[_shown(value) for value in row] for row in sizing.table.itertuples(index=False)]
@@ -102,7 +100,7 @@ def _first_sentence(sizing: Sizing) -> str:
     """Return which roller to take, in one sentence."""
     if not sizing.least:
         return "No roller of the shelf is surely enough."
-    row = sizing.table.set_index(SHELF).loc[sizing.least]
+    row = sizing.table.set_index(ROLLER).loc[sizing.least]
     parts = []
     if sizing.least_of:
         parts.append(f"{sizing.least_of} {row[sizing.least_of]:g}")
@@ -130,10 +128,7 @@ def shelf_study(file: Path, of: str, case: Path | None, settings: list[str] | No
     base: dict[str, Any] = {}
     if case is not None or settings:
         given, _, _ = case_of(case, settings)
-        base = {
-            name: value for name, value in given.as_dict().items() if name not in given.not_given
-        }
-        base = {name: value for name, value in base.items() if value not in (None, "")}
+        base = base_of_case(given)
     with files_beside(file):
         keys, places = with_rows(
             {"name": "shelf", "base": base, "factors": {of: {"file": file.name}}}

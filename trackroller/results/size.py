@@ -30,12 +30,11 @@ from trackroller.roller.requirement import DEFAULT
 from trackroller.roller.settings import LOADS, checked_case
 from trackroller.study.file.config import IN_STUDY, NAME
 from trackroller.study.file.load import load_study
-from trackroller.study.file.shelf import with_rows, without_overridden
+from trackroller.study.file.shelf import ROLLER, base_of_case, with_rows, without_overridden
 from trackroller.study.file.study import Study
 from trackroller.study.outputs import of_fatigue
 from trackroller.yaml_file import read_mapping
 
-SHELF = "roller"
 # keys that a study file has and a case file has not
 OF_STUDY = ("factors", "base", "name", "design", "method")
 VERDICTS = ("enough", "open", "not enough")
@@ -77,7 +76,7 @@ class Sizing:
         """Return the rollers whose verdict is open, and that rank before the least one that is
         enough.
         """
-        table = self.table.set_index(SHELF)
+        table = self.table.set_index(ROLLER)
         is_open = table["verdict"] == VERDICTS[1]
         if self.least and self.least_of:
             is_open &= table[self.least_of] < table[self.least_of][self.least]
@@ -226,21 +225,21 @@ def _keys_of(case: Path | str | Mapping[str, Any], shelf: Path | str) -> dict[st
                 remedy,
                 "has several rollers or rows",
             )
-    if SHELF in (keys.get("factors") or {}):
+    if ROLLER in (keys.get("factors") or {}):
         raise InputError(
-            f"factors.{SHELF}",
+            f"factors.{ROLLER}",
             None,
             "one shelf",
             "Remove it: --shelf gives it.",
             "stands there already",
         )
     keys["name"] = _name(str(keys.get("name", stem)), Path(shelf).stem)
-    keys["factors"] = {SHELF: {"file": Path(shelf).name}, **(keys.get("factors") or {})}
+    keys["factors"] = {ROLLER: {"file": Path(shelf).name}, **(keys.get("factors") or {})}
     base = dict(keys.get("base") or {})
     with files_beside(Path(shelf)):
-        rows, _ = with_rows({"base": base, "factors": {SHELF: keys["factors"][SHELF]}})
+        rows, _ = with_rows({"base": base, "factors": {ROLLER: keys["factors"][ROLLER]}})
     fills_cells = {name: value for name, value in base.items() if name not in rows["base"]}
-    keys["base"] = fills_cells | without_overridden(rows, SHELF)["base"]
+    keys["base"] = fills_cells | without_overridden(rows, ROLLER)["base"]
     keys["question"] = "decide"
     return keys
 
@@ -255,10 +254,7 @@ def _path_of(case: Any) -> Path | None:
 def _of_case(values: Mapping[str, Any]) -> dict[str, Any]:
     """Return the keys of a study with the values of a case file."""
     case, options, beside = checked_case(values)
-    given = {name: value for name, value in case.as_dict().items() if name not in case.not_given}
-    keys: dict[str, Any] = {
-        "base": {name: value for name, value in given.items() if value not in (None, "")}
-    }
+    keys: dict[str, Any] = {"base": base_of_case(case)}
     keys |= {option.name: options[option.name] for option in IN_STUDY if option.name in options}
     keys |= {name: beside[name] for name in ("duty", "requirement") if name in beside}
     return keys
@@ -308,9 +304,9 @@ def sizing_of(at_loads: Results | None, overload: Results | None, least: str = "
     """
     solved = at_loads or overload
     assert solved is not None
-    goods = [name for name in solved.goods if name != SHELF]
-    levels = solved.study.parsed[SHELF].levels
-    table = pd.DataFrame({SHELF: list(levels)}).set_index(SHELF)
+    goods = [name for name in solved.goods if name != ROLLER]
+    levels = solved.study.parsed[ROLLER].levels
+    table = pd.DataFrame({ROLLER: list(levels)}).set_index(ROLLER)
     for name in goods:
         table[name] = _by_roller(solved, solved.table[name].to_numpy())
     table["verdict"] = VERDICTS[0]
@@ -328,10 +324,10 @@ def _by_roller(results: Results, values: np.ndarray) -> list[Any]:
     """Return a column of cases by roller: the largest number of its conditions, or the first
     text.
     """
-    own = results.study.parsed[SHELF].levels
-    if SHELF not in results.table:  # a shelf of one roller
+    own = results.study.parsed[ROLLER].levels
+    if ROLLER not in results.table:  # a shelf of one roller
         return [pd.Series(values).max() if values.dtype.kind == "f" else values[0]]
-    grouped = pd.Series(values).groupby(results.table[SHELF].to_numpy())
+    grouped = pd.Series(values).groupby(results.table[ROLLER].to_numpy())
     if values.dtype.kind == "f":
         return list(grouped.max().reindex(own))
     return list(grouped.first().reindex(own))
@@ -342,9 +338,9 @@ def _answer_rows(results: Results) -> pd.DataFrame:
     answer = results.answer
     assert answer is not None
     rows = answer.table
-    if SHELF not in rows:
-        rows = rows.assign(**{SHELF: results.study.parsed[SHELF].levels[0]})
-    return rows.set_index(SHELF)
+    if ROLLER not in rows:
+        rows = rows.assign(**{ROLLER: results.study.parsed[ROLLER].levels[0]})
+    return rows.set_index(ROLLER)
 
 
 def _with_life(table: pd.DataFrame, results: Results) -> pd.DataFrame:
@@ -454,10 +450,10 @@ def _ranked(
     keys = (-life, np.where(np.isnan(wanted), np.inf, wanted), np.array(place))
     order = np.lexsort(keys)
     table = table.iloc[order].reset_index()
-    enough = table[(table["verdict"] == VERDICTS[0]) & ~table[SHELF].isin(unranked)]
+    enough = table[(table["verdict"] == VERDICTS[0]) & ~table[ROLLER].isin(unranked)]
     first = ""
     if len(enough):
-        first = str(enough[SHELF].iloc[0])
+        first = str(enough[ROLLER].iloc[0])
     return Sizing(table, first, least, unranked, at_loads, overload)
 
 

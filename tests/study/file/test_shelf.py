@@ -175,6 +175,7 @@ CATALOGUE = "name;catalogue_radial_force [N];catalogue_axial_force [N];catalogue
         (("a;-200",), "name;radial_force", r"line 2: radial_force .*catalogue_radial_force"),
         (("a;-7",), "name;roller_profil_radius", r"line 1: column .*Did you mean 'roller_profile_radius'"),
         (("a;5",), "title;axis_distance", r"line 1: shelf .*has no names"),
+        (("a;5;6",), "name;lot size;lot_size", r"line 1: column = 'lot_size'.*one column for lot_size.*lot_size_2"),
         (
             ("a;700;200;40;dry", "b;200;700;40;dry", "c;900;300;40;dry"),
             CATALOGUE,

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 import re
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from typing import Any
 
 from trackroller.contact.friction_laws import at_rest
@@ -59,6 +59,29 @@ BEARING_DIAMETER = "bearing_outer_diameter"
 SIZES = (*RADII, BEARING_DIAMETER)  # columns of a shelf [mm] that are no parameters
 # parameters that no row of a shelf sets
 OF_LOAD = (*LOADS, "velocity", "guide_overrollings_per_hour")
+
+
+def without_blanks(head: str) -> str:
+    """Return the name of a column as results have it: xarray marks no coordinate with a blank."""
+    return "_".join(head.split())
+
+
+def names_without_blanks(heads: Iterable[str], where: str) -> dict[str, str]:
+    """Return the names of columns as results have them, by the names at their heads.
+
+    Raises
+    ------
+    InputError
+        If two heads differ by their blanks alone.
+    """
+    names: dict[str, str] = {}
+    for head in heads:
+        name = without_blanks(head)
+        if name in names.values():
+            remedy = f"Rename it, for example {name}_2."
+            raise InputError(where, head, f"one column for {name}", remedy)
+        names[head] = name
+    return names
 
 
 def check_own_name(name: str, where: str) -> None:

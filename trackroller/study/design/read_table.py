@@ -18,7 +18,13 @@ from trackroller.numerics.table_cells import Refused, Stored, is_number, split_h
 from trackroller.numerics.units import PLAIN, in_unit
 from trackroller.parameters import PARAMETERS
 from trackroller.roller.aliases import AXIS_DISTANCE, RADII
-from trackroller.study.design.entries import FACTOR_NAMES, check_own_name, field_value
+from trackroller.study.design.entries import (
+    FACTOR_NAMES,
+    check_own_name,
+    field_value,
+    names_without_blanks,
+    without_blanks,
+)
 from trackroller.study.file.user_columns import column_names, read_table
 from trackroller.tables.user_table import UserTable
 
@@ -44,33 +50,25 @@ def table(path: Any, used: Collection[str] = ()) -> dict[str, np.ndarray]:
     if used:  # an expression writes a name without its blanks
         used = {
             *used,
-            *(name for name in column_names(Path(path), "table") if _without_blanks(name) in used),
+            *(name for name in column_names(Path(path), "table") if without_blanks(name) in used),
         }
     cases = read_cases(Path(path), wrong, used)
     with wrong.part():
         _check_names(cases, used, path)
+    try:
+        names = names_without_blanks(cases.names, "table column")
+    except InputError as error:
+        raise error.at(path, cases.head) from None
     columns: dict[str, np.ndarray] = {}
-    for j, name in enumerate(cases.names):
+    for j, head in enumerate(cases.names):
         cells = {number: line[j] for number, line in cases.lines.items()}
-        key = _without_blanks(name)
-        if key in columns:
-            allowed = f"one column for {key}"
-            error = InputError("table column", name, allowed, f"Rename it, for example {key}_2.")
-            raise error.at(path, cases.head)
-        numbers = _numbers_of(name, cells)
+        numbers = _numbers_of(head, cells)
         if numbers is None:
-            columns[key] = _cells_of(name, cells, path, wrong)
+            columns[names[head]] = _cells_of(head, cells, path, wrong)
         else:
-            columns[key] = numbers
+            columns[names[head]] = numbers
     wrong.check()
     return columns
-
-
-def _without_blanks(name: str) -> str:
-    """Return the name of a column as results have it: xarray marks no coordinate with a blank in
-    its name.
-    """
-    return "_".join(name.split())
 
 
 def genes(path: Any) -> np.ndarray:

@@ -29,6 +29,7 @@ from trackroller.numerics.table_cells import is_number, split_head
 from trackroller.numerics.units import PLAIN, split_quantity
 from trackroller.parameters import PARAMETERS
 from trackroller.roller.aliases import ALIASES, RADII
+from trackroller.roller.case import Case
 from trackroller.study.design.entries import (
     BEARING_DIAMETER,
     CASE_FIELDS,
@@ -36,11 +37,14 @@ from trackroller.study.design.entries import (
     SIZES,
     check_own_name,
     field_of_row,
+    names_without_blanks,
+    without_blanks,
 )
 from trackroller.study.file.user_columns import column_names, read_table
 from trackroller.tables.column_heads import is_unit
 from trackroller.tables.user_table import UserTable
 
+ROLLER = "roller"  # shelf of rollers
 FIELDS = (BEARING, CATALOGUE)  # mappings of a case whose keys are columns of a shelf
 PROFILES = ("roller_profile", "guide_profile")  # their cells name files of points
 OUTER_DIAMETER = "outer_diameter"  # of the bearings in a shelf of bearings
@@ -142,6 +146,12 @@ def without_overridden(keys: Mapping[str, Any], shelf: str) -> dict[str, Any]:
         given |= {*RADII}
     base = {name: value for name, value in (keys.get("base") or {}).items() if name not in given}
     return {**keys, "base": base}
+
+
+def base_of_case(case: Case) -> dict[str, Any]:
+    """Return the values of a case that were given, as the `base` of a study."""
+    given = {name: value for name, value in case.as_dict().items() if name not in case.not_given}
+    return {name: value for name, value in given.items() if value not in (None, "")}
 
 
 def names_of_columns(factors: Mapping[str, Any]) -> set[str]:
@@ -299,6 +309,8 @@ def _check_heads(table: UserTable, path: Path, keys: Keys) -> None:
                 raise InputError("column", head, "parameters, and columns of your own", remedy)
             if not _is_of_case(head, keys):
                 _check_own_head(head, known)
+    with wrong.part():
+        names_without_blanks(table.names, "column")
     for error in wrong.errors:
         error.at(path, table.head)
     wrong.check()
@@ -314,16 +326,11 @@ def _check_own_head(head: str, known: Iterable[str]) -> None:
         raise InputError(
             "column", head, "parameters, and columns of your own", remedy, "is not known"
         )
-    name = _own_name(head)
+    name = without_blanks(head)
     check_own_name(name, "column")
     if not name.isidentifier():
         allowed = "a name of letters, digits and '_', with a unit in brackets behind it"
         raise InputError("column", head, allowed, "Rename it, for example price [EUR].")
-
-
-def _own_name(head: str) -> str:
-    """Return the name that a column of the user's own has in a study: without blanks."""
-    return "_".join(head.split())
 
 
 def _note_names(table: UserTable, shelf: str, path: Path, places: Places) -> None:
@@ -390,7 +397,7 @@ def _own_columns(
         if _is_of_case(head, keys):
             continue
         cells = {number: line[j] for number, line in table.lines.items()}
-        name = _own_name(head)
+        name = without_blanks(head)
         unit = units.get(head, "") or _unit_in_cells(head, cells, path, wrong)
         if unit:
             shown[name] = unit
