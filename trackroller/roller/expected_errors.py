@@ -90,9 +90,7 @@ def told_weights(accuracy: str, contact_model: str) -> dict[str, float]:
         By `friction_force`, `normal_force`, `friction_energy`, and for peaks `below_surface` and
         `at_surface` [1].
     """
-    factors: dict[str, float] = (
-        _measured()["told"].get(contact_model, {}).get(accuracy, {}).get("weights", {})
-    )
+    factors: dict[str, float] = _calibration(accuracy, contact_model).get("weights", {})
     return factors
 
 
@@ -124,10 +122,14 @@ def ratio_error(accuracy: str, contact_model: str, quantity: str = "life") -> fl
     >>> ratio_error("reference", "kalker") < ratio_error("preview", "kalker")
     True
     """
-    error: float | None = (
-        _measured()["told"].get(contact_model, {}).get(accuracy, {}).get("ratio", {}).get(quantity)
-    )
+    error: float | None = _calibration(accuracy, contact_model).get("ratio", {}).get(quantity)
     return error
+
+
+def _calibration(accuracy: str, contact_model: str) -> dict[str, Any]:
+    """Return what was measured of the told errors of a rung; nothing if it was not."""
+    measured: dict[str, Any] = _measured()["told"].get(contact_model, {}).get(accuracy, {})
+    return measured
 
 
 def expected_errors(options: Options, contact_model: str, plain: bool) -> dict[str, Levels]:

@@ -60,21 +60,18 @@ def calibrate(table: CaseTable, block: Block, options: Options) -> None:
         return
     texts = table.friction_law.tolist()
     constant = {text: law_of(text).is_constant for text in set(texts)}
-    ordinary = np.array([constant[text] for text in texts], bool) & (
-        table.friction_coefficient <= ORDINARY_FRICTION
-    )
+    ordinary = np.array([constant[text] for text in texts], bool)
+    ordinary &= table.friction_coefficient <= ORDINARY_FRICTION
     ordinary &= table.layer_flexibility == 0.0
     for place, rung in enumerate(RUNGS):
         rows = np.flatnonzero(ordinary & (block.rung == place))
+        if not rows.size:
+            continue
         model = model_in_use(options.changed(accuracy=rung), "")
         weights = told_weights(rung, model)
-        if rows.size and weights:
-            _scale(
-                block.values,
-                rows,
-                weights,
-                CLASSES[model].peak_error * table.friction_coefficient[rows],
-            )
+        if weights:
+            constant_part = CLASSES[model].peak_error * table.friction_coefficient[rows]
+            _scale(block.values, rows, weights, constant_part)
 
 
 def _scale(
