@@ -92,6 +92,13 @@ class PatchInputs:
         return len(self.columns["normal_force"])
 
     @property
+    def elastic_constants(self) -> tuple[float, float, float, float]:
+        """Return Young's modulus [MPa] and Poisson's ratio [1] of body 1, and those of body 2."""
+        first, second = self.bodies
+        of_second = second.youngs_modulus, second.poisson_ratio
+        return first.youngs_modulus, first.poisson_ratio, *of_second
+
+    @property
     def is_discs(self) -> bool:
         """Return whether the bodies are two discs, which touch along a line."""
         return "width" in self.columns

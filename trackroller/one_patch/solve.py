@@ -22,16 +22,15 @@ from trackroller.parameters.accuracy import PRESETS
 from trackroller.parameters.patch_fields import PATCH_FIELDS
 from trackroller.parameters.validity import VALIDITY
 from trackroller.roller.dataset import VARIABLES, file_attributes
+from trackroller.roller.stages.mechanics import MM_PER_S
 
 # largest residual of the friction law over mu p_max, as in the balance of a roller
 TOLERANCE = 1e-8
-MM_PER_S = 1000.0 / 60.0  # mm/s for 1 m/min
 CONVENTIONS = (
-    "x lateral, y in the rolling direction; forces and tractions act on body 1; creepage is "
-    "the velocity of body 1 "
-    "less that of body 2, over the travel speed, so that the force has the sign opposite to "
-    "the creepage; the spin "
-    "moment is about the contact normal, which points into body 1"
+    "x lateral, y in the rolling direction; forces and tractions act on body 1; creepage is the "
+    "velocity of body 1 less that of body 2, over the travel speed, so that the force has the sign "
+    "opposite to the creepage; the spin moment is about the contact normal, which points into "
+    "body 1"
 )
 _OWN = {
     "friction_force_share": Variable(
@@ -168,17 +167,13 @@ def solved_patch(inputs: PatchInputs) -> xr.Dataset:
 
 def _elastic(inputs: PatchInputs) -> Elastic:
     """Return the combined constants of both bodies in every case."""
-    first, second = inputs.bodies
-    one = np.ones(inputs.size)
-    bodies = first.youngs_modulus, first.poisson_ratio, second.youngs_modulus, second.poisson_ratio
-    elastic = Elastic.of_pair(*(one * value for value in bodies))
+    constants = (np.full(inputs.size, value) for value in inputs.elastic_constants)
+    elastic = Elastic.of_pair(*constants)
     return replace(elastic, layer_flexibility=inputs.columns["layer_flexibility"])
 
 
 def _modulus(inputs: PatchInputs) -> np.ndarray:
-    first, second = inputs.bodies
-    bodies = first.youngs_modulus, first.poisson_ratio, second.youngs_modulus, second.poisson_ratio
-    return np.full(inputs.size, contact_modulus(*bodies))
+    return np.full(inputs.size, contact_modulus(*inputs.elastic_constants))
 
 
 def _creepage(inputs: PatchInputs) -> Creepage:
