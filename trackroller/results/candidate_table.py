@@ -646,12 +646,8 @@ def _edges(own: Comparison) -> list[str]:
             continue
         at = table[name].isin([levels[0], levels[-1]]).to_numpy()
         words = long_name_of(name)
-        out = np.array(
-            [
-                f"{old}, {words}" if old and hit else words if hit else old
-                for old, hit in zip(out, at, strict=True)
-            ]
-        )
+        added = np.where(at, words, "")
+        out = np.array([", ".join(filter(None, pair)) for pair in zip(out, added, strict=True)])
     return [str(one) for one in out]
 
 

@@ -18,7 +18,7 @@ from trackroller.results.solved_cases import SolvedCases
 from trackroller.results.targets import hits_of, scattering_body
 from trackroller.study.design.levels import in_words
 from trackroller.study.file.goals import statistic
-from trackroller.study.outputs import outputs, regimes
+from trackroller.study.outputs import Output, outputs, regimes
 
 UNTIL = "until"  # attribute of study.nc with the looks and the reason for stopping (JSON)
 
@@ -103,14 +103,7 @@ def _of_points(results: SolvedCases, name: str) -> tuple[np.ndarray, np.ndarray]
     if output in REGIMES:
         values = hits = (regimes(results.data, results.dims) == REGIMES.index(output)).astype(float)
     else:
-        column = outputs(
-            results.data,
-            design.factors,
-            [output],
-            unlimited=True,
-            scale="natural",
-            allowed=results.allowed,
-        )[0]
+        column = _natural_output(results, output)
         values, scatter = results.with_breaks(column), own.get(scattering_body(output))
         if kind != "probability":
             scatter = np.zeros(design.size) if scatter is None else scatter
@@ -121,6 +114,18 @@ def _of_points(results: SolvedCases, name: str) -> tuple[np.ndarray, np.ndarray]
             return values, np.where([np.isnan(values[rows]).all() for rows in points], 0.0, halves)
         hits = hits_of(column, results.config.requirement[output], scatter)
     return values, _shares(results, hits)[1]
+
+
+def _natural_output(results: SolvedCases, name: str) -> Output:
+    """Return an output in its own scale over all cases, (n,)."""
+    return outputs(
+        results.data,
+        results.design.factors,
+        [name],
+        unlimited=True,
+        scale="natural",
+        allowed=results.allowed,
+    )[0]
 
 
 def _shares(results: SolvedCases, hits: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -145,15 +150,7 @@ def _decided(results: SolvedCases, name: str, widths: np.ndarray) -> np.ndarray:
     own = results.config.requirement.get(output)
     if kind != "probability" or own is None or not own.in_shares:
         return np.zeros(len(widths), dtype=bool)
-    design = results.design
-    column = outputs(
-        results.data,
-        design.factors,
-        [output],
-        unlimited=True,
-        scale="natural",
-        allowed=results.allowed,
-    )[0]
+    column = _natural_output(results, output)
     scatter = material_deviations(results).get(scattering_body(output))
     shares = _shares(results, hits_of(column, own, scatter))[0]
     return np.asarray(np.abs(shares - own.probability) > widths)

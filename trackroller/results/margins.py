@@ -272,9 +272,12 @@ def _of_fatigue_alone(
             high=hours,
             timed=True,
         )
-        margin = replace(
-            margin, state="exceeded" if breaks else "unknown" if math.isnan(hours) else "kept"
-        )
+        state = "kept"
+        if breaks:
+            state = "exceeded"
+        elif math.isnan(hours):
+            state = "unknown"
+        margin = replace(margin, state=state)
         if lifeless[body]:
             margin = replace(margin, timed=False, breaks=breaks, lifeless=not breaks)
         elif body in tested and math.isfinite(hours):
@@ -398,7 +401,11 @@ def _of_pressure(ds: xr.Dataset, materials: Mapping[str, Material]) -> list[Marg
 
 def _with_use(margin: Margin, used: float) -> Margin:
     """Return a margin without placeholders with its use and its state."""
-    state = "unknown" if math.isnan(used) else "kept" if used < 1.0 else "exceeded"
+    state = "exceeded"
+    if math.isnan(used):
+        state = "unknown"
+    elif used < 1.0:
+        state = "kept"
     return replace(margin, used=used, used_low=used, used_high=used, state=state)
 
 

@@ -62,6 +62,24 @@ CODES = {  # code of the warning of a validity flag; of the others `flagged`
 }
 # why a limit is not known
 STOPPED = {"full_slip": "the roller skids", "lift_off": "a contact lifts off"}
+# columns of doubt on each limit, of one load and of a spectrum
+OF_ANY_LIMIT = (
+    Column(
+        "extrapolated",
+        "Extrapolated",
+        "",
+        "whether the life lies beyond the data of its rule",
+        "text",
+    ),
+    Column(
+        "guessed",
+        "Placeholder",
+        "",
+        "whether the limit rests on values that nobody has measured",
+        "text",
+    ),
+    Column("model", "Model", "", "second model of an end that another limit has", "text"),
+)
 COLUMNS = (
     Column(
         "limit",
@@ -111,21 +129,7 @@ COLUMNS = (
         "hours until the limit is reached, at the values of the placeholders",
         "life",
     ),
-    Column(
-        "extrapolated",
-        "Extrapolated",
-        "",
-        "whether the life lies beyond the data of its rule",
-        "text",
-    ),
-    Column(
-        "guessed",
-        "Placeholder",
-        "",
-        "whether the limit rests on values that nobody has measured",
-        "text",
-    ),
-    Column("model", "Model", "", "second model of an end that another limit has", "text"),
+    *OF_ANY_LIMIT,
     Column("bound", "What is permitted", "", "what the permitted value is", "text"),
     Column(
         "units", "Unit", "", "unit of the value and of the permitted value", "text", role="file"

@@ -31,7 +31,13 @@ from trackroller.results.lives import FIRST_LIMIT, past_data
 from trackroller.results.margins import First, Margin, is_guessed
 from trackroller.results.placeholders import guess_cautions, placeholders_part
 from trackroller.results.places import level_text
-from trackroller.results.roller_answer import CODES, checks_left_out, facts_of_data, material_name
+from trackroller.results.roller_answer import (
+    CODES,
+    OF_ANY_LIMIT,
+    checks_left_out,
+    facts_of_data,
+    material_name,
+)
 from trackroller.roller.dataset import validity_bit
 from trackroller.roller.duty import strokes_words
 from trackroller.roller.limit_notes import notes_of
@@ -74,21 +80,7 @@ COLUMNS = (
         "share", "Its part", "1", "part of the damage that this block does", "share", role="file"
     ),
     Column("contact", "Contact", "", "contact whose track takes most damage by fatigue", "count"),
-    Column(
-        "extrapolated",
-        "Extrapolated",
-        "",
-        "whether the life lies beyond the data of its rule",
-        "text",
-    ),
-    Column(
-        "guessed",
-        "Placeholder",
-        "",
-        "whether the limit rests on values that nobody has measured",
-        "text",
-    ),
-    Column("model", "Model", "", "second model of an end that another limit has", "text"),
+    *OF_ANY_LIMIT,
     Column("blocks", "Exceeded in", "", "blocks in which the limit is exceeded or open", "text"),
     Column("name", "Name", "", "name of the limit in data sets", "text", role="file"),
 )
