@@ -23,7 +23,7 @@ import numpy as np
 
 from trackroller.damage.catalogue import FIELD as CATALOGUE
 from trackroller.damage.catalogue import LAWS, catalogue_km
-from trackroller.errors import Collector, InputError, check_names, checked_text, unknown_name
+from trackroller.errors import Collector, InputError, check_names, text_of, unknown_name
 from trackroller.files import files_beside, find_beside, read_text
 from trackroller.numerics.numbers import number_in, number_or_nan
 from trackroller.numerics.plain import mapping_of
@@ -385,11 +385,9 @@ def carriage_of(values: Mapping[str, Any]) -> Carriage:
     with wrong.part():
         _check_payloads(values["cases"], fields)
     with wrong.part():
-        fields["name"] = checked_text(str(values.get("name", "carriage")), "name")
+        fields["name"] = text_of(values.get("name"), "name", "carriage")
     with wrong.part():
-        fields["description"] = checked_text(
-            str(values.get("description", "")), "description", lines=True
-        )
+        fields["description"] = text_of(values.get("description"), "description", lines=True)
     wrong.check()
     return Carriage(**fields)
 
@@ -519,7 +517,7 @@ def _rollers(value: Any) -> tuple[MountedRoller, ...]:
     files: dict[object, Any] = {}
     for name, entry in value.items():
         with wrong.part("rollers", str(name)):
-            rollers.append(_roller(checked_text(str(name), "name of a roller"), entry, files))
+            rollers.append(_roller(_roller_name(name), entry, files))
     wrong.check()
     if not any(roller.locating for roller in rollers):
         remedy = "Write kind: locating for the rollers that guide the carriage along their axes."
@@ -779,9 +777,16 @@ def _with_share(case: LoadCase, share: float) -> LoadCase:
     return new
 
 
+def _roller_name(value: Any) -> str:
+    name = text_of(value, "name of a roller")
+    if not name:
+        raise InputError("name of a roller", None, "a name such as FL", "Write the name.")
+    return name
+
+
 def _load_case(value: Any, number: int) -> LoadCase:
     entry = _entries(value, f"cases[{number}]", CASE_FIELDS, "{name: run, share: 1, speed: 1 m/s}")
-    name = checked_text(str(entry.get("name", f"case {number}")), "name of a load case")
+    name = text_of(entry.get("name"), "name of a load case", f"case {number}")
     where = f"case '{name}'"
     wrong = Collector()
     fields = {}
