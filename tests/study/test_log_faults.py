@@ -441,3 +441,31 @@ def test_the_case_file_answers_and_the_spectrum_records_the_doubts(tmp_path, mon
     assert record["file"] == "log.csv"
     assert {"code": "left_out", "count": 4, "line": 102, "values": "'-9999'"} in record["doubts"]
     assert load_spectrum(tmp_path / "shift.yaml").blocks
+
+
+@pytest.mark.parametrize(
+    ("axes", "column", "unit", "speed"),
+    [
+        (("time", "distance"), "distance", "km", 6e4),
+        (("time", "distance"), "time", "ms", 6e4),
+        (("time", "distance"), "distance", "mm", 0.06),
+        (("time", "velocity"), "velocity", "m/s", 3600),
+        (("time", "speed"), "speed", "mm/s", 0.06),
+    ],
+)
+def test_a_speed_that_no_roller_has_is_told(tmp_path, axes, column, unit, speed):
+    """The numbers are right, and a head states another unit than theirs."""
+    columns = truth() | {"speed": np.ones(400), "velocity": np.full(400, 60.0), "distance": np.arange(400) / 10}
+    path = write(tmp_path / "l.csv", columns, names_of(axes), UNITS | {column: unit})
+    log = read(path)
+    (doubt,) = [doubt for doubt in log.doubts if doubt.code == "unusual_speed"]
+    assert doubt.values["value"] == pytest.approx(speed)
+    assert f"check the units of {axes[0]} and {axes[1]}" in doubt.text
+    assert "unusual_speed" not in codes(read(write(path, columns, names_of(axes)))), "the remedy works"
+
+
+def test_a_log_with_long_stops_moves_at_a_usual_speed(tmp_path):
+    columns = truth()
+    columns["speed"] = np.where(np.arange(400) % 10 == 0, 1.0, 0.0)
+    log = read(write(tmp_path / "l.csv", columns, names_of(("time", "speed"))))
+    assert "unusual_speed" not in codes(log)

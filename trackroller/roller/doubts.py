@@ -72,6 +72,7 @@ OTHER_UNITS = {
     "m/min": ("m/s", "mm/s", "km/h"),
     "kg/m3": ("g/cm3",),
     "-": ("%",),
+    "km": ("m", "mm"),
 }
 # entries of mappings that the radial force of a roller usually does not exceed, in N; the others in
 # N mm times 1 mm
@@ -79,6 +80,8 @@ RATINGS = {
     "bearing": {"dynamic_rating": "N", "static_rating": "N", "permissible_moment": "N mm"},
     "catalogue": {"radial_force": "N", "axial_force": "N", "moment": "N mm"},
 }
+# ASSUME: kilometres at a load factor of 1, which catalogues state as 40 to 1000
+BASIC_LIFE = (10.0, 2e4)
 LARGER_UNITS = {"N": "kN", "N mm": "Nm"}
 # share of the radial force below which a rating is asked about; 1 for the others
 SMALL = {"axial_force": 0.02}
@@ -193,7 +196,7 @@ def _exponent(material: Material, name: str) -> str:
 
 def ratings(values: Mapping[str, Any]) -> list[str]:
     """Return a sentence for each rating of a bearing or catalogue that is smaller than the smallest
-    radial force.
+    radial force, and for an unusual basic life of a catalogue.
     """
     loads = [
         abs(v)
@@ -220,7 +223,11 @@ def ratings(values: Mapping[str, Any]) -> list[str]:
                 f"{number:g} {larger} is "
                 f"meant, write '{number:g} {larger}' or {1e3 * number:g}."
             )
-    return list(dict.fromkeys(out))
+    for mapping in _mappings(values.get("catalogue")):
+        life = mapping.get("basic_life")
+        if isinstance(life, (int, float)):
+            out.append(_unusual("catalogue.basic_life", life, "km", BASIC_LIFE, ""))
+    return [text for text in dict.fromkeys(out) if text]
 
 
 def _mappings(value: Any) -> list[dict[str, Any]]:
