@@ -187,3 +187,12 @@ def test_run_outs_shorter_than_the_longest_failure_bring_no_limit_and_a_word():
     assert tr.fit_sn(given, knee=True, **UNDER).groups[0].line.knee, "as the page on tests says"
     whole = tr.fit_sn(columns([]), **UNDER)
     assert not any("run-outs" in note for note in whole.notes)
+
+
+def test_amplitudes_in_another_unit_are_asked_about():
+    unit, given = "GPa", columns([])
+    mistaken = given | {"amplitude": [1e-3 * value for value in given["amplitude"]]}
+    (told,) = [note for note in tr.fit_sn(mistaken, **UNDER).notes if note.startswith("amplitude =")]
+    assert f"if {1e-3 * max(given['amplitude']):g} {unit} is meant" in told
+    stated = {key.replace("amplitude", f"amplitude [{unit}]"): value for key, value in mistaken.items()}
+    assert not any(note.startswith("amplitude =") for note in tr.fit_sn(stated, **UNDER).notes), "the remedy works"

@@ -34,6 +34,7 @@ from trackroller.fit.table import (
 )
 from trackroller.numerics.numbers import finite_number, number_or_nan
 from trackroller.numerics.plain import plain
+from trackroller.roller.doubts import sentence_of_unusual
 
 NEEDED = ("amplitude", "cycles")
 COLUMNS = (*NEEDED, "failed", "group", "test", "note", "censored", "status")
@@ -59,6 +60,8 @@ SHOWS_NO_LIMIT = (
     "The run-outs do not show a fatigue limit, as two or more would that are as long as the "
     "longest failures: they count as long lives on the line."
 )
+# ASSUME: MPa; the largest amplitude of a series, soft polymers to bearing steel
+USUAL_AMPLITUDE = (3.0, 5000.0)
 DEFAULT_KNEE = 2e6  # cycles at which a line without run-outs states its strength
 
 
@@ -164,6 +167,7 @@ def fit_sn(  # noqa: PLR0913 - one argument for each choice of a fit
         "stress ratio": "not given" if stress_ratio is None else f"{ratio:g}",
     }
     notes = [*_read_as(tests, failed), *_notes(load_type, ratio, bool(has_limit), observed)]
+    notes += _unusual_amplitude(observed, factor)
     if knee is None:
         line, sentences = _decided(line)
         notes += sentences
@@ -536,6 +540,17 @@ def _stated_at(line: Line) -> float:
     """
     longest = float(np.exp(line.tests.low[np.isfinite(line.tests.low)].max()))
     return max(DEFAULT_KNEE, 10.0 ** math.ceil(math.log10(longest)))
+
+
+def _unusual_amplitude(observed: Tests, factor: float) -> list[str]:
+    """Return a sentence if the largest amplitude is far from that of any coupon, as in another
+    unit; `factor` is the von Mises stress over the amplitude [1].
+    """
+    largest = float(np.exp(observed.stress.max())) / factor
+    text = sentence_of_unusual("amplitude", largest, "MPa", USUAL_AMPLITUDE, "")
+    if text:
+        return [text]
+    return []
 
 
 def _notes(load_type: str | None, ratio: float, knee: bool, observed: Tests) -> list[str]:

@@ -28,7 +28,8 @@ OF_COUPONS = NAMES_OF_TESTS | {
     "cycles": "cycle n nf n_f cycles_n cycles_to_failure cycles_to_fracture number_of_cycles "
     "load_cycles life_cycles "
     "cycle_count fatigue_life lastspiele lastspielzahl schwingspiele schwingspielzahl",
-    "failed": "failure fail fracture fractured broken broke is_failure is_failed bruch gebrochen",
+    "failed": "failure fail fracture fractured broken broke event is_failure is_failed bruch "
+    "gebrochen",
     "censored": "censor is_censored right_censored runout run_out runouts run_outs is_runout "
     "is_run_out suspended "
     "suspension survived survivor unbroken durchläufer durchlaeufer",
