@@ -25,6 +25,8 @@ from trackroller.report.pages.study import write_report
 from trackroller.report.printed import print_answer
 from trackroller.report.workbook import write_results, write_roller
 
+# a warning of NumPy would stand between the lines of the terminal
+pytestmark = pytest.mark.filterwarnings("error::RuntimeWarning")
 QUICK = {"contact_model": "sliding", "accuracy": "preview"}
 OUTPUTS = ["forces", "contact", "friction_work", "peak_stress", "life", "limits"]
 BASE = {"motor_force": 0, "friction_coefficient": 0.1, "guide_overrollings_per_hour": 60}

@@ -442,7 +442,8 @@ def _control(half: np.ndarray, square: np.ndarray, product: np.ndarray) -> np.nd
     """
     mean = half.mean(axis=0)
     spread = square.mean(axis=0) - half.mean(axis=0) ** 2
-    rho = (product.mean(axis=0) - mean**2) / spread
+    with np.errstate(invalid="ignore", divide="ignore"):  # a column that never varies has no weight
+        rho = (product.mean(axis=0) - mean**2) / spread
     influence = (product - rho * square - 2 * (1 - rho) * mean * half) / spread
     influence -= influence.mean(axis=0)
     control = influence[:, :1]

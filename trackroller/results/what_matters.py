@@ -284,7 +284,7 @@ def _columns(
                 "variance or more"
             )
             columns.append(Column("interacts", "Interacts with", "", meaning, "text"))
-    positive = bool(np.nanmin(table["at_low"], initial=np.inf) > 0)
+    positive = not bool((table["at_low"] <= 0).any())
     meaning = (
         "largest over smallest value of the curve"
         if positive
