@@ -142,7 +142,9 @@ def _print(text: str, path: Path) -> None:
         page, made = Path(place, "page.html"), Path(place, "page.pdf")
         page.write_text(text, encoding="utf-8")
         # root has no sandbox
-        alone = ["--no-sandbox"] if getattr(os, "geteuid", lambda: 1)() == 0 else []
+        alone = []
+        if getattr(os, "geteuid", lambda: 1)() == 0:
+            alone = ["--no-sandbox"]
         own = [f"--user-data-dir={place}/profile", f"--print-to-pdf={made}", page.as_uri()]
         try:
             subprocess.run(

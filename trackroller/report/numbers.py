@@ -70,7 +70,9 @@ def number(value: float, figures: int = 0) -> str:
     if math.isnan(value):
         return "–"
     if math.isinf(value):
-        return "∞" if value > 0 else "−∞"
+        if value > 0:
+            return "∞"
+        return "−∞"
     small = 1e-3 <= abs(value) < 1e4 or value == 0
     figures = figures or (4 if small else 3)
     value = float(f"{value:.{figures}g}") + 0.0  # -0 is 0
@@ -99,7 +101,11 @@ def near(value: float, span: float) -> str:
 
 def life(value: float) -> str:
     """Write a life: three figures, 'unlimited', or 'unknown'."""
-    return "unknown" if math.isnan(value) else "unlimited" if value == math.inf else rounded(value)
+    if math.isnan(value):
+        return "unknown"
+    if value == math.inf:
+        return "unlimited"
+    return rounded(value)
 
 
 _duty: ContextVar[Mapping[str, float] | None] = ContextVar("duty", default=None)
@@ -159,7 +165,9 @@ def year_text(lasts: float) -> str:
     """
     if not lasts >= LEAST_YEARS:
         return "–"
-    return f"> {count(MOST_YEARS)}" if lasts > MOST_YEARS else rounded(lasts, 2)
+    if lasts > MOST_YEARS:
+        return f"> {count(MOST_YEARS)}"
+    return rounded(lasts, 2)
 
 
 def _year_words(*ends: str) -> str:
@@ -169,7 +177,9 @@ def _year_words(*ends: str) -> str:
 
 def life_unit(unit: str, value: float) -> str:
     """Return the unit behind a life, with its years if it is in hours; see `hour_unit`."""
-    return hour_unit(value) if unit == "h" else unit
+    if unit == "h":
+        return hour_unit(value)
+    return unit
 
 
 def lasting(value: float, unit: str = "", beyond: bool = False) -> str:
@@ -198,7 +208,10 @@ def years_of(low: float, high: float | None = None) -> str:
     """Return a life in hours, or a range of lives, in years: '4.2 years'; '' without a duty or
     below a year.
     """
-    unit = hour_unit(low) if high is None or high == low else range_unit(low, high)
+    if high is None or high == low:
+        unit = hour_unit(low)
+    else:
+        unit = range_unit(low, high)
     return unit.removeprefix("h").strip(" ()")
 
 
@@ -256,7 +269,9 @@ def share(part: int, whole: int) -> str:
     ('33 %', '99.98 %', '100 %')
     """
     if part in (0, whole):
-        return "100 %" if part else "0 %"
+        if part:
+            return "100 %"
+        return "0 %"
     exact, digits = 100 * part / whole, 0
     while not 0.5 * 10**-digits < exact < 100 - 10**-digits:
         digits += 1
@@ -298,25 +313,23 @@ def percent(value: float, low: float = math.nan, high: float = math.nan) -> str:
     if math.isfinite(half):
         if 100 * min(value - low, high - value) < LOPSIDED * half:
             return f"{percent(value)} ({percent(low).removesuffix(' %')} to {percent(high)})"
-        return (
-            f"{exact:.0f} ± {max(1.0, half):.0f} %"
-            if half >= 0.5 or exact >= 1
-            else f"{exact:.1f} ± {half:.1f} %"
-        )
-    return (
-        f"{exact:.0f} %"
-        if exact == 0 or 1 <= exact <= 99 or exact > 100
-        else f"{exact:.2g} %"
-        if exact < 1
-        else f"{exact:.4g} %"
-    )
+        if half >= 0.5 or exact >= 1:
+            return f"{exact:.0f} ± {max(1.0, half):.0f} %"
+        return f"{exact:.1f} ± {half:.1f} %"
+    if exact == 0 or 1 <= exact <= 99 or exact > 100:
+        return f"{exact:.0f} %"
+    if exact < 1:
+        return f"{exact:.2g} %"
+    return f"{exact:.4g} %"
 
 
 def percent_up(error: float) -> str:
     """Write an error in percent with two figures, rounded up, so that no error is larger: '1.5 %'
     for 0.01482.
     """
-    step = 10.0 ** (math.floor(math.log10(100 * error)) - 1) if error > 0 else 1.0
+    step = 1.0
+    if error > 0:
+        step = 10.0 ** (math.floor(math.log10(100 * error)) - 1)
     return f"{rounded(math.ceil(100 * error / step - 1e-9) * step, 2)} %"
 
 
@@ -335,7 +348,9 @@ def capital(text: str) -> str:
 
 def lowered(text: str) -> str:
     """Write the first letter small, unless the word is a symbol or a name such as POM."""
-    return text[:1].lower() + text[1:] if text[1:2].islower() else text
+    if text[1:2].islower():
+        return text[:1].lower() + text[1:]
+    return text
 
 
 def shortened(words: Sequence[str], most: int = 4) -> str:
@@ -359,15 +374,21 @@ def row_unit(units: str) -> str:
 def year_words() -> str:
     """Return the hours of a year on the duty: '4,000 h are 1 year'; '' without a duty."""
     duty = _duty.get()
-    return f"{grouped(1 / years(1.0, duty), 3)} h are 1 year" if duty else ""
+    if duty:
+        return f"{grouped(1 / years(1.0, duty), 3)} h are 1 year"
+    return ""
 
 
 def head_unit(units: str) -> str:
     """Return the unit at the head of a column or axis; behind hours the hours of a year, if the
     duty is known.
     """
-    duty = _duty.get() if units == "h" else None
-    return f"h; {rounded(1 / years(1.0, duty))} h = 1 year" if duty else unit_text(units)
+    duty = None
+    if units == "h":
+        duty = _duty.get()
+    if duty:
+        return f"h; {rounded(1 / years(1.0, duty))} h = 1 year"
+    return unit_text(units)
 
 
 def with_unit(text: str, units: str) -> str:
@@ -377,7 +398,10 @@ def with_unit(text: str, units: str) -> str:
 
 def quantity(value: float, units: str, figures: int = 3) -> str:
     """Write a number with its unit, for running text; pure numbers stand alone."""
-    unit = hour_unit(value) if units == "h" else unit_text(units)
+    if units == "h":
+        unit = hour_unit(value)
+    else:
+        unit = unit_text(units)
     return f"{rounded(value, figures)} {unit if unit != '–' else ''}".strip().replace(" °", "°")
 
 
@@ -406,7 +430,9 @@ def symbol(text: str) -> str:
         return ""
     letter, _, index = text.partition("_")
     letter = f"\\{letter}" if len(letter) > 1 else letter  # alpha, mu
-    return f"${letter}_\\mathrm{{{index}}}$" if index else f"${letter}$"
+    if index:
+        return f"${letter}_\\mathrm{{{index}}}$"
+    return f"${letter}$"
 
 
 def factor_label(name: str) -> str:
@@ -427,15 +453,15 @@ def level_text(name: str, value: Any, unit: bool = True, words: bool = True) -> 
     alone.
     """
     if isinstance(value, str):
-        return short(name, value) if name in MAPPING_FIELDS else _pair(value)
+        if name in MAPPING_FIELDS:
+            return short(name, value)
+        return _pair(value)
     value = float(value)
     words = words and unit
     if name == "motor_force" and words:
-        return (
-            "free rolling"
-            if value == 0
-            else f"{'driven' if value < 0 else 'braked'} {number(value)} N"
-        )
+        if value == 0:
+            return "free rolling"
+        return f"{'driven' if value < 0 else 'braked'} {number(value)} N"
     if name == "guide_curve_radius" and words:
         if math.isinf(value):
             return "straight"
@@ -450,29 +476,27 @@ def setting(name: str, value: Any) -> str:
     """Write a factor and its level, as 'friction coefficient 0.3' or 'driven −30 N'."""
     text = level_text(name, value)
     spoken = name in NAMED and not (name == "guide_curve_radius" and text == "straight")
-    return (
-        text
-        if spoken
-        else "straight track"
-        if name == "guide_curve_radius"
-        else f"{long_name(name)} {text}"
-    )
+    if spoken:
+        return text
+    if name == "guide_curve_radius":
+        return "straight track"
+    return f"{long_name(name)} {text}"
 
 
 def _pair(label: str) -> str:
     parts = label.split(" / ")
-    return (
-        f"{parts[0]} on itself" if len(parts) == 2 and parts[0] == parts[1] else " on ".join(parts)
-    )
+    if len(parts) == 2 and parts[0] == parts[1]:
+        return f"{parts[0]} on itself"
+    return " on ".join(parts)
 
 
 def _bounded(part: int, whole: int) -> str:
     """Write a probability as a share; nearer to 0 or 1 than `LEAST_CHANCE`, as a bound."""
     if 0 < whole - part < LEAST_CHANCE * whole:
         return f"over {100 * (1 - LEAST_CHANCE):g} %"
-    return (
-        f"below {100 * LEAST_CHANCE:g} %" if 0 < part < LEAST_CHANCE * whole else share(part, whole)
-    )
+    if 0 < part < LEAST_CHANCE * whole:
+        return f"below {100 * LEAST_CHANCE:g} %"
+    return share(part, whole)
 
 
 def chance(value: float, low: float = math.nan, high: float = math.nan, words: str = "") -> str:
@@ -485,7 +509,9 @@ def chance(value: float, low: float = math.nan, high: float = math.nan, words: s
     text, *ends = (
         _bounded(round(v * whole), whole) for v in (value, low, high) if math.isfinite(v)
     )
-    return f"{text} ({words}{' to '.join(ends)})" if ends else text
+    if ends:
+        return f"{text} ({words}{' to '.join(ends)})"
+    return text
 
 
 COARSE = 0.1  # error from which two figures are written
@@ -508,7 +534,9 @@ def carried(value: float, error: float = math.nan, beside: Sequence[float] = ())
     >>> carried(211634.0, 0.48), carried(211634.0, 0.02), carried(419.96, 0.002, [420.0])
     ('210,000', '212,000', '419.96')
     """
-    figures = 2 if error >= COARSE else 3
+    figures = 3
+    if error >= COARSE:
+        figures = 2
     others = [
         grouped(other, MOST_FIGURES) for other in beside if math.isfinite(other) and other != value
     ]

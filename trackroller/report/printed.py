@@ -27,7 +27,10 @@ def print_answer(answer: Answer) -> None:
 def print_below_headline(answer: Answer) -> None:
     """Print what `print_answer` prints below the headline."""
     with on_duty(answer.facts.get("duty")):
-        printed = MOST_ROWS if rows_before_fold(answer) < len(answer.table) else len(answer.table)
+        if rows_before_fold(answer) < len(answer.table):
+            printed = MOST_ROWS
+        else:
+            printed = len(answer.table)
         _print_rows(rows_of(answer), most=printed)
         left = len(answer.table) - printed
         if left > 0:

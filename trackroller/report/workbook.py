@@ -257,7 +257,9 @@ def write_roller(ds: xr.Dataset, path: Path) -> Path:
         [name, _plain(value), units.get(name, unit_of(name)), sources[name]]
         for name, value in own.items()
     ]
-    by_strokes = {"hours_per_day": "strokes"} if strokes else {}
+    by_strokes = {}
+    if strokes:
+        by_strokes = {"hours_per_day": "strokes"}
     units_of_strokes = {"stroke": "m"}
     for name, value in (duty | strokes).items():
         rows.append([name, value, units_of_strokes.get(name, "-"), by_strokes.get(name, "given")])
@@ -286,7 +288,9 @@ def write_roller(ds: xr.Dataset, path: Path) -> Path:
 
 def _plain(value: Any) -> Any:
     """Return an input as a cell: a number, a name, or a mapping as JSON."""
-    return value if isinstance(value, (int, float, str)) else json.dumps(value, default=str)
+    if isinstance(value, (int, float, str)):
+        return value
+    return json.dumps(value, default=str)
 
 
 def unit_of(name: str) -> str:
@@ -302,7 +306,9 @@ def unit_of(name: str) -> str:
         return parameter.unit
     if name not in PARTS and name.replace("years", "hours") in PARTS:
         return "year"
-    return unit_text(PARTS[name].variable.units).replace("–", "-") if name in PARTS else "-"
+    if name in PARTS:
+        return unit_text(PARTS[name].variable.units).replace("–", "-")
+    return "-"
 
 
 def in_words(name: str, values: Sequence[Any]) -> list[Any]:
@@ -360,7 +366,9 @@ def _save(path: Path, tables: Sequence[Table], heads: int = 1) -> None:
     with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as file:
         file.comment = b"trackroller"  # which other programs drop as they save the workbook
         for name, (part, rows) in parts.items():
-            widths = [min(max(len(str(value)) + 3, 9), 40) for value in rows[0]] if rows else []
+            widths = []
+            if rows:
+                widths = [min(max(len(str(value)) + 3, 9), 40) for value in rows[0]]
             span = f"A{heads}:{_letters(len(widths))}{max(len(rows), heads)}"
             content = {
                 "part": part,
@@ -376,17 +384,18 @@ def _save(path: Path, tables: Sequence[Table], heads: int = 1) -> None:
 
 def _letters(column: int) -> str:
     """Return the letters of a column of a sheet, from 1."""
-    above, own = divmod(column - 1, 26) if column else (0, 0)
+    if column:
+        above, own = divmod(column - 1, 26)
+    else:
+        above, own = (0, 0)
     return (_letters(above) if above else "") + chr(ord("A") + own)
 
 
 def _figure(value: Any) -> str | None:
     """Return a finite number with all its figures, None for anything else."""
-    return (
-        repr(float(value))
-        if isinstance(value, (int, float, np.number)) and np.isfinite(value)
-        else None
-    )
+    if isinstance(value, (int, float, np.number)) and np.isfinite(value):
+        return repr(float(value))
+    return None
 
 
 def _printable(value: Any) -> str:

@@ -91,7 +91,9 @@ def by_tests_of(results: SolvedCases) -> ByTests | None:
     """
     other = not_held(results)
     fits = {name: fit for name, fit in materials_fitted(results).items() if name not in other}
-    return ByTests(results, fits) if fits else None
+    if fits:
+        return ByTests(results, fits)
+    return None
 
 
 def beyond_sn_data(results: SolvedCases, column: str) -> np.ndarray:
@@ -181,7 +183,8 @@ class ByTests:
         out = {}
         for i, (name, fit) in enumerate(self.fits.items()):
             rows = _spread_evenly(fit.posterior)
-            rows = rows if i == 0 else np.random.default_rng(i).permutation(rows)
+            if i != 0:
+                rows = np.random.default_rng(i).permutation(rows)
             out[name] = Values(
                 *(
                     np.broadcast_to(v, fit.posterior.weight.shape)[rows]
@@ -201,7 +204,10 @@ class ByTests:
         for body in BODIES:
             names = (f"fatigue_stress_{body}", f"peak_stress_{body}")
             known = next((name for name in names if self.results.has(name)), "")
-            out[body] = self.results.column(known) if known else self._by_line(body)
+            if known:
+                out[body] = self.results.column(known)
+            else:
+                out[body] = self._by_line(body)
         return out
 
     def _by_line(self, body: str) -> np.ndarray:
@@ -273,7 +279,10 @@ class ByTests:
             0 and NaN where the material was not fitted.
         """
         names, stress = self.named[body][rows], self.stress[body][rows]
-        size = len(range(*draws.indices(DRAWS))) if isinstance(draws, slice) else len(draws)
+        if isinstance(draws, slice):
+            size = len(range(*draws.indices(DRAWS)))
+        else:
+            size = len(draws)
         shift, deviation = np.zeros((len(rows), size)), np.full((len(rows), size), np.nan)
         deviate = float(ndtri(probability))
         for name, fit in self.fits.items():
@@ -337,7 +346,10 @@ class ByTests:
                 for s in (0, 1)
             )
         elif of_first_limit(name):
-            kept = [BODIES.index(body)] if body else list(range(len(BODIES)))
+            if body:
+                kept = [BODIES.index(body)]
+            else:
+                kept = list(range(len(BODIES)))
             before = self._reached[end][:, :, kept].min(axis=(1, 2))
             after = self.reached(shift, end)[:, :, kept].min(axis=(1, 2))
         else:
@@ -347,8 +359,9 @@ class ByTests:
 
     def at(self, draw: int, rows: np.ndarray | None = None, probability: float = 0.5) -> Shift:
         """Return the shifts of ln life of one draw by body."""
-        every = np.arange(len(self.results.table)) if rows is None else rows
-        return lambda body: self.moved(body, every, [draw], probability)[0][:, 0]
+        if rows is None:
+            rows = np.arange(len(self.results.table))
+        return lambda body: self.moved(body, rows, [draw], probability)[0][:, 0]
 
     def words(self, names: Iterable[str]) -> str:
         """Return the words for the tests of some materials: 'the 6 tests of rig steel'."""
@@ -369,11 +382,9 @@ def _spread_evenly(posterior: Posterior) -> np.ndarray:
         for part in parts:
             order = part[np.argsort(own[part], kind="stable")]
             share = np.cumsum(weight[order])
-            cuts = (
-                np.searchsorted(share, np.arange(1, PARTS) / PARTS * share[-1])
-                if len(order)
-                else []
-            )
+            cuts = []
+            if len(order):
+                cuts = np.searchsorted(share, np.arange(1, PARTS) / PARTS * share[-1])
             halves += np.split(order, cuts)
         parts = halves
     order = np.concatenate(parts)
@@ -385,9 +396,9 @@ def probability_of(results: SolvedCases, name: str) -> float:
     """Return the failure probability that a life of a study belongs to [1]: lives to a limit have
     that of the study.
     """
-    return (
-        float(results.data.attrs.get("failure_probability", 0.5)) if of_first_limit(name) else 0.5
-    )
+    if of_first_limit(name):
+        return float(results.data.attrs.get("failure_probability", 0.5))
+    return 0.5
 
 
 def _drawn_lives(
@@ -461,13 +472,11 @@ def bands(results: SolvedCases, deviations: Mapping[str, np.ndarray]) -> xr.Data
 def _columns(results: SolvedCases, names: list[str]) -> list[Output]:
     """Return these outputs as they are, without a limit of their number."""
     factors = results.design.factors
-    return (
-        outputs(
+    if names:
+        return outputs(
             results.data, factors, names, scale="natural", unlimited=True, allowed=results.allowed
         )
-        if names
-        else []
-    )
+    return []
 
 
 def _b10_bands(
@@ -494,7 +503,10 @@ def _b10_bands(
         given = deviations.get(scattering_body(column.name))
         known = results.with_breaks(column)
         moved, scatter = _drawn_lives(own, dataclasses.replace(column, values=known), given)
-        best = np.zeros(design.size) if given is None else given
+        if given is None:
+            best = np.zeros(design.size)
+        else:
+            best = given
         for p, rows in enumerate(points):
             kept = np.arange(design.size)[rows]
             kept = kept[~np.isnan(known[kept])]
@@ -507,8 +519,10 @@ def _b10_bands(
         "b10_tests_low": "its low end, 90 % by the tests",
         "b10_tests_high": "its high end, 90 % by the tests",
     }
-    axes = ("life", "point") if design.method.points else ("life",)
-    values = values if design.method.points else values[:, :, 0]
+    axes: tuple[str, ...] = ("life", "point")
+    if not design.method.points:
+        axes = ("life",)
+        values = values[:, :, 0]
     return xr.Dataset(
         {
             n: (axes, v, {"long_name": names[n]} | dict(words))

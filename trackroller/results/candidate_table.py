@@ -75,6 +75,18 @@ def _goods_columns(own: Comparison, table: pd.DataFrame) -> list[Column]:
     return columns
 
 
+def _choice_column(name: str) -> Column:
+    """Return the column of a choice."""
+    words = long_name_of(name)
+    known = parameter_of(name)
+    if known is None:
+        return Column(name, words, "", words, "level", role="name")
+    unit = known.units
+    if unit == "1":
+        unit = ""
+    return Column(name, words, unit, known.meaning, "level", role="name")
+
+
 def candidate_columns(own: Comparison, table: pd.DataFrame) -> tuple[Column, ...]:
     """Return the columns of the table of candidates that a reader is shown, as far as the study has
     them.
@@ -83,26 +95,17 @@ def candidate_columns(own: Comparison, table: pd.DataFrame) -> tuple[Column, ...
     chance = 0.5
     if of_first_limit(name):
         chance = float(own.results.data.attrs.get("failure_probability", 0.5))
-    life = f"{words}, at {100 * chance:g} % failure probability" if is_life(name) else words
+    life = words
+    if is_life(name):
+        life = f"{words}, at {100 * chance:g} % failure probability"
     columns = []
     if own.required:
         meaning = (
-            "met: the low end over (1 + error) reaches the requirement. Missed: the high end "
-            "times (1 + error) does "
-            "not. Otherwise open; none: no condition is held"
+            "met: the low end over (1 + error) reaches the requirement. Missed: the high end times "
+            "(1 + error) does not. Otherwise open; none: no condition is held"
         )
         columns.append(Column("state", "Verdict", meaning=meaning, kind="state"))
-    for choice in own.choices:
-        known = parameter_of(choice)
-        unit = (
-            ""
-            if known is None
-            else known.units.replace("1", "")
-            if known.units == "1"
-            else known.units
-        )
-        meaning = long_name_of(choice) if known is None else known.meaning
-        columns.append(Column(choice, long_name_of(choice), unit, meaning, "level", role="name"))
+    columns += [_choice_column(choice) for choice in own.choices]
     columns += _goods_columns(own, table)
     columns += [
         Column(
@@ -223,11 +226,9 @@ def _drawn_columns(own: Comparison, units: str) -> list[Column]:
     """
     if not own.drawn:
         return []
-    share = (
-        "share of the drawn conditions that meet the requirement"
-        if own.required
-        else "share that is held"
-    )
+    share = "share that is held"
+    if own.required:
+        share = "share of the drawn conditions that meet the requirement"
     return [
         Column("share", "Share", "1", share, "share"),
         Column(
@@ -307,16 +308,25 @@ def _ends(own: Comparison) -> dict[str, Any]:
     candidate.
     """
     ranges = own.ranges
-    rows = own.own if own.drawn else own.reachable
+    if own.drawn:
+        rows = own.own
+    else:
+        rows = own.reachable
     worse, case = own.smallest(ranges.worse, rows)
     better, case_better = _at_best_place(own, rows)
-    low, high = (worse, better) if ranges.rises else (better, worse)
+    if ranges.rises:
+        low, high = (worse, better)
+    else:
+        low, high = (better, worse)
     best = -own.ranges.sign * _least(own, -own.ranges.sign * ranges.better, rows & ranges.held)
     with np.errstate(invalid="ignore", over="ignore"):
         middle = np.where((low > 0) & (high > 0), np.sqrt(low) * np.sqrt(high), 0.5 * (low + high))
     names = [name for name in own.conditions if own.results.table[name].nunique() > 1]
     worst = [_condition_text(own, names, row) for row in case]
-    at_worse = ("_low", "_high") if ranges.rises else ("_high", "_low")
+    if ranges.rises:
+        at_worse = ("_low", "_high")
+    else:
+        at_worse = ("_high", "_low")
     ends, body = _end_words(own, case, at_worse[0])
     ends_high, body_high = _end_words(own, case_better, at_worse[1])
     return {
@@ -375,12 +385,19 @@ def _end_words(own: Comparison, case: np.ndarray, end: str) -> tuple[list[str], 
     known.
     """
     names, guide = own.ranges.first_at(end)
-    value = own.ranges.low if end == "_low" else own.ranges.high
+    if end == "_low":
+        value = own.ranges.low
+    else:
+        value = own.ranges.high
     words, bodies = [], []
     for row in case:
-        word = "" if row < 0 else str(own.ranges.reason[row])
+        if row < 0:
+            word = ""
+        else:
+            word = str(own.ranges.reason[row])
         ended = row >= 0 and not word and np.isfinite(value[row])
-        word = str(names[row]) if ended else word
+        if ended:
+            word = str(names[row])
         words.append(limit_word(word.removeprefix("limit ")))
         bodies.append(BODIES[int(guide[row])] if ended and word else "")
     return words, bodies
@@ -418,7 +435,10 @@ def states_of(own: Comparison, table: pd.DataFrame, exact: bool = False) -> list
     if not own.required or (own.drawn and not np.isfinite(own.wanted_share)):
         return ["none" if gone else "" for gone in never]
     if own.drawn:
-        ends = ("share", "share") if exact else ("share_short", "share_long")
+        if exact:
+            ends = ("share", "share")
+        else:
+            ends = ("share_short", "share_long")
         surely, perhaps = (table[name].to_numpy() >= own.wanted_share for name in ends)
     else:
         sure, may = own.met(exact)
@@ -468,7 +488,10 @@ def _shares(own: Comparison) -> dict[str, Any]:
 
 def _fails(own: Comparison, table: pd.DataFrame) -> list[str]:
     """Return where each candidate misses its requirement, or is not held without one."""
-    good = own.met()[0] if own.required else own.ranges.held
+    if own.required:
+        good = own.met()[0]
+    else:
+        good = own.ranges.held
     names = [name for name in own.conditions if own.results.table[name].nunique() > 1]
     missed = (
         table["of"].to_numpy() - (table["meets"] if own.required else table["holds"]).to_numpy()
@@ -551,7 +574,10 @@ def _ends_by(own: Comparison, limits: list[str], name: str) -> np.ndarray | None
     that knows no life.
     """
     hours = [own.hours_by_limit(end) for end in ("", "_low", "_high")]
-    place = limits.index(name) if name in limits else -1
+    if name in limits:
+        place = limits.index(name)
+    else:
+        place = -1
     if hours[0] is None or place < 0:
         return None
     middle = hours[0][:, place]
@@ -560,7 +586,10 @@ def _ends_by(own: Comparison, limits: list[str], name: str) -> np.ndarray | None
     lacks = lacks_a_body(hours[0], limits, name)
     found = []
     for end in hours[1:]:
-        values = middle if end is None else np.where(np.isnan(end[:, place]), middle, end[:, place])
+        if end is None:
+            values = middle
+        else:
+            values = np.where(np.isnan(end[:, place]), middle, end[:, place])
         found.append(np.where(lacks, np.nan, np.fmin.reduce(values, axis=1)))
     return np.stack(found)
 

@@ -45,11 +45,9 @@ def slip_margin(results: SolvedCases) -> np.ndarray:
     -----
     At full slip no lateral friction is left, and both contacts carry |F_rad|/cos alpha together.
     """
-    friction = (
-        "friction_coefficient_value"
-        if "friction_coefficient_value" in results.table
-        else "friction_coefficient"
-    )
+    friction = "friction_coefficient"
+    if "friction_coefficient_value" in results.table:
+        friction = "friction_coefficient_value"
     motor, mu, radial, angle = (
         _input(results, n) for n in ("motor_force", friction, "radial_force", "contact_angle")
     )
@@ -101,7 +99,9 @@ def _shared(place: np.ndarray, use: np.ndarray) -> np.ndarray:
     shared = tried.index[tried == place.max() + 1].to_numpy()
     kept = np.isin(use, shared) & (place >= 0)
     each_once = not pairs[kept[rows]].duplicated().any()
-    return kept if len(shared) >= SHARED and each_once else np.zeros(len(use), dtype=bool)
+    if len(shared) >= SHARED and each_once:
+        return kept
+    return np.zeros(len(use), dtype=bool)
 
 
 def goal_without_lives(results: SolvedCases) -> tuple[str, str, str] | None:
@@ -110,7 +110,9 @@ def goal_without_lives(results: SolvedCases) -> tuple[str, str, str] | None:
     """
     if STRESS[0] in results.table:
         return STRESS
-    return UNRANKED if results.config.requirement else None
+    if results.config.requirement:
+        return UNRANKED
+    return None
 
 
 @made_once
@@ -185,12 +187,13 @@ class Candidates:
         if conditions and (left_out := mixed(results)).any():
             place = np.where(left_out, -1, place)
             place[place >= 0] = np.unique(place[place >= 0], return_inverse=True)[1]
-        shared = (
-            _shared(place, use)
-            if results.config.method.observed
-            else np.zeros(len(use), dtype=bool)
-        )
-        untried = own & ~shared if shared.any() else shared
+        if results.config.method.observed:
+            shared = _shared(place, use)
+        else:
+            shared = np.zeros(len(use), dtype=bool)
+        untried = shared
+        if shared.any():
+            untried = own & ~shared
         design, place = place, np.where(untried, -1, place)
         kept = place >= 0
         several, many = place.max() + 1, len(np.unique(use[kept]))
@@ -274,11 +277,9 @@ class Candidates:
         """Return the number of conditions in which at least one design is valid; 0 if designs share
         no conditions.
         """
-        return (
-            len(np.unique(codes(self.results.table, self.conditions)[self.usable]))
-            if self.matched
-            else 0
-        )
+        if self.matched:
+            return len(np.unique(codes(self.results.table, self.conditions)[self.usable]))
+        return 0
 
     @cached_property
     def members(self) -> pd.DataFrame:
@@ -328,7 +329,10 @@ class Candidates:
                 margin, self.reached & (results.rolling | (results.regime == REGIMES.index(lost)))
             )
             table[name] = np.where(case < 0, np.nan, margin[case])
-        sign = 1.0 if self.rising else -1.0
+        if self.rising:
+            sign = 1.0
+        else:
+            sign = -1.0
         key = sign * table["worst"]
         if self.goal == FIRST_LIMIT:
             case = self._least(results.sure_life, self.usable)
@@ -403,7 +407,9 @@ class Candidates:
         """
         results = self.results
         lives = np.where(self.usable, results.column(self.goal[0]), 0.0)
-        own = material_deviations(results) if self.goal != FIRST_LIMIT else {}
+        own = {}
+        if self.goal != FIRST_LIMIT:
+            own = material_deviations(results)
         guide = results.first_failing(self.goal[0]) == FIRST_TO_FAIL.index("guide")
         scatter = np.where(guide, own.get("guide", 0.0), own.get("roller", 0.0))
         cases = [self.cases_of(i) for i in range(len(self.size))]

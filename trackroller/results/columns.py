@@ -132,9 +132,9 @@ def factor_names(
     varying = [
         name for name in design.factors if name in table and table[name].nunique(dropna=False) > 1
     ]
-    return (
-        [n for n in varying if n not in MATERIAL_FIELDS] if "material_pair" in varying else varying
-    )
+    if "material_pair" in varying:
+        return [n for n in varying if n not in MATERIAL_FIELDS]
+    return varying
 
 
 def base_values(ds: xr.Dataset, base: Mapping[str, Any]) -> dict[str, Any]:

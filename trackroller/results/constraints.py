@@ -65,7 +65,10 @@ def quantity_of(
         output = outputs(ds, dims, [name], REGIMES[:3], scale="natural", unlimited=True)[0]
     except InputError as error:
         close = nearest(name, REGIMES)
-        remedy = f"Did you mean '{close}'?" if close else error.remedy
+        if close:
+            remedy = f"Did you mean '{close}'?"
+        else:
+            remedy = error.remedy
         raise InputError(
             "pareto or constraints", name, error.allowed, remedy, error.wrong
         ) from None

@@ -59,7 +59,9 @@ def pairs(results: SolvedCases) -> xr.Dataset | None:
     data: dict[str, Any] = {}
     for name in (n for n in RESULTS if n in ds):
         values = flat(ds, name, tuple(dims)).astype(float)[rows]
-        values[rows < 0] = -1.0 if name == "regime" else np.nan
+        values[rows < 0] = np.nan
+        if name == "regime":
+            values[rows < 0] = -1.0
         data[name] = ((MODEL, "design", *(d for d in ds[name].dims if d not in dims)), values)
     if results.life is not None:
         data["life"] = (
@@ -69,9 +71,10 @@ def pairs(results: SolvedCases) -> xr.Dataset | None:
     inputs = table.drop(columns=MODEL).iloc[rows[-1]]
     # a word has its number beside
     given = inputs.get("friction_coefficient_value", inputs.get("friction_coefficient"))
-    inputs["friction_coefficient"] = (
-        results.base["friction_coefficient"] if given is None else pd.to_numeric(given)
-    )
+    if given is None:
+        inputs["friction_coefficient"] = results.base["friction_coefficient"]
+    else:
+        inputs["friction_coefficient"] = pd.to_numeric(given)
     coords = {str(name): ("design", inputs[name].to_numpy()) for name in inputs}
     coords |= {name: (name, ds[name].values) for name in ("contact", "body") if name in ds}
     attrs = {"reference": models[-1], "left": int(len(table) - (rows >= 0).sum())}

@@ -84,9 +84,13 @@ class Decider:
         It is the tenth part of drawn conditions, otherwise the geometric middle of the range at the
         worst condition.
         """
-        name = "tenth" if self.own.drawn and is_life(self.own.ranges.output[0]) else "middle"
+        name = "middle"
+        if self.own.drawn and is_life(self.own.ranges.output[0]):
+            name = "tenth"
         values = self.table[name].to_numpy(dtype=float)
-        worst = -np.inf if not self.own.ranges.rises else 0.0
+        worst = 0.0
+        if not self.own.ranges.rises:
+            worst = -np.inf
         return np.where(np.isnan(values), worst, self.own.ranges.sign * values)
 
     @cached_property
@@ -104,7 +108,10 @@ class Decider:
         values = self.own.results.quantity(name)[0]
         if values.dtype.kind not in "fiu":
             return np.zeros(self.own.count)
-        sign = 1.0 if way == "max" else -1.0
+        if way == "max":
+            sign = 1.0
+        else:
+            sign = -1.0
         out = np.full(self.own.count, np.inf)
         rows = self.own.reachable & ~np.isnan(values.astype(float))
         np.minimum.at(out, self.own.place[rows], sign * values[rows].astype(float))
@@ -140,7 +147,9 @@ class Decider:
         """Return which candidate to build, or why that cannot be said."""
         if self.own.drawn and self.own.required and not np.isfinite(self.own.wanted_share):
             return self._by_share()
-        return self._by_requirement() if self.own.required else self._by_rank()
+        if self.own.required:
+            return self._by_requirement()
+        return self._by_rank()
 
     def _by_share(self) -> Decision:
         """Return the candidate with the largest share; the shares are not judged."""

@@ -73,12 +73,17 @@ class Effects:
         """Return the output on the scale on which effects add up, shape (n,): its logarithm if
         effects are ratios.
         """
-        with np.errstate(divide="ignore", invalid="ignore"):
-            return np.log(self.ranges.value) if self.by_ratio else self.ranges.value
+        values: np.ndarray = self.ranges.value
+        if self.by_ratio:
+            with np.errstate(divide="ignore", invalid="ignore"):
+                values = np.log(values)
+        return values
 
     def back(self, values: np.ndarray) -> np.ndarray:
         """Return values of `y` as values of the output."""
-        return np.exp(values) if self.by_ratio else values
+        if self.by_ratio:
+            values = np.exp(values)
+        return values
 
     def curves(self) -> tuple[Curve, ...]:
         """Return the curve of each factor with two levels that count, the highest one first."""
@@ -177,7 +182,10 @@ class Effects:
     ) -> Curve:
         known = parameter_of(name)
         numbers = self.results.numeric(name)
-        own = np.array(levels, dtype=float) if numbers else np.zeros(0)
+        if numbers:
+            own = np.array(levels, dtype=float)
+        else:
+            own = np.zeros(0)
         height = float(
             np.exp(middle.max() - middle.min()) if self.by_ratio else middle.max() - middle.min()
         )
@@ -203,7 +211,10 @@ class Effects:
     def _shape(self, name: str, middle: np.ndarray, pairs: np.ndarray | None) -> str:
         """Return the shape of a curve in one word."""
         span = float(middle.max() - middle.min())
-        least = np.log(FLAT) if self.by_ratio else 0.01 * max(float(np.abs(middle).max()), 1e-300)
+        if self.by_ratio:
+            least = np.log(FLAT)
+        else:
+            least = 0.01 * max(float(np.abs(middle).max()), 1e-300)
         if pairs is not None and _two_groups(
             pairs, np.log(SPLIT) if self.by_ratio else 0.25 * max(span, 1e-300)
         ):
@@ -225,7 +236,9 @@ class Effects:
         steps = np.abs(np.diff(middle))
         if len(steps) >= 3 and steps.max() > CLIFF * steps.sum():
             return "cliff"
-        return "rise" if middle[-1] > middle[0] else "fall"
+        if middle[-1] > middle[0]:
+            return "rise"
+        return "fall"
 
     @cached_property
     def fit(self) -> _Fitted | None:
@@ -251,7 +264,9 @@ class Effects:
             for name, own in zip(names, columns, strict=True)
             if len(np.unique(own)) > MOST_LEVELS
         ]
-        most = (codes(table, drawn).max() + 1) / ROWS_PER_TERM / len(drawn) if drawn else np.inf
+        most = np.inf
+        if drawn:
+            most = (codes(table, drawn).max() + 1) / ROWS_PER_TERM / len(drawn)
         degrees = tuple(one for one in DEGREES if one[0] <= most) or DEGREES[-1:]
         found = best_fit(y, np.stack(columns, axis=1), ordered, degrees, ranked=False)
         if found is None or found.share < TOLD:
@@ -295,11 +310,15 @@ def _scaled(values: pd.Series) -> np.ndarray:
     logs = np.sign(own) * np.log(sizes / sizes.max())
     places = stats.rankdata(own)  # a sample that is even in its logarithm was drawn so
     even = np.corrcoef(places, logs)[0, 1] > np.corrcoef(places, own)[0, 1]
-    return logs if even or sizes.max() < SPANNED[1] * sizes.min() else own
+    if even or sizes.max() < SPANNED[1] * sizes.min():
+        own = logs
+    return own
 
 
 def _size(height: float, by_ratio: bool) -> float:
-    return abs(np.log(height)) if by_ratio and height > 0 else abs(height)
+    if by_ratio and height > 0:
+        height = np.log(height)
+    return abs(height)
 
 
 def _two_groups(pairs: np.ndarray, apart: float) -> bool:

@@ -92,7 +92,8 @@ def first_at(
     A limit has the name '' where none is reached. `reached` holds other hours than those of
     `reached_by_body`.
     """
-    reached = reached_by_body(results, end) if reached is None else reached
+    if reached is None:
+        reached = reached_by_body(results, end)
     flattened = reached.reshape(len(reached), -1)
     place = flattened.argmin(axis=1)
     names = np.array(results.data["limit"].values.tolist(), dtype=object)[place // reached.shape[2]]

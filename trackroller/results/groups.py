@@ -22,7 +22,9 @@ DRIVE = "motor_force"
 def levels(values: pd.Series) -> list[Any]:
     """List the values of a factor: numbers in rising order, categories in order of appearance."""
     known = values.dropna().unique()
-    return sorted(known.tolist()) if numeric(values) else list(known)
+    if numeric(values):
+        return sorted(known.tolist())
+    return list(known)
 
 
 def numeric(values: pd.Series) -> bool:
@@ -104,7 +106,8 @@ def groups(
     table: pd.DataFrame, name: str, rows: np.ndarray | None = None, most: int = BINS
 ) -> Groups:
     """Sort the chosen cases (all if `rows` is not given) into groups along a factor."""
-    rows = np.ones(len(table), dtype=bool) if rows is None else rows
+    if rows is None:
+        rows = np.ones(len(table), dtype=bool)
     index, ends = classes(table, name, rows, most)
     low, high = zip(*(end if isinstance(end, tuple) else (end, end) for end in ends), strict=True)
     at, own = np.arange(len(ends), dtype=float), table[name].to_numpy()[rows]

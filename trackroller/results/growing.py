@@ -100,7 +100,9 @@ class Growing:
         requirement of `until`.
         """
         decided = self.looks[-1].get("decided", {})
-        points = len(self.study.drawn.points) if self.study.config.method.points else 0
+        points = 0
+        if self.study.config.method.points:
+            points = len(self.study.drawn.points)
         return bool(points) and all(decided.get(name, 0) == points for name in self.until.of)
 
     def record(self, why: str) -> dict[str, str]:
@@ -111,7 +113,9 @@ class Growing:
 
 def _text(seen: dict[str, Any], name: str) -> str:
     width = seen["half_width"][name]
-    return "unknown" if width is None else f"{width:.2g} ({seen['at'][name]})"
+    if width is None:
+        return "unknown"
+    return f"{width:.2g} ({seen['at'][name]})"
 
 
 def grow_study(study: Study, results: Path | str = "results", **how: Any) -> Ledger:

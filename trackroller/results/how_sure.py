@@ -49,7 +49,9 @@ def answer_how_sure(results: SolvedCases) -> Answer:
     }
     if not own.drawn:
         told |= {"meets": int(one["meets"]), "of": int(one["of"])}
-    kind = "share" if own.drawn else "count"
+    kind = "count"
+    if own.drawn:
+        kind = "share"
     if not own.ranges.judged[own.own].any():
         kind = "cannot_tell"
         told |= {"why": own.why_unjudged}
@@ -77,7 +79,10 @@ def _order(own: Comparison, table: Any) -> list[int]:
     largest first.
     """
     decider = Decider(own, table)
-    share = table["share"] if own.drawn else table["meets"] / table["of"]
+    if own.drawn:
+        share = table["share"]
+    else:
+        share = table["meets"] / table["of"]
     return [int(n) for n in np.lexsort((-decider.score, -share.to_numpy(dtype=float)))]
 
 

@@ -173,7 +173,10 @@ def _required_values(results: SolvedCases) -> np.ndarray:
     columns = [np.zeros((shape[0], 0))]
     for _, own in judges_of(results):
         worse = own.worse.reshape(shape)
-        worst = worse.min(axis=1) if own.rises else worse.max(axis=1)
+        if own.rises:
+            worst = worse.min(axis=1)
+        else:
+            worst = worse.max(axis=1)
         columns.append(worst[:, None])
     return np.concatenate(columns, axis=1)
 
@@ -225,14 +228,18 @@ def judges_of(results: SolvedCases) -> list[tuple[Required, CaseRanges]]:
     """
     own = Comparison.of(results)
     wanted = _to_meet(results)
-    return [] if own is None else [pair for pair in own.judges if pair[0].output in wanted]
+    if own is None:
+        return []
+    return [pair for pair in own.judges if pair[0].output in wanted]
 
 
 def life_of_search(results: SolvedCases) -> CaseRanges | None:
     """Return the life that orders designs with the same goals, with its range; None in a study
     without lives.
     """
-    return None if results.life is None else CaseRanges(results, results.life, True)
+    if results.life is None:
+        return None
+    return CaseRanges(results, results.life, True)
 
 
 @dataclass(frozen=True)
@@ -272,7 +279,10 @@ def shares_of(results: SolvedCases, exact: bool = False) -> list[Shares]:
     found = []
     for one, own in judges_of(results):
         sure, may = (hits.reshape(shape).mean(axis=1) for hits in own.meets(one, exact))
-        wanted = enough if np.isnan(one.probability) else one.probability
+        if np.isnan(one.probability):
+            wanted = enough
+        else:
+            wanted = one.probability
         found.append(Shares(one, sure, may, wanted))
     return found
 
@@ -334,7 +344,10 @@ def _over_conditions(raw: np.ndarray, good: np.ndarray, kind: str, way: str) -> 
     if kind == "mean":
         out[some] = np.mean(raw[some], axis=1, where=good[some])
     else:
-        worst, end = (np.min, np.inf) if way == "max" else (np.max, -np.inf)
+        if way == "max":
+            worst, end = (np.min, np.inf)
+        else:
+            worst, end = (np.max, -np.inf)
         out[some] = worst(np.where(good, raw, end)[some], axis=1)
     return out
 
@@ -410,7 +423,10 @@ def spread(costs: np.ndarray, count: int) -> np.ndarray:
 def optimum_of(results: SolvedCases) -> dict[str, Any] | None:
     """Return what a search found, from the attribute of its results; None for another study."""
     text = results.data.attrs.get(OPTIMUM)
-    return json.loads(text) if isinstance(text, str) else None
+    if not isinstance(text, str):
+        return None
+    optimum: dict[str, Any] = json.loads(text)
+    return optimum
 
 
 def choices_of(results: SolvedCases, number: int) -> dict[str, Any]:

@@ -28,7 +28,10 @@ def looks_of(results: SolvedCases) -> dict[str, Any] | None:
     study.
     """
     text = results.data.attrs.get(UNTIL)
-    return json.loads(text) if isinstance(text, str) else None
+    if not isinstance(text, str):
+        return None
+    looks: dict[str, Any] = json.loads(text)
+    return looks
 
 
 def look(results: SolvedCases) -> dict[str, Any]:
@@ -74,7 +77,9 @@ def look(results: SolvedCases) -> dict[str, Any]:
             seen["decided"][name] = int(decided.sum())
             widths = np.where(decided, 0.0, widths)
         widest, unsure = int(widths.argmax()), unsure | (widths > until.half_width)
-        seen["half_width"][name] = float(widths[widest]) if np.isfinite(widths[widest]) else None
+        seen["half_width"][name] = None
+        if np.isfinite(widths[widest]):
+            seen["half_width"][name] = float(widths[widest])
         seen["at"][name] = names[widest]
     return seen | ({"unsure": np.flatnonzero(unsure).tolist()} if design.method.points else {})
 
@@ -88,7 +93,9 @@ def _of_indices(results: SolvedCases, name: str) -> tuple[np.ndarray, np.ndarray
         results.data, design.factors, [name], given.keep, scale=given.scale, allowed=results.allowed
     )[0].values
     estimates = design.method.replicated(y, design, design.samples)
-    scale = float(np.nanmax(y) - np.nanmin(y)) if design.method.effects and not constant(y) else 1.0
+    scale = 1.0
+    if design.method.effects and not constant(y):
+        scale = float(np.nanmax(y) - np.nanmin(y))
     widths = [estimates[f"{index}_high"] - estimates[index] for index in design.method.narrowed]
     return y, np.concatenate(widths) / scale
 
@@ -106,7 +113,8 @@ def _of_points(results: SolvedCases, name: str) -> tuple[np.ndarray, np.ndarray]
         column = _natural_output(results, output)
         values, scatter = results.with_breaks(column), own.get(scattering_body(output))
         if kind != "probability":
-            scatter = np.zeros(design.size) if scatter is None else scatter
+            if scatter is None:
+                scatter = np.zeros(design.size)
             halves = [
                 log_b10(values[r], scatter[r], np.arange(r.stop - r.start) % copies, copies)[1]
                 for r in points

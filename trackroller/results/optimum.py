@@ -156,7 +156,10 @@ def _evolve(search: _Search, study: Study, tell: Tell) -> tuple[Judged, dict[str
                 why = f"the {budget.hours:g} hours are spent"
                 break
         new = search.judged(study, drawn)
-        known = new if known is None else known + new
+        if known is None:
+            known = new
+        else:
+            known = known + new
         first = nondominated_ranks(known.costs, known.missed) == 0
         number += 1
         valid = int((known.violation == 0).sum())
@@ -183,26 +186,31 @@ def _reported(search: _Search, decided: Judged, facts: dict[str, Any], tell: Tel
     """Polish the recommended design, solve the optima at reference, and gather the designs."""
     study, choices = search.study, _choices(search.study)
     usable = decided.violation.min() < 1  # a design that is never valid is no optimum
-    designs, reached = _with_corners(search, decided, choices) if usable else (decided, {})
+    if usable:
+        designs, reached = _with_corners(search, decided, choices)
+    else:
+        designs, reached = (decided, {})
     front = np.flatnonzero(nondominated_ranks(designs.costs, designs.missed) == 0)
     best = designs.take(front)
     chosen = recommended(best)
     corners = [best_in(best, goal) for goal in range(best.costs.shape[1])]
-    shown = (
-        np.union1d(spread(best.costs, REPORTED), [chosen, *corners]) if usable else np.empty(0, int)
-    )
+    if usable:
+        shown = np.union1d(spread(best.costs, REPORTED), [chosen, *corners])
+    else:
+        shown = np.empty(0, int)
     exact = {"accuracy": "reference"} | (
         {"contact_model": ELEMENTS} if study.config.contact_model == TABLE else {}
     )
-    checked = (
-        search.judged(_with(study, **exact), best.genes[shown]) if usable else best.take(shown)
-    )
-    around = _neighbours(choices, best.genes[chosen]) if usable else []
-    moved = (
-        search.judged(study, np.array([genes for *_, genes in around]))
-        if around
-        else best.take(np.empty(0, int))
-    )
+    around = []
+    if usable:
+        checked = search.judged(_with(study, **exact), best.genes[shown])
+        around = _neighbours(choices, best.genes[chosen])
+    else:
+        checked = best.take(shown)
+    if around:
+        moved = search.judged(study, np.array([genes for *_, genes in around]))
+    else:
+        moved = best.take(np.empty(0, int))
     beside = f"{len(designs.genes) - len(decided.genes)} polished designs, {len(around)} neighbours"
     beside = f"solved beside the budget: {beside}, {len(shown)} optima at reference"
     tell(beside if usable else "no design is valid, so there is no optimum to check")
@@ -285,11 +293,16 @@ def _polished(
     -------
     All designs, and whether neither an end nor the smallest step improves the last one.
     """
-    repeated = REPEATED if goal is None else CORNER_REPEATED
+    repeated = CORNER_REPEATED
+    if goal is None:
+        repeated = REPEATED
     rounds = [None, *POLISH_STEPS, None]
     for step in (step for step in rounds for _ in range(repeated)):
         middle = _leader(decided, goal)
-        beside = _ends(choices, middle) if step is None else _steps(choices, middle, step)
+        if step is None:
+            beside = _ends(choices, middle)
+        else:
+            beside = _steps(choices, middle, step)
         known = {row.tobytes() for row in decided.genes}
         tried = [genes for genes in beside if genes.tobytes() not in known]
         if tried:
@@ -308,7 +321,9 @@ def _leader(designs: Judged, goal: int | None) -> np.ndarray:
 
 def _top(factor: Factor) -> float:
     """Return the largest value of the gene of a choice."""
-    return len(factor.levels) - 1 if factor.discrete else 1.0
+    if factor.discrete:
+        return len(factor.levels) - 1
+    return 1.0
 
 
 def _ends(choices: Mapping[str, Factor], middle: np.ndarray) -> list[np.ndarray]:
@@ -317,11 +332,9 @@ def _ends(choices: Mapping[str, Factor], middle: np.ndarray) -> list[np.ndarray]
     for j, factor in enumerate(choices.values()):
         places = [0.0, _top(factor)]
         if not factor.ordered:
-            places = (
-                list(np.arange(len(factor.levels), dtype=float))
-                if len(factor.levels) <= MOST_CATEGORIES
-                else []
-            )
+            places = []
+            if len(factor.levels) <= MOST_CATEGORIES:
+                places = list(np.arange(len(factor.levels), dtype=float))
         found += [_moved(middle, j, place) for place in places]
     return found
 
@@ -332,7 +345,9 @@ def _steps(choices: Mapping[str, Factor], middle: np.ndarray, step: float) -> li
     """
     found = []
     for j, factor in enumerate(choices.values()):
-        size = 1.0 if factor.discrete else step
+        size = step
+        if factor.discrete:
+            size = 1.0
         if factor.ordered:
             found += [
                 _moved(middle, j, float(np.clip(middle[j] + way, 0, _top(factor))))
@@ -357,20 +372,18 @@ def _neighbours(
         if factor.discrete:
             continue
         low, high = factor.numbers
-        size = (
-            TOLERANCE
-            if name in PARAMETERS and PARAMETERS[name].unit == "mm"
-            else abs(high - low) / 100
-        )
+        if name in PARAMETERS and PARAMETERS[name].unit == "mm":
+            size = TOLERANCE
+        else:
+            size = abs(high - low) / 100
         value = float(factor.from_unit(genes[j : j + 1])[0])
         for side in (-1, 1):
             to = np.clip(value + side * size, min(low, high), max(low, high))
             moved = genes.copy()
-            moved[j] = (
-                (to - low) / (high - low)
-                if factor.kind == "uniform"
-                else np.log(to / low) / np.log(high / low)
-            )
+            if factor.kind == "uniform":
+                moved[j] = (to - low) / (high - low)
+            else:
+                moved[j] = np.log(to / low) / np.log(high / low)
             if moved[j] != genes[j]:
                 out.append((name, f"{to - value:+.3g}", moved))
     return out

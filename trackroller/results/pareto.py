@@ -32,9 +32,9 @@ def given_pareto(results: SolvedCases) -> xr.Dataset | None:
     """Return the Pareto set for the goals that a study or a search gives; None without goals of its
     own.
     """
-    return (
-        study_pareto(results) if goals_of_front(results) or results.config.method.proposes else None
-    )
+    if goals_of_front(results) or results.config.method.proposes:
+        return study_pareto(results)
+    return None
 
 
 def goals_of_front(results: SolvedCases) -> dict[str, str]:
@@ -71,7 +71,9 @@ def study_pareto(results: SolvedCases) -> xr.Dataset | None:
         return pareto_of_search(results)
     if config.method.points:
         analysis = analysis_of(results)
-        return pareto_of_points(analysis, given) if analysis is not None and given else None
+        if analysis is not None and given:
+            return pareto_of_points(analysis, given)
+        return None
     goals = results.goals
     if not goals:
         return None
@@ -165,7 +167,9 @@ def pareto(
         raise InputError("pareto", dict(objectives), "at least two outputs, each with min or max")
     constraints = list(constraints)
     wanted = {name for text in constraints for name in names_in(text)}
-    keep = REGIMES[:3] if "regime" in wanted else ("rolling",)
+    keep: tuple[str, ...] = ("rolling",)
+    if "regime" in wanted:
+        keep = REGIMES[:3]
     ds, design, dims = results.data, results.design, results.dims
     regime = regimes(ds, dims)
     names = dict.fromkeys([*objectives, *sorted(wanted)])
@@ -254,9 +258,14 @@ def _own_rows(design: Design) -> tuple[np.ndarray, str]:
     models, all rows.
     """
     column = design.columns.get("contact_model")
-    named = np.full(design.size, "") if column is None else column.astype(str)
+    if column is None:
+        named = np.full(design.size, "")
+    else:
+        named = column.astype(str)
     models = [m for m in EXACTNESS if (named == m).any()]
-    return (named == models[0], models[0]) if len(models) > 1 else (np.ones(design.size, bool), "")
+    if len(models) > 1:
+        return named == models[0], models[0]
+    return np.ones(design.size, bool), ""
 
 
 def pareto_of_points(table: xr.Dataset, objectives: Mapping[str, str]) -> xr.Dataset:
@@ -394,7 +403,10 @@ def pareto_of_search(results: SolvedCases) -> xr.Dataset:
     """
     judged, goals, design = judge(results), goals_of_search(results), results.design
     least = judged.violation.min()
-    missed = judged.missed if (judged.missed == 0).any() else judged.violation
+    if (judged.missed == 0).any():
+        missed = judged.missed
+    else:
+        missed = judged.violation
     kept = np.flatnonzero((missed == least) & (least < 1))
     tried = codes(results.table.iloc[:: design.meta["inner_samples"]], design.meta["outer"])
     # a design that was solved twice counts once

@@ -116,7 +116,9 @@ def guess_cautions(part: Part, what: str = "") -> Iterator[Caution]:
             texts.append("1 value" if number == 1 else f"{number} values")
         limits = list(dict.fromkeys(limit for limit in guesses["limit"] if limit))
         if limits:
-            verb = "rests" if len(limits) == 1 else "rest"
+            verb = "rest"
+            if len(limits) == 1:
+                verb = "rests"
             texts.append(f"{listing(limits)} {verb} on {'it' if number == 1 else 'them'}")
         if len(guesses) < len(rows):
             texts.append("see its notes")

@@ -93,9 +93,9 @@ def robustness(
         )
     out = xr.Dataset(coords=_coordinates(design, columns))
     for key in by_output[0] if by_output else ():
-        axes = (
-            ("output", "point", "percentile") if key == "percentile_value" else ("output", "point")
-        )
+        axes: tuple[str, ...] = ("output", "point")
+        if key == "percentile_value":
+            axes = ("output", "point", "percentile")
         out[key] = (
             axes,
             np.stack([one[key] for one in by_output]),
@@ -117,11 +117,9 @@ def robustness(
 def _attributes(design: Design, scatter: float) -> dict[str, str | int | float]:
     treatment = (
         "percentiles and the first B10 are those of the cases that roll, the second B10 counts "
-        "every "
-        "other case as life 0; a body above its tensile strength counts as life 0, and so does a "
-        "case that exceeds a "
-        "limit in the life to the first one; "
-        "the same inner sample at every design point"
+        "every other case as life 0; a body above its tensile strength counts as life 0, and so "
+        "does a case that exceeds a limit in the life to the first one; the same inner sample at "
+        "every design point"
     )
     return {
         "method": design.method.name,

@@ -95,9 +95,8 @@ COLUMNS = (
         "Verdict",
         "",
         "kept: below 100 % at both ends of the range; finite: a fatigue strength is exceeded, so "
-        "that the life ends; "
-        "exceeded: above 100 % at both ends; open: at one end; missed: the life is shorter than "
-        "required",
+        "that the life ends; exceeded: above 100 % at both ends; open: at one end; missed: the "
+        "life is shorter than required",
         "state",
     ),
     Column(
@@ -224,9 +223,10 @@ def facts_of_data(ds: xr.Dataset, **own: Any) -> dict[str, Any]:
 
 def _facts(ds: xr.Dataset) -> dict[str, Any]:
     """Return the facts of the title line of one roller."""
-    used = (
-        str(solved_by(ds).item()) if "contact_model_used" in ds else str(ds.attrs["contact_model"])
-    )
+    if "contact_model_used" in ds:
+        used = str(solved_by(ds).item())
+    else:
+        used = str(ds.attrs["contact_model"])
     return facts_of_data(
         ds,
         solved_by=used,
@@ -246,7 +246,9 @@ def _kind(ds: xr.Dataset, own: Sequence[Margin], first: First | None) -> str:
         return "breaks"
     if regime == "full_slip":
         return "skids"
-    return "no_life" if first is None else "lasts"
+    if first is None:
+        return "no_life"
+    return "lasts"
 
 
 def _headline(
@@ -326,15 +328,22 @@ def _state_of(ds: xr.Dataset, first: First | None, required: Required) -> str:
     state = state_of_life(first.low, first.high, required.least)
     if math.isfinite(required.most) and state != "missed":
         shorter = state_of_life(-first.high, -first.low, -required.most)
-        state = shorter if state == "met" else {"missed": "missed"}.get(shorter, "open")
-    return "open" if state == "met" and _unrated(ds) else state
+        if state == "met":
+            state = shorter
+        else:
+            state = {"missed": "missed"}.get(shorter, "open")
+    if state == "met" and _unrated(ds):
+        return "open"
+    return state
 
 
 def state_of_life(low: float, high: float, least: float) -> str:
     """Return whether a life within a range reaches what is required."""
     if low >= least:
         return "met"
-    return "missed" if high < least else "open"
+    if high < least:
+        return "missed"
+    return "open"
 
 
 def _use(margin: Margin) -> dict[str, Any]:
@@ -347,11 +356,10 @@ def _required(ds: xr.Dataset, inputs: Mapping[str, Any]) -> tuple[Required, ...]
     """
     found = []
     for name, own in requirement_of(ds).items():
-        words, units = (
-            (FIRST_LIMIT[1], "h")
-            if name in OF_PAIR
-            else (PARTS[name].words, PARTS[name].variable.units)
-        )
+        if name in OF_PAIR:
+            words, units = (FIRST_LIMIT[1], "h")
+        else:
+            words, units = (PARTS[name].words, PARTS[name].variable.units)
         found.append(Required(name, words, units, own.least, own.most, own.probability, own.years))
     travel = inputs.get("required_travel")
     if travel is not None and not math.isnan(float(travel)):
@@ -394,8 +402,12 @@ def _table(ds: xr.Dataset, own: Sequence[Margin], required: Sequence[Required]) 
 
 def _row(margin: Margin, least: float) -> dict[str, Any]:
     """Return the row of a limit."""
-    low = 0.0 if margin.breaks else margin.low
-    high = 0.0 if margin.breaks else margin.high
+    if margin.breaks:
+        low = 0.0
+        high = 0.0
+    else:
+        low = margin.low
+        high = margin.high
     state = margin.state
     if margin.ends and state != "exceeded" and math.isfinite(least):
         state = {"met": state, "open": "open", "missed": "missed"}[state_of_life(low, high, least)]
@@ -426,19 +438,24 @@ def _row(margin: Margin, least: float) -> dict[str, Any]:
 
 def _required_row(ds: xr.Dataset, required: Required) -> dict[str, Any]:
     """Return the row of a required output; how much of it is used counts towards the nearer end."""
-    value = (
-        float(PARTS[required.output].values(ds).item())
-        if PARTS[required.output].variable.name in ds
-        else math.nan
-    )
+    value = math.nan
+    if PARTS[required.output].variable.name in ds:
+        value = float(PARTS[required.output].values(ds).item())
     uses = []
     if math.isfinite(required.most):
         uses.append(value / required.most if required.most else math.inf)
     if math.isfinite(required.least):
         uses.append(required.least / value if value else math.inf)
-    used = max(uses, default=math.nan) if not math.isnan(value) else math.nan
+    used = math.nan
+    if not math.isnan(value):
+        used = max(uses, default=math.nan)
     kept = required.least <= value <= required.most
-    state = "unknown" if math.isnan(value) else "kept" if kept else "exceeded"
+    if math.isnan(value):
+        state = "unknown"
+    elif kept:
+        state = "kept"
+    else:
+        state = "exceeded"
     margin = Margin(
         required.output,
         required.words,
@@ -533,14 +550,18 @@ def quantities(ds: xr.Dataset, names: Iterable[str]) -> pd.DataFrame:
 
 def _without_rounding(value: Any) -> float:
     number = float(value)
-    return 0.0 if abs(number) <= ROUNDING else number
+    if abs(number) <= ROUNDING:
+        return 0.0
+    return number
 
 
 def quantity_words(name: str) -> str:
     """Return the name of a result without remarks, and its symbol if that is no formula."""
-    words, _, _ = VARIABLES[name].long_name.partition(",")
+    words = str(VARIABLES[name].long_name).partition(",")[0]
     symbol = VARIABLES[name].symbol
-    return f"{words} {symbol}" if symbol.replace("_", "").isalnum() else words
+    if symbol.replace("_", "").isalnum():
+        return f"{words} {symbol}"
+    return words
 
 
 def checks_left_out(ds: xr.Dataset, known: Collection[str] = ()) -> dict[str, tuple[str, ...]]:
@@ -570,7 +591,10 @@ def _is_known(ds: xr.Dataset, name: str, body: str) -> bool:
     values = {"static": "peak_stress", "fatigue": f"{body}_life_hours"}.get(name, "")
     if values not in ds:
         return False
-    own = ds[values].sel(body=body) if "body" in ds[values].dims else ds[values]
+    if "body" in ds[values].dims:
+        own = ds[values].sel(body=body)
+    else:
+        own = ds[values]
     return bool(own.notnull().any())
 
 
@@ -590,7 +614,9 @@ def _missing(ds: xr.Dataset, name: str, body: str) -> list[str]:
     if "limit_state" in ds and asked and name not in asked:
         return ["left out"]
     material = material_name(ds, body)
-    regime = REGIMES[int(ds["regime"])] if ds["regime"].ndim == 0 else ""
+    regime = ""
+    if ds["regime"].ndim == 0:
+        regime = REGIMES[int(ds["regime"])]
     found = []
     for lack in (lack for lack in lacks_of(ds) if lack.limit == name):
         of_guide = not lack.material and lack.name in OF_GUIDE

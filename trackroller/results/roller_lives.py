@@ -122,7 +122,9 @@ def _of_body(
     """Yield the lives of a body by its S-N line."""
     unknown = math.isnan(float(ds[f"{body}_life_hours"]))
     rolls = int(ds["regime"]) == REGIMES.index("rolling")
-    cause = f"unknown {body}" if rolls else "unknown roller"
+    cause = "unknown roller"
+    if rolls:
+        cause = f"unknown {body}"
     why = WHY[lifeless or (cause if unknown else "")]
     if why:
         yield _row(body, inputs, math.nan, math.nan, probability=MEDIAN, why=why)
@@ -138,7 +140,9 @@ def _of_body(
             p: float(np.min(curve.changed(failure_probability=p).life_cycles(own)))
             for p in PROBABILITIES
         }
-    basis = "S-N line" if curve.scatters else "S-N line without scatter"
+    basis = "S-N line without scatter"
+    if curve.scatters:
+        basis = "S-N line"
     for probability, cycles in lives.items():
         hours = cycles / overrollings(inputs, body)
         beyond = _yes(bool(past_data(cycles, material.cycles_at_fatigue_limit)))
@@ -181,7 +185,9 @@ def _of_pair(
     why = next(filter(None, lifeless.values()), "") or (
         "unknown roller" if math.isnan(hours) else ""
     )
-    body = "guide" if first == "guide" else "roller"
+    body = "roller"
+    if first == "guide":
+        body = "guide"
     told = {
         "body": "pair",
         "probability": MEDIAN,
@@ -202,4 +208,6 @@ def _of_pair(
 
 
 def _yes(true: bool) -> str:
-    return "yes" if true else ""
+    if true:
+        return "yes"
+    return ""

@@ -63,7 +63,9 @@ def indices_of(results: SolvedCases) -> xr.Dataset:
     InputError
         If no output or no factor varies.
     """
-    return analyse(results) if results.known_indices is None else results.known_indices
+    if results.known_indices is None:
+        return analyse(results)
+    return results.known_indices
 
 
 @made_once
@@ -74,7 +76,9 @@ def analysis_of(results: SolvedCases) -> xr.Dataset | None:
     except InputError as error:
         log.info("no sensitivity analysis: %s", error)
         return None
-    return found if found.data_vars else None
+    if found.data_vars:
+        return found
+    return None
 
 
 def analyse(results: SolvedCases) -> xr.Dataset:
@@ -292,5 +296,9 @@ def _bounds(out: Estimates, method: Method) -> tuple[np.ndarray, np.ndarray]:
     low, high = (
         np.concatenate([out[f"{name}_{end}"] for name in names]) for end in ("low", "high")
     )
-    whole = float(np.nanmax(out[names[0]], initial=0.0)) if method.effects else 1.0
-    return (low / whole, high / whole) if whole > 0 else (low * np.nan, high * np.nan)
+    whole = 1.0
+    if method.effects:
+        whole = float(np.nanmax(out[names[0]], initial=0.0))
+    if whole > 0:
+        return low / whole, high / whole
+    return low * np.nan, high * np.nan

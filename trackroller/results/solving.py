@@ -61,7 +61,10 @@ def run(
     >>> float(solved.best(1)["roller_profile_radius"].iloc[0])
     -7.0
     """
-    checked = study if isinstance(study, Study) else load_study(study)
+    if isinstance(study, Study):
+        checked = study
+    else:
+        checked = load_study(study)
     with limited_to(cores), progress_bar(checked.name, progress) as bar:
         shown: dict[str, Any] = {"started": bar.started, "progress": bar.advanced, "tell": bar.tell}
         if results is None and not checked.decides:
@@ -69,9 +72,9 @@ def run(
         # the cases of a study that decides follow from stored results
         with tempfile.TemporaryDirectory() if results is None else nullcontext(results) as place:
             solved = open_study(run_any(checked, place, **shown).folder.root)
-            return (
-                solved if results is not None else dataclasses.replace(solved, materials_file=None)
-            )
+            if results is not None:
+                return solved
+            return dataclasses.replace(solved, materials_file=None)
 
 
 def run_any(study: Study, results: Path | str = "results", **how: Any) -> Ledger:

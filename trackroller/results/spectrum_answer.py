@@ -214,7 +214,9 @@ def _by_fatigue_alone(ds: xr.Dataset, body: str) -> Margin:
     hours = float(ds[f"{body}_life_hours"])
     limit = LIMITS["fatigue"]
     beyond = _beyond(ds, body, float(ds[f"{body}_life_shifts"]))
-    state = "unknown" if math.isnan(hours) else "kept"
+    state = "kept"
+    if math.isnan(hours):
+        state = "unknown"
     margin = Margin(
         "fatigue", limit.word, limit.title, body, state=state, timed=True, beyond=beyond
     )
@@ -252,7 +254,9 @@ def _kind(own: list[Margin], first: First | None, lives: pd.DataFrame) -> str:
         return "breaks"
     if first is None:
         return "unknown"
-    return "unlimited" if math.isinf(first.low) else "lasts"
+    if math.isinf(first.low):
+        return "unlimited"
+    return "lasts"
 
 
 def _headline(
@@ -347,11 +351,18 @@ def _table(ds: xr.Dataset, own: list[Margin]) -> pd.DataFrame:
 
 def _row(ds: xr.Dataset, margin: Margin) -> dict[str, Any]:
     """Return the row of a limit."""
-    low = 0.0 if margin.breaks else margin.low
-    high = 0.0 if margin.breaks else margin.high
+    if margin.breaks:
+        low = 0.0
+        high = 0.0
+    else:
+        low = margin.low
+        high = margin.high
     block, share = _worst_block(ds, margin)
     shift = float(ds["duration"].sum())
-    state = "finite" if margin.state == "kept" and margin.used > 1.0 else margin.state
+    if margin.state == "kept" and margin.used > 1.0:
+        state = "finite"
+    else:
+        state = margin.state
     return {
         "limit": margin.word,
         "body": margin.body,
@@ -438,9 +449,9 @@ def _why_unknown(ds: xr.Dataset, body: str) -> tuple[str, float]:
     if not said:
         said = ["give guide_overrollings_per_hour, or guide_overrollings of each block"]
     known = float(np.nansum(damage))
-    bound = (
-        ds.attrs["critical_damage"] / known * float(ds["duration"].sum()) if known > 0 else math.nan
-    )
+    bound = math.nan
+    if known > 0:
+        bound = ds.attrs["critical_damage"] / known * float(ds["duration"].sum())
     return "; ".join(said), bound
 
 
@@ -469,9 +480,8 @@ def _blocks(ds: xr.Dataset) -> Part:
         *(Column(n, long_name_of(n), PARAMETERS[n].units, "", "whole") for n in loads),
         Column("regime", "Regime", "", "", "text"),
     ]
-    columns[2] = (
-        Column("duration", "Share of the time", "1", "", "share") if _by_share(ds) else columns[2]
-    )
+    if _by_share(ds):
+        columns[2] = Column("duration", "Share of the time", "1", "", "share")
     table = pd.DataFrame({"block": ds["block"].values.astype(str)})
     for name in ("distance", "duration", *loads):
         table[name] = ds[name].values.astype(float)
@@ -482,7 +492,9 @@ def _blocks(ds: xr.Dataset) -> Part:
         whole = float(np.nansum(damage))
         table[f"peak_{body}"] = ds["peak_stress"].sel(body=body, contact=contact).values
         table[f"damage_{body}"] = damage
-        table[f"share_{body}"] = damage / whole if whole > 0 else np.nan
+        table[f"share_{body}"] = np.nan
+        if whole > 0:
+            table[f"share_{body}"] = damage / whole
         columns += [
             Column(
                 f"peak_{body}",
@@ -494,10 +506,14 @@ def _blocks(ds: xr.Dataset) -> Part:
             Column(f"damage_{body}", f"{body} damage", "1", "damage of the block by fatigue"),
             Column(f"share_{body}", f"{body} share", "1", "part of the known damage", "share"),
         ]
-        least = "at least " if np.isnan(damage).any() else ""
+        least = ""
+        if np.isnan(damage).any():
+            least = "at least "
         notes.append(f"{body}: contact {contact}, damage sum {least}{whole:.4g}")
     sums = f"{float(ds['distance'].sum()):,.6g} m and {float(ds['duration'].sum()):.4g} h"
-    title = "Blocks of an hour of travel" if _by_share(ds) else "Blocks of a shift"
+    title = "Blocks of a shift"
+    if _by_share(ds):
+        title = "Blocks of an hour of travel"
     note = f"Together {sums}; {'; '.join(notes)}. {strokes_words(ds)}".strip()
     return Part("blocks", title, table, tuple(columns), note)
 

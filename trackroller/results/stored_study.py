@@ -88,8 +88,16 @@ def open_study(source: xr.Dataset | Path | str, indices: Path | str | None = Non
     if not isinstance(source, (xr.Dataset, str, Path)):
         remedy = "Give the folder results/NAME, or its file study.nc."
         raise InputError("study", type(source).__name__, "a path or a data set", remedy)
-    known = None if indices is None else read_result(indices)
-    data = source if isinstance(source, xr.Dataset) else _gathered(Path(source))
+    known = None
+    if indices is not None:
+        known = read_result(indices)
+    file = None
+    data: xr.Dataset | None
+    if isinstance(source, xr.Dataset):
+        data = source
+    else:
+        data = _gathered(Path(source))
+        file = _materials_file(Path(source))
     if data is None:
         return _read_unfinished(StudyFolder(Path(source)), known)
     data = data.assign_attrs(_checked_version(data))
@@ -104,7 +112,6 @@ def open_study(source: xr.Dataset | Path | str, indices: Path | str | None = Non
             solved = chunks.from_results(solved, np.arange(data.sizes["case"]))
         data = labelled(study, design, data.drop_vars(names), solved)
     _check_dims(data, case_dims(data, study.factors))
-    file = None if isinstance(source, xr.Dataset) else _materials_file(Path(source))
     return Results(study, design, data, known, file)
 
 
@@ -141,15 +148,20 @@ def _gathered(path: Path) -> xr.Dataset | None:
     """
     if path.is_dir():
         check_readable(path)
-    file = StudyFolder(path).gathered if path.is_dir() else path
-    record = StudyFolder(path).record() if path.is_dir() else {}
+    file = path
+    record = {}
+    if path.is_dir():
+        file = StudyFolder(path).gathered
+        record = StudyFolder(path).record()
     planned = record.get("study")
     if not file.is_file() and planned is None:
         allowed = "a folder results/NAME with study.nc, or such a file"
         raise InputError(
             "study", str(path), allowed, "Run the study to its end first.", "holds no results"
         )
-    data = read_result(file) if file.is_file() else None
+    data = None
+    if file.is_file():
+        data = read_result(file)
     if data is None or planned not in (None, data.attrs.get("study")):
         return None
     return data.assign_attrs({DATE: record["planned"]} if "planned" in record else {})
@@ -165,9 +177,9 @@ def _read_unfinished(folder: StudyFolder, indices: xr.Dataset | None) -> Results
     rows = np.setdiff1d(of_row, of_row[place < 0])
     solved = np.flatnonzero(np.isin(of_row, rows))
     if not len(rows) or len(solved) == len(place):
-        state = (
-            "is solved, but not gathered into study.nc" if len(rows) else "has no solved case yet"
-        )
+        state = "has no solved case yet"
+        if len(rows):
+            state = "is solved, but not gathered into study.nc"
         raise InputError(
             "study",
             str(folder.root),
@@ -180,7 +192,9 @@ def _read_unfinished(folder: StudyFolder, indices: xr.Dataset | None) -> Results
         cases = cases.assign_coords({ROW: ("case", np.searchsorted(rows, cases[ROW].values))})
     data = labelled(study, drawn, cases, collect(ledger, solved)).assign_coords(case=rows)
     lacking = [n for n in study.drawn.factors if n not in drawn.factors]
-    only = f" They hold one value only of {' and '.join(lacking)}." if lacking else ""
+    only = ""
+    if lacking:
+        only = f" They hold one value only of {' and '.join(lacking)}."
     notice = (
         f"Unfinished study: {len(solved)} of {len(place)} cases are solved, and all numbers "
         f"are those of these.{only}"

@@ -118,13 +118,18 @@ def targets(
 
 def _judged(column: Output, life: np.ndarray, allowed: np.ndarray | None) -> Output:
     """Return the life to the first limit in the place of the life that a target names."""
-    values = life if allowed is None else np.where(allowed, life, np.nan)
+    if allowed is None:
+        values = life
+    else:
+        values = np.where(allowed, life, np.nan)
     return replace(column, values=values, long_name=FIRST_LIMIT[1])
 
 
 def scattering_body(output: str) -> str:
     """Return the body whose material's scatter counts for a life, '' for another output."""
-    return (body_of(output) or "roller") if is_life(output) else ""
+    if is_life(output):
+        return body_of(output) or "roller"
+    return ""
 
 
 def hits_of(column: Output, limits: Requirement, deviation: np.ndarray | None) -> np.ndarray:
@@ -222,7 +227,9 @@ def _at_level(hits: np.ndarray, design: Design, level: Level, whole: Found) -> F
 
 def _first(sample: tuple[np.ndarray, ...], size: int) -> tuple[np.ndarray, ...]:
     """Return the first rows of the sample of `inner_sample`."""
-    return (sample[0][:size], sample[1]) if sample else ()
+    if sample:
+        return sample[0][:size], sample[1]
+    return ()
 
 
 def _of_rows(hits: np.ndarray, design: Design) -> tuple[list[Level], list[Found]]:
@@ -234,8 +241,10 @@ def _of_rows(hits: np.ndarray, design: Design) -> tuple[list[Level], list[Found]
         for level in _levels(f, design.columns[name][rows])
     ]
     hits = hits[rows]
-    strata = () if correlated_pairs(design) else (design.places[rows], design.ordered)
-    estimates = [probabilities(hits, *strata)]
+    if correlated_pairs(design):
+        estimates = [probabilities(hits)]
+    else:
+        estimates = [probabilities(hits, design.places[rows], design.ordered)]
     estimates += [probabilities(hits[level.rows]) for level in levels]
     if not design.method.sampled:  # shares of such rows are no probabilities
         estimates = [(p, np.full_like(p, np.nan), np.full_like(p, np.nan)) for p, _, _ in estimates]

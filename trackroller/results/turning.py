@@ -148,7 +148,9 @@ class Turning:
         widest, found = 1.0, None
         for one in self.placeholders:
             mine = self.worst(number, one)
-            width = mine[-1] / mine[0] if mine[0] > 0 else np.inf
+            width = np.inf
+            if mine[0] > 0:
+                width = mine[-1] / mine[0]
             if width <= widest * (1 + 1e-9):
                 continue
             enough = mine >= least
@@ -248,7 +250,9 @@ class Turning:
             return self.told(known, int(np.clip(np.searchsorted(STEPS, share), 0, len(STEPS) - 1)))
         name = own.spans[0]
         values = own.results.levels(name)
-        what = "wear_coefficient" if name == COEFFICIENT else name
+        what = name
+        if name == COEFFICIENT:
+            what = "wear_coefficient"
         found = {"what": what, "of": "", "on": "", "turn": np.nan, "units": "times its value"}
         return found | {"low": values[0], "high": values[-1]}
 
@@ -270,7 +274,9 @@ class Turning:
         limit, guide = (part[row] for part in own.ranges.first)
         material = str(self.materials[BODIES[int(guide)]][row])
         known = [one for one in self.placeholders if (one.limit, one.material) == (limit, material)]
-        return known[0] if known else None
+        if known:
+            return known[0]
+        return None
 
     def _at_level(self, number: int, levels: np.ndarray) -> np.ndarray:
         """Return the life of a candidate at its worst condition at each level of the spanned

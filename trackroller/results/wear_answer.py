@@ -154,7 +154,10 @@ def _fatigue(own: xr.Dataset) -> dict[str, float]:
     if np.isnan(damage).any() or np.isnan(new):
         return unknown
     reached = bool(own["life_travel"].notnull().any())
-    life = float(own["life_travel"].min()) if reached else float(own["travel"][-1])
+    if reached:
+        life = float(own["life_travel"].min())
+    else:
+        life = float(own["travel"][-1])
     return {
         "life_travel": life,
         "life_travel_high": life if reached else np.inf,
@@ -185,7 +188,9 @@ def _required(ds: xr.Dataset) -> tuple[Required, ...]:
     if inputs.get("required_travel") is not None:
         travels.append(float(inputs["required_travel"]))
     travels = [travel for travel in travels if np.isfinite(travel)]
-    return (Required("travel", "travel", "km", least=max(travels)),) if travels else ()
+    if travels:
+        return (Required("travel", "travel", "km", least=max(travels)),)
+    return ()
 
 
 def _state(
@@ -200,18 +205,28 @@ def _state(
     if not required:
         return ""
     least, last = required[0].least, float(head["travel"])
-    fatigue = head["fatigue"]["travel"] if head["fatigue"] else np.inf
+    fatigue = np.inf
+    if head["fatigue"]:
+        fatigue = head["fatigue"]["travel"]
     if head["guessed"]:
-        return "missed" if max(fatigue, float(table["life_new"].min())) < least else "open"
-    end = last if str(ds.attrs["end"]) in BEFORE else np.inf
+        if max(fatigue, float(table["life_new"].min())) < least:
+            return "missed"
+        return "open"
+    end = np.inf
+    if str(ds.attrs["end"]) in BEFORE:
+        end = last
     if min(fatigue, end) < least:
         return "missed"
-    return "met" if last >= least else "open"
+    if last >= least:
+        return "met"
+    return "open"
 
 
 def _not_given(ds: xr.Dataset) -> dict[str, str]:
     """Return the values that nobody gave; the travel is that of the run."""
-    words = not_given_words(ds) if NOT_GIVEN in ds.attrs else {}
+    words = {}
+    if NOT_GIVEN in ds.attrs:
+        words = not_given_words(ds)
     return {name: value for name, value in words.items() if name != "travel"}
 
 

@@ -104,7 +104,9 @@ def _indices(results: SolvedCases, ranges: CaseRanges) -> xr.Dataset | None:
     name = ranges.output[0]
     if sens is None or robust_design(sens) or name not in sens["output"].values:
         return None
-    return sens if order(sens, name) and headline(sens) in sens else None
+    if order(sens, name) and headline(sens) in sens:
+        return sens
+    return None
 
 
 def _table(results: SolvedCases, ranges: CaseRanges, curves: tuple[Curve, ...]) -> pd.DataFrame:
@@ -133,7 +135,10 @@ def _table(results: SolvedCases, ranges: CaseRanges, curves: tuple[Curve, ...]) 
         found.append(row)
     table = pd.DataFrame(found)
     by_index = sens is not None and not index_words(sens, headline(sens)).sized
-    keys = ["index", "height"] if by_index and "index" in table else ["height"]
+    if by_index and "index" in table:
+        keys = ["index", "height"]
+    else:
+        keys = ["height"]
     return table.sort_values(keys, ascending=False, na_position="last", kind="stable").reset_index(
         drop=True
     )
@@ -151,7 +156,8 @@ def _index(sens: xr.Dataset, output: str, name: str) -> dict[str, Any]:
     value, low, high = estimate(part, index)[:, names.index(name)]
     if index_words(sens, index).sized:
         largest = float(np.nanmax(np.abs(estimate(part, index)[0])))
-        value = 0.0 if abs(value) < ROUNDING * largest else value
+        if abs(value) < ROUNDING * largest:
+            value = 0.0
     else:
         value, low, high = (float(np.clip(one, 0.0, 1.0)) for one in (value, low, high))
     return {
@@ -263,11 +269,16 @@ def _columns(
         index = headline(sens)
         share = not index_words(sens, index).sized
         meaning = str(sens[index].attrs.get("long_name", index))
-        scale = (
-            str(sens["scale"].sel(output=ranges.output[0]).item()) if "scale" in sens.coords else ""
-        )
-        unit = "1" if share else "decades" if scale == "log10" else units
-        kind = "share" if share else "number"
+        scale = ""
+        if "scale" in sens.coords:
+            scale = str(sens["scale"].sel(output=ranges.output[0]).item())
+        kind = "number"
+        unit = units
+        if share:
+            unit = "1"
+            kind = "share"
+        elif scale == "log10":
+            unit = "decades"
         columns += [
             Column(
                 "index",
@@ -280,16 +291,14 @@ def _columns(
         ]
         if table["interacts"].any():
             meaning = (
-                f"factors with which a pair surely holds {100 * WORTH:.0f} % of the "
-                "variance or more"
+                f"factors with which a pair surely holds {100 * WORTH:.0f} % of the variance or "
+                "more"
             )
             columns.append(Column("interacts", "Interacts with", "", meaning, "text"))
     positive = bool(np.nanmin(table["at_low"], initial=np.inf) > 0)
-    meaning = (
-        "largest over smallest value of the curve"
-        if positive
-        else "largest less smallest value of the curve"
-    )
+    meaning = "largest less smallest value of the curve"
+    if positive:
+        meaning = "largest over smallest value of the curve"
     columns += [
         Column(
             "height",

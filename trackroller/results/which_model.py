@@ -37,7 +37,10 @@ MODEL = "contact_model"
 
 def models_of(results: SolvedCases) -> list[str]:
     """Return the contact models of a study, the most exact one first."""
-    known = set(results.table[MODEL]) if MODEL in results.table else set()
+    if MODEL in results.table:
+        known = set(results.table[MODEL])
+    else:
+        known = set()
     return [model for model in EXACTNESS if model in known]
 
 

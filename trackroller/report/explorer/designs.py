@@ -82,7 +82,9 @@ def _designs(candidates: Candidates, worst: str) -> dict[str, Any]:
     fails first.
     """
     heads, cells, note = _goals(candidates)
-    nine = [f"Nine of ten reach [{candidates.goal[2]}]"] if "b10" in candidates.table else []
+    nine = []
+    if "b10" in candidates.table:
+        nine = [f"Nine of ten reach [{candidates.goal[2]}]"]
     rows = []
     for _, row in candidates.table.head(MOST_LISTED).iterrows():
         key = tuple(row[n] for n in candidates.choices)
@@ -92,11 +94,15 @@ def _designs(candidates: Candidates, worst: str) -> dict[str, Any]:
         ]
         valid = part_of(row["valid"], row["cases"])
         further = [*map(cell, lives if candidates.rising else map(float, lives)), valid]
-        further += [] if alone(candidates) else [first_words(row) or "–"]
+        if not alone(candidates):
+            further += [first_words(row) or "–"]
         further += cells.get(key, ["–"] * len(heads))
         rows.append([*(cell(factor_cell(n, row[n])) for n in candidates.choices), *further])
-    first = [] if alone(candidates) else ["Fails first"]
-    note += f" {capital(GUIDE_UNKNOWN).replace('`', '')}." if alone(candidates) else ""
+    if alone(candidates):
+        first = []
+        note += f" {capital(GUIDE_UNKNOWN).replace('`', '')}."
+    else:
+        first = ["Fails first"]
     heads = [*map(heading, candidates.choices), *nine, worst, "Holds in", *first, *heads]
     return {
         "factors": candidates.choices,

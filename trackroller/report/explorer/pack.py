@@ -76,7 +76,9 @@ def affordable_rows(columns: Sequence[Column]) -> int:
 
 def _numbers(column: Column) -> np.ndarray:
     if column.levels is None:
-        kind = "<f4" if column.values.dtype == np.float32 else "<f8"
+        kind = "<f8"
+        if column.values.dtype == np.float32:
+            kind = "<f4"
         return np.ascontiguousarray(column.values, dtype=kind)
     kind = next(k for k in ("<u1", "<u2", "<u4") if len(column.levels) < np.iinfo(k).max)
     return np.ascontiguousarray(column.values + 1, dtype=kind)

@@ -74,10 +74,9 @@ def explorer(results: Results) -> dict[str, Any]:
     }
     said = (
         f"{count(len(rows))} of {count(cases)} cases are shown: a sample by regime and validity, "
-        "with all cases of "
-        "rare states, the smallest and the largest value of every quantity in every state, and "
-        "the Pareto set of the "
-        "study's goals. Counts and shares are those of the sample."
+        "with all cases of rare states, the smallest and the largest value of every quantity in "
+        "every state, and the Pareto set of the study's goals. Counts and shares are those of the "
+        "sample."
     )
     return {
         "header": _json(header),
@@ -98,7 +97,9 @@ def _numbers(results: Results) -> np.ndarray | None:
     ):
         return None
     numbers = flat(ds, "case", results.dims)
-    return None if (numbers == np.arange(len(numbers))).all() else numbers
+    if (numbers == np.arange(len(numbers))).all():
+        return None
+    return numbers
 
 
 def pareto_rows(results: Results, cases: int) -> np.ndarray:

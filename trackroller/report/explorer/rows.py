@@ -107,7 +107,9 @@ def _setting(results: Results, name: str, role: str) -> Column:
     """Return the column of a factor or of an input that follows from factors."""
     values = results.table[name].to_numpy()
     parameter = parameter_of(name)
-    unit = unit_text(parameter.unit) if parameter and name not in NAMED else ""
+    unit = ""
+    if parameter and name not in NAMED:
+        unit = unit_text(parameter.unit)
     label = capital(long_name(name))
     few = not results.numeric(name) or results.grid or len(results.levels(name)) <= 12
     if not few or (role == "input" and results.numeric(name)):
@@ -213,12 +215,17 @@ def _outputs(ds: xr.Dataset, dims: tuple[str, ...], names: list[str]) -> list[Ou
 def _output(one: Output, role: str, results: Results) -> Column:
     # a roller that skids, and a body above its tensile strength, have no fatigue life
     if is_life(one.name):
-        body = body_of(one.name) if results.by_body else ""
+        body = ""
+        if results.by_body:
+            body = body_of(one.name)
         one = replace(
             one,
             values=np.where(results.rolling & ~results.flagged("static", body), one.values, np.nan),
         )
-    values = one.values.astype(np.float32) if role == "detail" else one.values
+    if role == "detail":
+        values = one.values.astype(np.float32)
+    else:
+        values = one.values
     log = declared(one.name).scale == "log10"
     return Column(one.name, capital(one.long_name), unit_text(one.units), role, values, log=log)
 
@@ -276,11 +283,10 @@ def _states(ds: xr.Dataset, dims: tuple[str, ...], results: Results) -> list[Col
             )
         )
     if "reason" in ds:
-        reason = (
-            ds["reason"].broadcast_like(ds["regime"]).transpose(*dims)
-            if "regime" in ds
-            else ds["reason"]
-        )
+        if "regime" in ds:
+            reason = ds["reason"].broadcast_like(ds["regime"]).transpose(*dims)
+        else:
+            reason = ds["reason"]
         texts = reason.values.astype(str).ravel()
         if (texts != "").any():
             columns.append(coded("reason", "Reason", "state", texts))
@@ -340,7 +346,9 @@ def solve_inputs(
     ds, dims = results.data, results.dims
     settings, more = [], []
     for key in (*PARAMETERS, *MATERIAL_FIELDS, *MAPPING_FIELDS, *OPTIONS):
-        name = f"{key}_value" if f"{key}_value" in ds.variables else key
+        name = key
+        if f"{key}_value" in ds.variables:
+            name = f"{key}_value"
         if name in ds.variables and set(ds[name].dims) & set(dims):
             if name not in known:
                 more.append(_input(name, flat(ds, name, dims)))
@@ -364,7 +372,9 @@ def _fixed(ds: xr.Dataset, results: Results, name: str) -> Any:
         return ds[name].item()
     if name in OPTIONS:
         stated = getattr(results.config, name, None)
-        return ds.attrs.get(name) if stated is None else stated
+        if stated is None:
+            return ds.attrs.get(name)
+        return stated
     return results.config.base.get(name, getattr(PARAMETERS.get(name), "default", None))
 
 

@@ -34,9 +34,9 @@ LIGHT = ListedColormap(matplotlib.colormaps["YlGnBu"](np.linspace(0, 0.62, 64)))
 
 
 def _shapes(patches: list[Patch]) -> str:
-    return (
-        "the loaded part of both contact patches" if patches[0].solved else "both contact ellipses"
-    )
+    if patches[0].solved:
+        return "the loaded part of both contact patches"
+    return "both contact ellipses"
 
 
 def _canvas(
@@ -50,7 +50,9 @@ def _canvas(
     (left, rear), (right, front) = boxes[:, ::2].min(axis=0), boxes[:, 1::2].max(axis=0)
     a, b = 0.5 * (right - left), 0.5 * (front - rear)
     to_scale = 1 / SLENDER <= b / a <= SLENDER
-    height = float(np.clip(PANEL_MM * b / a, 22, 66)) if to_scale else 40.0
+    height = 40.0
+    if to_scale:
+        height = float(np.clip(PANEL_MM * b / a, 22, 66))
     figure = style.new_figure(39 + height + 40 * profile)
     grid = figure.add_gridspec(1 + profile, count, height_ratios=[height, 30] if profile else None)
     maps = [figure.add_subplot(grid[0, i]) for i in range(count)]
@@ -67,7 +69,10 @@ def _canvas(
 def _fill(axes: Axes, patch: Patch, values: np.ndarray, top: float, cmap: Any) -> Any:
     """Draw filled contours clipped to the edge of the patch, and return them."""
     levels = np.linspace(0, top, 17)
-    x, y, shown = patch.framed(values) if patch.solved else (patch.x, patch.y, values)
+    if patch.solved:
+        x, y, shown = patch.framed(values)
+    else:
+        x, y, shown = (patch.x, patch.y, values)
     image = axes.contourf(x, y, np.clip(shown, 0, levels[-1]), levels=levels, cmap=cmap)
     edge = PathPatch(outline(patch), facecolor="none", edgecolor="black", linewidth=0.9)
     axes.add_patch(edge)
@@ -108,7 +113,10 @@ def shear_arrows(ds: xr.Dataset) -> style.Drawn:
 
 
 def _arrows(axes: Axes, patch: Patch, top: float, to_scale: bool) -> None:
-    count = ARROWS if patch.a >= patch.b else ARROWS[::-1]
+    if patch.a >= patch.b:
+        count = ARROWS
+    else:
+        count = ARROWS[::-1]
     columns, rows = (_every(len(v), n) for v, n in ((patch.x, count[0]), (patch.y, count[1])))
     pick = np.ix_(rows, columns)
     keep = patch.inside[pick]
@@ -151,7 +159,10 @@ def _pole(axes: Axes, patch: Patch) -> None:
             zorder=5,
         )
     elif np.isfinite(x):
-        at, side = (0.99, "right") if x > 0.5 * (left + right) else (0.01, "left")
+        if x > 0.5 * (left + right):
+            at, side = (0.99, "right")
+        else:
+            at, side = (0.01, "left")
         axes.text(
             at,
             0.03,
@@ -188,8 +199,8 @@ def friction_energy(ds: xr.Dataset) -> style.Drawn:
     style.head(figure, "Friction energy of both contacts")
     caption = (
         f"Friction energy per area and distance travelled over {_shapes(patches)}, and summed "
-        "along the rolling "
-        f"direction over each strip of the running track. {case_text(ds, to_scale)}"
+        "along the rolling direction over each strip of the running track. "
+        f"{case_text(ds, to_scale)}"
     )
     totals = [float(q.summed(p)) for p, q in zip(profiles, patches, strict=True)]
     words = " and ".join(

@@ -57,10 +57,15 @@ def sections(ds: xr.Dataset, contact: int) -> style.Drawn:
     first = part.sel(body=bodies[0])
     spans = [float(np.ptp(first[name].values)) for name in ("xz_x", "yz_y")]
     to_scale = 1 / SLENDER < spans[0] / spans[1] < SLENDER
-    shares = [*spans, spans[0]] if to_scale else [1.0, 1.0, 1.0]
+    if to_scale:
+        shares = [*spans, spans[0]]
+    else:
+        shares = [1.0, 1.0, 1.0]
     shares = shares[: 3 if surfaces else 2]
     deep = max(spans[1] if surfaces else 0.0, float(np.ptp(first["xz_z"].values)))
-    height = min(SHARE_MM * deep / sum(shares), 60.0) if to_scale else ROW_MM
+    height = ROW_MM
+    if to_scale:
+        height = min(SHARE_MM * deep / sum(shares), 60.0)
     figure = style.new_figure(34 + (height + 7) * len(bodies))
     grid = figure.subplots(len(bodies), len(shares), squeeze=False, width_ratios=shares)
     image: Any = None
@@ -75,10 +80,9 @@ def sections(ds: xr.Dataset, contact: int) -> style.Drawn:
     style.head(figure, f"Von Mises stress under contact {contact}")
     caption = (
         f"Von Mises stress (MPa) under contact {contact} in the lateral and the rolling section "
-        "plane through the peak "
-        f"of each body{' and on its surface' if surfaces else ''}; z counts into the body. A "
-        "cross marks the peak; on "
-        f"the surface a ring marks a peak below it. {case_text(ds, to_scale)}"
+        f"plane through the peak of each body{' and on its surface' if surfaces else ''}; z counts "
+        "into the body. A cross marks the peak; on the surface a ring marks a peak below it. "
+        f"{case_text(ds, to_scale)}"
     )
     return figure, style.FigureInfo(f"contact_{contact}_stress", caption, _sentence(part, bodies))
 
@@ -97,7 +101,9 @@ def surface_stress(
     x (nx) and y (ny) in the contact [mm] and the stress (ny, nx) [MPa], or None where tractions or
     materials are not known
     """
-    patch = Patch(ds, contact) if {"patch_x", "patch_y", *TRACTIONS} <= set(ds.variables) else None
+    patch = None
+    if {"patch_x", "patch_y", *TRACTIONS} <= set(ds.variables):
+        patch = Patch(ds, contact)
     if patch is None or not patch.there or MATERIALS not in ds.attrs:
         return None
     margin = [max(1, int(np.ceil(AROUND * v.size))) for v in (patch.y, patch.x)]
@@ -134,12 +140,16 @@ def _section(
             clip_on=False,
             zorder=4,
         )
-    other = "y" if axis == "x" else "x"
+    other = "x"
+    if axis == "x":
+        other = "y"
     place = ""
     if f"peak_{other}" in part:
         where = near(float(part[f"peak_{other}"]), float(np.ptp(x)))
         place = f"\nat ${other}_\\mathrm{{C}}$ = {where} mm"
-    depth = "Depth $z_\\mathrm{C}$ [mm]" if axis == "x" else "$z_\\mathrm{C}$ [mm]"
+    depth = "$z_\\mathrm{C}$ [mm]"
+    if axis == "x":
+        depth = "Depth $z_\\mathrm{C}$ [mm]"
     axes.set(title=f"{body.capitalize()}, {words} section{place}", ylabel=depth)
     _labels(axes, f"${axis}_\\mathrm{{C}}$ ({words}) [mm]")
     if axis == "y":  # the narrow section
@@ -199,7 +209,10 @@ def _mark_peak(axes: Axes, part: xr.Dataset, plane: tuple[str, str]) -> None:
     if below:
         return
     right = x < np.mean(axes.get_xlim())
-    up = 9 if plane[1] == "y" or axes.get_ylim()[1] > axes.get_ylim()[0] else -9
+    if plane[1] == "y" or axes.get_ylim()[1] > axes.get_ylim()[0]:
+        up = 9
+    else:
+        up = -9
     box = {"facecolor": "white", "edgecolor": "none", "pad": 1.0, "alpha": 0.9}
     place: dict[str, Any] = {
         "xytext": (8 if right else -8, up),
@@ -217,6 +230,9 @@ def _sentence(part: xr.Dataset, bodies: list[str]) -> str:
     for body in bodies:
         own = part.sel(body=body)
         value, depth = float(own["peak_stress"]), float(own["peak_z"])
-        where = "at the surface" if at_surface(own) == 1 else f"{rounded(depth, 2)} mm deep"
+        if at_surface(own) == 1:
+            where = "at the surface"
+        else:
+            where = f"{rounded(depth, 2)} mm deep"
         said.append(f"{value:.0f} MPa {where} in the {body}")
     return f"The peak is {' and '.join(said)}."

@@ -106,7 +106,9 @@ def _trade(
     finite = np.isfinite(xs) & np.isfinite(ys)
     shown = (front["optimal"].values == 1) & finite
     rest = np.random.default_rng(1).permutation(np.flatnonzero(finite & ~shown))
-    size = 6 if len(rest) > 500 else 14
+    size = 14
+    if len(rest) > 500:
+        size = 6
     axes.scatter(
         xs[rest], ys[rest], s=size, c=colour[rest].tolist(), alpha=0.6, linewidth=0, rasterized=True
     )

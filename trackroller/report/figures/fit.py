@@ -65,9 +65,8 @@ def sn_line(fit: Fit) -> style.Drawn:
     legend(figure, entries)
     caption = (
         "Tests, fitted line, and the interval that holds the true life in nine of ten fits, at "
-        "each stress. Arrows: "
-        "tests that ended without a failure of this kind. Beyond the tests the line is "
-        "extrapolated."
+        "each stress. Arrows: tests that ended without a failure of this kind. Beyond the tests "
+        "the line is extrapolated."
     )
     return figure, style.FigureInfo("fit_sn_line", caption)
 
@@ -90,10 +89,9 @@ def predicted(fit: Fit) -> style.Drawn:
     for axes, own in zip(panels, groups, strict=True):
         _against(axes, own)
     caption = (
-        "Median by the fit and what was observed; an interval is drawn at its middle, and an "
-        "arrow is a test that "
-        "ended without this failure. Dotted: between the lines lie nine of ten failures by the "
-        "fitted scatter."
+        "Median by the fit and what was observed; an interval is drawn at its middle, and an arrow "
+        "is a test that ended without this failure. Dotted: between the lines lie nine of ten "
+        "failures by the fitted scatter."
     )
     return figure, style.FigureInfo("fit_predicted", caption)
 
@@ -153,7 +151,7 @@ def pairs(fit: Fit) -> style.Drawn:
             style.log_ticks(axis, *ends)
     caption = (
         f"{rounded(MOST_DRAWN)} points of the posterior; the cross is the most likely value. A "
-        "narrow diagonal cloud "
-        "means that the tests know a combination of both values better than each of them."
+        "narrow diagonal cloud means that the tests know a combination of both values better than "
+        "each of them."
     )
     return figure, style.FigureInfo("fit_pairs", caption)

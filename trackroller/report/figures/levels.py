@@ -47,9 +47,9 @@ def _drive(low: float, high: float) -> str:
 
 def held_words(held: Mapping[str, Any]) -> str:
     """State the levels at which factors are held; an empty text if no factor is held."""
-    return (
-        f"Held: {'; '.join(setting(name, level) for name, level in held.items())}." if held else ""
-    )
+    if held:
+        return f"Held: {'; '.join(setting(name, level) for name, level in held.items())}."
+    return ""
 
 
 def span(name: str, low: Any, high: Any) -> str:
@@ -65,7 +65,9 @@ def class_words(name: str, end: Any) -> str:
     """
     if isinstance(end, tuple):
         return f"{long_name(name)} {span(name, *end)}"
-    return level_text(name, end) if isinstance(end, str) else setting(name, end)
+    if isinstance(end, str):
+        return level_text(name, end)
+    return setting(name, end)
 
 
 def coloured(results: Results, lead: str, rows: np.ndarray) -> list[tuple[str, np.ndarray]]:

@@ -46,11 +46,11 @@ def stress_against_fit(results: Results) -> style.Drawn:
     if rows["_fit"].nunique() < 2:
         return None
     columns = [f"peak_stress_{body}" for body in bodies]
-    inside = np.isin(np.arange(len(results.table)), rows.index)
-    levels = coloured(results, hue, inside) if hue else [("", np.ones(len(rows), bool))]
+    levels = _levels(results, hue, rows)
     groups = [([text], rows[mask]) for text, mask in levels]
     single = results.grid and not any(part["_fit"].duplicated().any() for _, part in groups)
-    groups = _merged(groups, columns) if single else groups
+    if single:
+        groups = _merged(groups, columns)
     figure, panels = style.panels(
         "Peak stress against fit",
         64 + 3.6 * (len(groups) + 2),
@@ -64,7 +64,8 @@ def stress_against_fit(results: Results) -> style.Drawn:
     for texts, part in groups:
         i = names.index(texts[0])
         look = {"color": colours[i], "marker": style.MARKERS[i], "linestyle": style.LINES[i % 6]}
-        entries += [(listing(texts), look)] if hue else []
+        if hue:
+            entries += [(listing(texts), look)]
         for axes, body in zip(panels, bodies, strict=True):
             _stress_series(axes, part, body, look, single)
     for axes, body in zip(panels, bodies, strict=True):
@@ -77,15 +78,24 @@ def stress_against_fit(results: Results) -> style.Drawn:
             ("hollow: below it", {**dot, "markerfacecolor": "white"}),
         ]
     legend(figure, entries, 2)
-    marks = (
-        "Filled marks: the peak lies at the surface; hollow marks: below it." if single else MEDIANS
-    )
+    marks = MEDIANS
+    if single:
+        marks = "Filled marks: the peak lies at the surface; hollow marks: below it."
     caption = (
-        "Peak von Mises stress (MPa) of roller and guide, the worse of the two contacts, over "
-        "the fit of groove and "
-        f"guide; rolling cases. {marks} {held_words(held)}"
+        "Peak von Mises stress (MPa) of roller and guide, the worse of the two contacts, over the "
+        f"fit of groove and guide; rolling cases. {marks} {held_words(held)}"
     )
     return figure, style.FigureInfo("stress_against_fit", caption.strip())
+
+
+def _levels(results: Results, hue: str, rows: pd.DataFrame) -> list[tuple[str, np.ndarray]]:
+    """Return the levels of the factor that decides the colour, each with its rows; one level
+    without such a factor.
+    """
+    if not hue:
+        return [("", np.ones(len(rows), bool))]
+    inside = np.isin(np.arange(len(results.table)), rows.index)
+    return coloured(results, hue, inside)
 
 
 def _hue(results: Results, column: str, fits: tuple[str, ...]) -> str:
@@ -159,7 +169,9 @@ def forces_against_axial(results: Results) -> style.Drawn:
     ]
     if not kinds:
         return None
-    levels = results.levels("motor_force") if "motor_force" in results.factors else []
+    levels = []
+    if "motor_force" in results.factors:
+        levels = results.levels("motor_force")
     # otherwise one line for all drives
     drives: list[Any] = levels if 0 < len(levels) <= 5 else [None]
     shown = (*results.behind(x), *(["motor_force"] if drives != [None] else []))
@@ -195,11 +207,12 @@ def forces_against_axial(results: Results) -> style.Drawn:
         if d is not None
     ]
     legend(figure, entries, 5)
-    each = f", for {len(drives)} motor forces" if len(drives) > 1 else ""
+    each = ""
+    if len(drives) > 1:
+        each = f", for {len(drives)} motor forces"
     caption = (
         "Forces (N) of contact 1 (circles) and contact 2 (squares) on the roller over the axial "
-        f"force{each}. "
-        f"{held_words(held) if results.grid else MEDIANS}"
+        f"force{each}. {held_words(held) if results.grid else MEDIANS}"
     )
     return figure, style.FigureInfo("forces_against_axial_force", caption.strip())
 

@@ -31,7 +31,9 @@ def capped(life: np.ndarray) -> tuple[np.ndarray, float | None]:
     """
     life = np.asarray(life, dtype=float)
     finite = life[np.isfinite(life) & (life > 0)]
-    top = float(10 ** (np.ceil(np.log10(finite.max())) + 1)) if finite.size else 1.0
+    top = 1.0
+    if finite.size:
+        top = float(10 ** (np.ceil(np.log10(finite.max())) + 1))
     values = np.where(np.isposinf(life), top, np.where(life > 0, life, np.nan))
     return values, top if np.isposinf(life).any() else None
 
@@ -42,11 +44,10 @@ def legend(figure: Figure, entries: Entries | Mapping[str, Artist], columns: int
 
     It has fewer columns where its texts are too long for the width of the figure.
     """
-    own = (
-        entries
-        if isinstance(entries, Mapping)
-        else {text: Line2D([], [], **look) for text, look in entries}
-    )
+    if isinstance(entries, Mapping):
+        own = entries
+    else:
+        own = {text: Line2D([], [], **look) for text, look in entries}
     for count in range(columns, 0, -1):
         made = figure.legend(
             own.values(), own, loc="outside lower left", ncols=count, alignment="left"

@@ -181,10 +181,12 @@ def _dimensions(
     """
     side, groove = 1.5 * r_guide, outline[int(1.72 * ARC)]  # a point on the right flank
     radius = values["roller_profile_radius"]
-    profile = (
-        ("straight profile", "") if math.isinf(radius) else (f"r {abs(radius):.5g} mm", "C,TR")
-    )
-    profile = ("drawn profile", "") if values.get("roller_profile") else profile
+    if math.isinf(radius):
+        profile = ("straight profile", "")
+    else:
+        profile = (f"r {abs(radius):.5g} mm", "C,TR")
+    if values.get("roller_profile"):
+        profile = ("drawn profile", "")
     rim = r_guide * np.array([-0.8, -0.6])
     return [
         (
@@ -207,7 +209,8 @@ def _flank(values: dict[str, Any], body: str, side: int) -> np.ndarray:
         math.radians(values["contact_angle"]),
         *(values[f"{b}_radius"] for b in PROFILES),
     )
-    radius = r_guide if body == PROFILES[0] else radius
+    if body == PROFILES[0]:
+        radius = r_guide
     try:
         shape = cross_section(
             json.dumps(values.get(body)) if values.get(body) else "",

@@ -91,7 +91,10 @@ def _points(results: Results, body: str, known: Mapping[str, Material], rule: st
     If no rolling case has a life, return those of all cases with a life.
     """
     life = results.column(f"life_cycles_{body}")
-    rows = (life > 0) & results.rolling if ((life > 0) & results.rolling).any() else life > 0
+    if ((life > 0) & results.rolling).any():
+        rows = (life > 0) & results.rolling
+    else:
+        rows = life > 0
     given, points = results.material(body), {}
     for material in dict.fromkeys(given):
         mine = (given == material) & rows
@@ -109,7 +112,9 @@ def _amplitude(results: Results) -> str:
     """Name the result that entered the S-N curve: the peak stress, or that of another life
     criterion.
     """
-    return "fatigue_stress" if results.has("fatigue_stress_roller") else "peak_stress"
+    if results.has("fatigue_stress_roller"):
+        return "fatigue_stress"
+    return "peak_stress"
 
 
 def _ends(points: list, materials: list[Material]) -> tuple[float, float]:
@@ -129,7 +134,9 @@ def _lines(
     at, median = np.geomspace(*ends, 400), SNCurve.of(material, rule)
     for probability in PROBABILITIES if median.scatters else (0.5,):
         stress = median.changed(failure_probability=probability).allowable_stress(at)
-        width = 1.0 if probability == 0.5 else 0.8
+        width = 0.8
+        if probability == 0.5:
+            width = 1.0
         axes.plot(
             at,
             stress,
@@ -179,7 +186,9 @@ def _entries(
     entries.append(("90 % of the cases", {"color": "0.5", "linewidth": 4}))
     entries.append(("their median", {"marker": "o", "markerfacecolor": "white", **none}))
     ends = r"$R_\mathrm{m}$ and $\sigma_\mathrm{D}$"
-    given = f"{ends}, or points as given" if any(known[n].sn_points for n in names) else ends
+    given = ends
+    if any(known[n].sn_points for n in names):
+        given = f"{ends}, or points as given"
     entries.append((given, {"marker": "|", "markersize": 8, **none}))
     if any(SNCurve.of(known[n]).scatters for n in names):
         dashes = [(p, {"color": "0.3", "linestyle": _DASHES.get(p, "-")}) for p in PROBABILITIES]
@@ -192,11 +201,8 @@ def _info(
 ) -> style.FigureInfo:
     caption = (
         "S-N curves of the materials (failure probability 50 %, and 10 and 90 % where the "
-        "material gives its scatter) "
-        f"with the {_WORDS[_amplitude(results)]} (MPa) and the life in overrollings of the "
-        "rolling cases at the worse "
-        "contact. "
-        f"{CONVENTIONS[rule]}."
+        f"material gives its scatter) with the {_WORDS[_amplitude(results)]} (MPa) and the life in "
+        f"overrollings of the rolling cases at the worse contact. {CONVENTIONS[rule]}."
     )
     if any(known[name].second_exponent is not None for _, points in shown for name in points):
         caption += f" {capital(GIVEN_SLOPE)}."
@@ -212,4 +218,6 @@ def _scatter_words(known: Mapping[str, Material], names: Points) -> str:
     for name in (n for n in names if SNCurve.of(known[n]).scatters):
         scatter = float(SNCurve.of(known[name]).scatter_ranges[0])
         said.append(f"{rounded(scatter**-0.5, 2)} times its median life ({name})")
-    return f"By the scatter of the material, 10 % have failed at {listing(said)}." if said else ""
+    if said:
+        return f"By the scatter of the material, 10 % have failed at {listing(said)}."
+    return ""

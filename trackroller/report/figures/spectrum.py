@@ -43,7 +43,10 @@ def damage_by_block(ds: xr.Dataset) -> style.Drawn:
     )
     worst_blocks = []
     for axes, colour, (body, part) in zip(panels, style.PAIR, shares.items(), strict=False):
-        values = np.append(part[shown], part[rest].sum()) if len(rest) else part[shown]
+        if len(rest):
+            values = np.append(part[shown], part[rest].sum())
+        else:
+            values = part[shown]
         bars = axes.barh(words, 100 * values, color=colour, height=0.62)
         axes.bar_label(bars, [chance(float(v)) for v in values], padding=2, fontsize=7)
         axes.set(xlim=(0, 125), xticks=range(0, 101, 25), xlabel=f"damage of the {body} [%]")

@@ -131,7 +131,9 @@ def log_ticks(axis: Any, low: float, high: float) -> None:
     such as 1, 2 and 5.
     """
     axis.set_minor_formatter(NullFormatter())
-    powers = math.log10(high / low) if low > 0 and high > low else 0.0
+    powers = 0.0
+    if low > 0 and high > low:
+        powers = math.log10(high / low)
     if not 0 < powers <= 1.6:
         return
     few = powers < 0.7
@@ -150,7 +152,9 @@ def save(figure: Figure, out_dir: Path, name: str) -> tuple[Path, Path]:
     paths = out_dir / f"{name}.svg", out_dir / f"{name}.png"
     for path in paths:
         # the same data gives the same file
-        metadata = {"Date": None} if path.suffix == ".svg" else None
+        metadata = None
+        if path.suffix == ".svg":
+            metadata = {"Date": None}
         drawn = io.BytesIO()
         figure.savefig(drawn, format=path.suffix[1:], metadata=metadata)
         write_whole(path, partial(Path.write_bytes, data=drawn.getvalue()))

@@ -55,8 +55,8 @@ def profiles(ds: xr.Dataset) -> style.Drawn:
     magnified = reach * 1e3 / max(float(np.ptp(new)), 1e-9)
     caption = (
         "Worn surfaces of roller and guide over the new surface of the guide, moved together "
-        "until they touch. Grey: "
-        f"width of the patch under load. Heights are magnified about {rounded(magnified, 1)} times."
+        "until they touch. Grey: width of the patch under load. Heights are magnified about "
+        f"{rounded(magnified, 1)} times."
     )
     depth = 1e3 * float(own["groove_depth"].isel(travel=-1).sum("body"))
     wide = f"The patch grows from {rounded(2 * half[0])} to {rounded(2 * half[-1])} mm"
@@ -121,7 +121,8 @@ def course(ds: xr.Dataset) -> style.Drawn:
     """
     travel, contacts = ds["travel"].values, ds["contact"].values.tolist()
     rows = [("groove_depth", "depth [µm]", 1e3), ("max_pressure", "largest pressure [MPa]", 1.0)]
-    rows += [("fatigue_damage", "damage sum [–]", 1.0)] if "fatigue_damage" in ds else []
+    if "fatigue_damage" in ds:
+        rows += [("fatigue_damage", "damage sum [–]", 1.0)]
     figure, panels = style.panels("Depth, pressure and fatigue over the travel", 58, len(rows))
     for axes, (name, words, scale) in zip(panels, rows, strict=True):
         for body, colour in zip(BODIES, style.PAIR, strict=False):
@@ -130,7 +131,10 @@ def course(ds: xr.Dataset) -> style.Drawn:
                 values = scale * (own.sel(body=body) if "body" in own.dims else own).values
                 if np.isnan(values).all() or ("body" not in own.dims and body == BODIES[1]):
                     continue
-                of = f"{body}, contact {contact}" if "body" in own.dims else f"contact {contact}"
+                if "body" in own.dims:
+                    of = f"{body}, contact {contact}"
+                else:
+                    of = f"contact {contact}"
                 axes.plot(
                     travel,
                     values,

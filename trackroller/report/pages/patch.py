@@ -67,7 +67,10 @@ def _is_rounding(ds: xr.Dataset, name: str) -> bool:
 
 
 def _head(ds: xr.Dataset, name: str) -> str:
-    units = "%" if name in IN_PER_CENT else unit_text(str(ds[name].attrs["units"]))
+    if name in IN_PER_CENT:
+        units = "%"
+    else:
+        units = unit_text(str(ds[name].attrs["units"]))
     words = HEADS.get(name) or capital(str(ds[name].attrs["long_name"]))
     return with_unit(words, units)
 

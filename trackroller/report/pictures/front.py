@@ -92,7 +92,10 @@ def _thinned(best: np.ndarray) -> list[int]:
     others = np.flatnonzero(~best)
     room = max(0, MOST_POINTS - int(best.sum()))
     if len(others) > room:
-        others = others[np.linspace(0, len(others) - 1, room).astype(int)] if room else others[:0]
+        if room:
+            others = others[np.linspace(0, len(others) - 1, room).astype(int)]
+        else:
+            others = others[:0]
     front = np.flatnonzero(best)
     if len(front) > MOST_POINTS:
         front = front[np.linspace(0, len(front) - 1, MOST_POINTS).astype(int)]
@@ -111,6 +114,8 @@ def _named_dots(named: Sequence[Mapping[str, Any]], across: Axis, up: Axis) -> l
         end = x > 50
         parts.append(dot("d cm", x, y, 5.5))
         text = cut(str(one["title"]), WIDE * (x if end else 100 - x) / 100)
-        anchor = "end" if end else "start"
+        anchor = "start"
+        if end:
+            anchor = "end"
         parts.append(label(text, x, f"{height:.0f}", anchor, "strong", dx=-12 if end else 12, dy=4))
     return parts

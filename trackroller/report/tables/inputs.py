@@ -68,7 +68,9 @@ class Row:
         """Return where the value comes from, in a word."""
         if self.database:
             return "database"
-        return "example" if self.default else "given"
+        if self.default:
+            return "example"
+        return "given"
 
 
 def input_rows(
@@ -107,13 +109,12 @@ def input_row(name: str, value: Any) -> Row:
     """Return an input with its unit; mark the default."""
     if name in PARAMETERS:
         parameter = PARAMETERS[name]
-        shown = (
-            "not given"
-            if value is None
-            else number(value)
-            if isinstance(value, (int, float))
-            else str(value)
-        )
+        if value is None:
+            shown = "not given"
+        elif isinstance(value, (int, float)):
+            shown = number(value)
+        else:
+            shown = str(value)
         words = f"{parameter.long_name} {parameter.symbol}"
         return Row(words, shown, row_unit(parameter.unit), is_default(name, value))
     if name in MAPPING_FIELDS and name not in MECHANICAL_MAPPINGS:
@@ -122,8 +123,10 @@ def input_row(name: str, value: Any) -> Row:
         shown = level_text(
             name, value if isinstance(value, str) else json.dumps(value, sort_keys=True)
         )
+    elif isinstance(value, Mapping):
+        shown = str(value.get("name", "inline"))
     else:
-        shown = str(value.get("name", "inline")) if isinstance(value, Mapping) else str(value)
+        shown = str(value)
     return Row(plain(name), shown, "", is_default(name, value))
 
 
@@ -133,9 +136,10 @@ def material_rows(material: Material) -> list[Row]:
     for one in map({**PROPERTIES, **ALTERNATIVES}.__getitem__, SHOWN):
         value = getattr(material, one.name)
         # a symbol that the words or the unit hold already is not repeated
-        words = (
-            one.label if one.symbol in f"{one.label} {one.unit}" else f"{one.label} {one.symbol}"
-        )
+        if one.symbol in f"{one.label} {one.unit}":
+            words = one.label
+        else:
+            words = f"{one.label} {one.symbol}"
         rows.append(
             Row(words, "not given")
             if value is None
@@ -171,7 +175,10 @@ def factor_table(results: Results) -> Table | None:
             values = " … ".join(near(v, levels[-1] - levels[0]) for v in (levels[0], levels[-1]))
         else:
             values = ", ".join(level_text(name, v, unit=name in NAMED) for v in levels)
-        symbol, unit = (parameter.symbol, unit_text(parameter.unit)) if parameter else ("", "")
+        if parameter:
+            symbol, unit = (parameter.symbol, unit_text(parameter.unit))
+        else:
+            symbol, unit = ("", "")
         rows.append(
             [
                 f"{capital(long_name(name))} {symbol}",
@@ -181,11 +188,9 @@ def factor_table(results: Results) -> Table | None:
                 len(levels),
             ]
         )
-    return (
-        Table("factors", "Factors", ["Factor", "Unit", "Values", "Set as", "Number"], rows)
-        if rows
-        else None
-    )
+    if rows:
+        return Table("factors", "Factors", ["Factor", "Unit", "Values", "Set as", "Number"], rows)
+    return None
 
 
 def _spec(spec: Any) -> str:
@@ -200,7 +205,9 @@ def _spec(spec: Any) -> str:
             "rows of a table with "
             f"{', '.join(long_name(column) for column in value[0] if column != 'name')}"
         )
-    return "" if kind == "values" else f"{kind} {', '.join(f'{v:g}' for v in value)}"
+    if kind == "values":
+        return ""
+    return f"{kind} {', '.join(f'{v:g}' for v in value)}"
 
 
 def correlation_row(results: Results) -> list[Row]:
@@ -209,7 +216,9 @@ def correlation_row(results: Results) -> list[Row]:
         f"{long_name(one)} with {long_name(other)} {number(rho)}"
         for one, other, rho in results.config.rank_correlations
     ]
-    return [Row("Rank correlations", "; ".join(said))] if said else []
+    if said:
+        return [Row("Rank correlations", "; ".join(said))]
+    return []
 
 
 def base_rows(results: Results) -> list[Row]:
@@ -252,7 +261,9 @@ def materials_table(attrs: Mapping[str, Any]) -> Table | None:
         ]
         for name, values in stored_materials(attrs).items()
     ]
-    return Table("materials", "Materials", heads, rows) if rows else None
+    if rows:
+        return Table("materials", "Materials", heads, rows)
+    return None
 
 
 def stored_materials(attrs: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
@@ -263,9 +274,9 @@ def stored_materials(attrs: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
         stored = json.loads(str(attrs.get("materials", "{}")))
     except ValueError:
         return {}
-    return (
-        {n: v for n, v in stored.items() if isinstance(v, dict)} if isinstance(stored, dict) else {}
-    )
+    if isinstance(stored, dict):
+        return {n: v for n, v in stored.items() if isinstance(v, dict)}
+    return {}
 
 
 def material_source(values: Mapping[str, Any]) -> str:
@@ -291,14 +302,18 @@ def friction_table(attrs: Mapping[str, Any]) -> Table | None:
         for one in friction_records(attrs)
     ]
     heads = ["Pair", "Level", "Friction coefficient μ", "Source"]
-    return Table("friction", "Friction from the database", heads, rows) if rows else None
+    if rows:
+        return Table("friction", "Friction from the database", heads, rows)
+    return None
 
 
 def friction_source(record: Mapping[str, Any]) -> str:
     """Return where a friction coefficient of the database comes from, its note, and whether it is a
     placeholder.
     """
-    note = f"; {record['note']}" if record.get("note") else ""
+    note = ""
+    if record.get("note"):
+        note = f"; {record['note']}"
     return f"{record['source']}{' (placeholder)' * record['placeholder']}{note}"
 
 
@@ -312,5 +327,6 @@ def record_rows(attrs: Mapping[str, Any], skip: set[str]) -> list[Row]:
                 text = ", ".join(f"{k} {v}" for k, v in json.loads(text).items())
             except (ValueError, AttributeError):
                 pass
-        rows += [Row(capital(plain(str(key))), text)] if text and key not in skip else []
+        if text and key not in skip:
+            rows += [Row(capital(plain(str(key))), text)]
     return rows
