@@ -251,9 +251,9 @@ def case_cautions(results: SolvedCases, ranges: CaseRanges, rows: np.ndarray) ->
                 f"{word} {count:,}" for word, count in reasons.value_counts().items()
             )
             where = where_text(results, hit, rows)
-            found.append(
-                Caution(code, int(hit.sum()), total, f"{counts}: {where}" if where else counts)
-            )
+            if where:
+                counts = f"{counts}: {where}"
+            found.append(Caution(code, int(hit.sum()), total, counts))
     beyond = ranges.beyond & rows
     if is_life(ranges.output[0]) and beyond.any():
         found.append(
@@ -289,7 +289,7 @@ def _outlives_groove(results: SolvedCases, output: str) -> np.ndarray:
     """
     body = body_of(output)
     if is_life(output) and body:
-        return results.flagged("worn", body if results.by_body else "")
+        return results.flagged("worn", body)
     if output not in OF_PAIR or not results.by_body:
         return results.flagged("worn")
     beyond = {body: results.flagged("worn", body) for body in BODIES}

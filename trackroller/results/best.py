@@ -16,7 +16,7 @@ from trackroller.errors import InputError, listing
 from trackroller.methods.optimise import nondominated_ranks
 from trackroller.parameters import BODIES, REGIMES
 from trackroller.parameters.carriage_fields import long_name_of, parameter_of
-from trackroller.results.answer import Answer, Caution, Column, Required
+from trackroller.results.answer import Answer, Caution, Column, Required, yes_or_blank
 from trackroller.results.answer_parts import (
     case_cautions,
     checks_left_out,
@@ -265,10 +265,9 @@ def _kind(found: _Found) -> str:
 
 def _headline(found: _Found, kind: str) -> dict[str, Any]:
     """Return the numbers and names of the headline."""
-    settled = kind in ("one", "front", "front_required")
-    head: dict[str, Any] = {
-        "designs": [_design(found, number) for number in found.named] if settled else []
-    }
+    head: dict[str, Any] = {"designs": []}
+    if kind in ("one", "front", "front_required"):
+        head["designs"] = [_design(found, number) for number in found.named]
     if not found.usable:
         return head
     chosen = found.chosen
@@ -279,7 +278,7 @@ def _headline(found: _Found, kind: str) -> dict[str, Any]:
         "exceeded": _exceeded(found, chosen),
         "count": int(found.front.sum()),
     }
-    if not settled:
+    if not head["designs"]:
         return head | {"nearest": _nearest(found, chosen)}
     if found.wanted and _is_drawn(found):
         own = _requirement(found, chosen)
@@ -331,7 +330,10 @@ def _nearest(found: _Found, number: int) -> dict[str, Any]:
     meets = min((own.sure[number] for own in found.shares), default=0.0)
     of = rows.stop - rows.start
     worse = found.ranges.worse[rows]
-    low = float(worse.min() if found.ranges.rises else worse.max())
+    if found.ranges.rises:
+        low = float(worse.min())
+    else:
+        low = float(worse.max())
     return {
         "name": _name(found, number),
         "holds": int(found.results.held[rows].sum()),
@@ -523,9 +525,7 @@ def _row(found: _Found, number: int) -> dict[str, Any]:
         row["exceeded"] = np.nan
     else:
         row["exceeded"] = over["use"]
-    row["extrapolated"] = ""
-    if _beyond(found)[number]:
-        row["extrapolated"] = "yes"
+    row["extrapolated"] = yes_or_blank(_beyond(found)[number])
     return row
 
 
@@ -579,8 +579,12 @@ def _step(found: _Found) -> dict[str, Any]:
         ratio = np.nan
         if own:
             ratio = float(one["values"][0]) / own
-        if np.isnan(worst) or (ratio < worst if way == "max" else ratio > worst):
-            worst, step = ratio, f"{long_name_of(one['choice'])} {one['step']}"
+        is_worse = ratio > worst
+        if way == "max":
+            is_worse = ratio < worst
+        if np.isnan(worst) or is_worse:
+            worst = ratio
+            step = f"{long_name_of(one['choice'])} {one['step']}"
     return {"step": worst, "step_of": step}
 
 

@@ -413,7 +413,9 @@ def _drawn_lives(
         [own.lives(name, column.values, own.at(i, probability=p)) for i in range(DRAWS)], axis=1
     )
     deviation = own.moved(scattering_body(name), every)[1]
-    return lives, np.where(np.isnan(deviation), 0.0 if given is None else given[:, None], deviation)
+    if given is None:
+        given = np.zeros(n)
+    return lives, np.where(np.isnan(deviation), given[:, None], deviation)
 
 
 def bands(results: SolvedCases, deviations: Mapping[str, np.ndarray]) -> xr.Dataset:
@@ -494,9 +496,9 @@ def _b10_bands(
     lives = [name for name in dict.fromkeys(lives) if is_life(name)]
     if not (design.method.points or design.method.sampled) or not lives:
         return xr.Dataset()
-    points: list[Any] = (
-        list(design.points) if design.method.points else [design.method.independent_rows(design)]
-    )
+    points: list[Any] = list(design.points)
+    if not design.method.points:
+        points = [design.method.independent_rows(design)]
     columns = _columns(results, lives)
     values = np.full((3, len(columns), len(points)), np.nan)
     for i, column in enumerate(columns):

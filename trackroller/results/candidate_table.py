@@ -315,9 +315,9 @@ def _ends(own: Comparison) -> dict[str, Any]:
     worse, case = own.smallest(ranges.worse, rows)
     better, case_better = _at_best_place(own, rows)
     if ranges.rises:
-        low, high = (worse, better)
+        low, high = worse, better
     else:
-        low, high = (better, worse)
+        low, high = better, worse
     best = -own.ranges.sign * _least(own, -own.ranges.sign * ranges.better, rows & ranges.held)
     with np.errstate(invalid="ignore", over="ignore"):
         middle = np.where((low > 0) & (high > 0), np.sqrt(low) * np.sqrt(high), 0.5 * (low + high))
@@ -399,7 +399,10 @@ def _end_words(own: Comparison, case: np.ndarray, end: str) -> tuple[list[str], 
         if ended:
             word = str(names[row])
         words.append(limit_word(word.removeprefix("limit ")))
-        bodies.append(BODIES[int(guide[row])] if ended and word else "")
+        first_body = ""
+        if ended and word:
+            first_body = BODIES[int(guide[row])]
+        bodies.append(first_body)
     return words, bodies
 
 
@@ -493,15 +496,18 @@ def _fails(own: Comparison, table: pd.DataFrame) -> list[str]:
     else:
         good = own.ranges.held
     names = [name for name in own.conditions if own.results.table[name].nunique() > 1]
-    missed = (
-        table["of"].to_numpy() - (table["meets"] if own.required else table["holds"]).to_numpy()
-    )
+    if own.required:
+        good_count = table["meets"]
+    else:
+        good_count = table["holds"]
+    missed = table["of"].to_numpy() - good_count.to_numpy()
+    everywhere = np.where(table["of"] > 1, "everywhere", "")
     out = []
     for number in range(own.count):
         if missed[number] == 0:
             out.append("")
         elif missed[number] == table["of"].iloc[number]:
-            out.append("everywhere" if table["of"].iloc[number] > 1 else "")
+            out.append(everywhere[number])
         elif number < DESCRIBED and not own.drawn:
             out.append(_where(own, names, number, good))
         else:
@@ -519,9 +525,10 @@ def _where(own: Comparison, names: list[str], number: int, good: np.ndarray) -> 
     few = [place for place in found if len(place) <= MOST_FACTORS]
     if found and len(few) == len(found):
         return places_text(found, part)
-    reasons = pd.Series(own.ranges.reason[rows][~good[rows]]).replace(
-        "", "too short" if own.ranges.rises else "too much"
-    )
+    miss = "too much"
+    if own.ranges.rises:
+        miss = "too short"
+    reasons = pd.Series(own.ranges.reason[rows][~good[rows]]).replace("", miss)
     counts = reasons.map(lambda word: limit_word(str(word).removeprefix("limit "))).value_counts()
     return ", ".join(f"{word} in {count}" for word, count in counts.items())
 
@@ -541,7 +548,9 @@ def _second_models(own: Comparison) -> dict[str, Any]:
     if value is None or not is_life(own.ranges.output[0]):
         return nothing
     names = [str(name) for name in own.results.data["limit"].values]
-    rows = own.own & (own.ranges.held if own.drawn else own.reachable)
+    rows = own.own & own.reachable
+    if own.drawn:
+        rows = own.own & own.ranges.held
     shortest = np.full(own.count, np.inf)
     longest = np.full(own.count, np.inf)
     which = np.full(own.count, "", dtype=object)
@@ -637,7 +646,9 @@ def _exceeded(own: Comparison) -> dict[str, Any]:
     most = np.where(np.isnan(flattened), -np.inf, flattened)
     place = most.argmax(axis=1)
     worst = most[np.arange(len(place)), place]
-    rows = own.own & (own.reachable if not own.drawn else own.own) & np.isfinite(worst)
+    rows = own.own & np.isfinite(worst)
+    if not own.drawn:
+        rows &= own.reachable
     if not rows.any():
         return nothing
     names = [str(name) for name in data["limit"].values]
@@ -660,7 +671,10 @@ def _exceeded(own: Comparison) -> dict[str, Any]:
         out["exceeded_by"].append(limit_word(names[limit]))
         out["exceeded_body"].append(BODIES[body])
         out["use"].append(float(worst[row]))
-        out["use_hours"].append(np.nan if hours is None else float(hours[row, limit, body]))
+        own_hours = np.nan
+        if hours is not None:
+            own_hours = float(hours[row, limit, body])
+        out["use_hours"].append(own_hours)
     return out
 
 

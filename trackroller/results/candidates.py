@@ -72,7 +72,10 @@ def _input(results: SolvedCases, name: str) -> np.ndarray:
     if name in results.table and results.numeric(name):
         return results.column(name)
     value = results.base.get(name)
-    return np.full(len(results.table), float(value) if isinstance(value, (int, float)) else np.nan)
+    filled = np.nan
+    if isinstance(value, (int, float)):
+        filled = float(value)
+    return np.full(len(results.table), filled)
 
 
 def mixed(results: SolvedCases) -> np.ndarray:
@@ -184,7 +187,10 @@ class Candidates:
         place = np.where(own, codes(results.table, choices), -1)
         place[own] = np.unique(place[own], return_inverse=True)[1]
         use = codes(results.table, conditions)
-        if conditions and (left_out := mixed(results)).any():
+        left_out = np.zeros(len(use), dtype=bool)
+        if conditions:
+            left_out = mixed(results)
+        if left_out.any():
             place = np.where(left_out, -1, place)
             place[place >= 0] = np.unique(place[place >= 0], return_inverse=True)[1]
         if results.config.method.observed:
@@ -358,7 +364,11 @@ class Candidates:
         values : of the cases, shape (n,)
         way : `max` if more is better, otherwise `min`
         """
-        return self._least(values if way == "max" else -values, self.usable)
+        if way == "max":
+            worse = values
+        else:
+            worse = -values
+        return self._least(worse, self.usable)
 
     def _count(self, rows: np.ndarray) -> np.ndarray:
         return np.bincount(self.place[rows & (self.place >= 0)], minlength=len(self.size))
@@ -379,7 +389,11 @@ class Candidates:
         S-N data.
         """
         values, rows = self.results.column(self.goal[0]), np.flatnonzero(self.usable)
-        order = rows[np.lexsort((values[rows] if self.rising else -values[rows], self.place[rows]))]
+        if self.rising:
+            rising_values = values[rows]
+        else:
+            rising_values = -values[rows]
+        order = rows[np.lexsort((rising_values, self.place[rows]))]
         number = self._count(self.usable)
         start, some = np.cumsum(number) - number, number > 0
         beyond = beyond_sn_data(self.results, self.goal[0])
@@ -449,7 +463,11 @@ def hardest_first(candidates: Candidates) -> np.ndarray:
     use = codes(table, candidates.conditions)
     use = np.unique(np.where(own, use, -1), return_inverse=True)[1] - int(not own.all())
     worst = np.full(use.max() + 1, np.inf)
-    values = candidates.results.column(candidates.goal[0]) * (1.0 if candidates.rising else -1.0)
+    if candidates.rising:
+        sign = 1.0
+    else:
+        sign = -1.0
+    values = candidates.results.column(candidates.goal[0]) * sign
     np.minimum.at(worst, use[candidates.usable], values[candidates.usable])
     valid = np.bincount(use[candidates.usable], minlength=len(worst))
     return np.where(own, np.argsort(np.lexsort((worst, valid)))[use], -1)

@@ -183,6 +183,9 @@ def answer_of_carriage(ds: xr.Dataset) -> Answer:
     table = _table(ds)
     guesses = placeholders_part(ds)
     known = [one for one in COLUMNS if one.name == "roller" or not _is_empty(table[one.name])]
+    parts = list(_parts(ds))
+    if not guesses.table.empty:
+        parts.append(guesses)
     return Answer(
         question="carriage",
         kind=_kind(ds),
@@ -191,7 +194,7 @@ def answer_of_carriage(ds: xr.Dataset) -> Answer:
         table=table,
         columns=tuple(known),
         required=_required(table),
-        parts=(*_parts(ds), *([] if guesses.table.empty else [guesses])),
+        parts=tuple(parts),
         not_checked=_not_checked(ds),
         not_given=not_given_values(ds),
         warnings=(*_warnings(ds), *guess_cautions(guesses), *_not_given(ds)),
@@ -246,6 +249,12 @@ def _headline(ds: xr.Dataset, table: pd.DataFrame) -> dict[str, Any]:
         lives = ds["life_km"].values
     else:
         lives = np.full(ds.sizes["roller"], np.nan)
+    force = math.nan
+    if np.isfinite(forces).any():
+        force = -float(np.nanmin(forces))
+    unknown = []
+    if "life_km" in ds:
+        unknown = ds["roller"].values[np.isnan(lives)].tolist()
     head: dict[str, Any] = {
         "roller": roller,
         "case": case,
@@ -255,8 +264,8 @@ def _headline(ds: xr.Dataset, table: pd.DataFrame) -> dict[str, Any]:
         "km": math.nan,
         "body": "",
         "limit": "",
-        "force": -float(np.nanmin(forces)) if np.isfinite(forces).any() else math.nan,
-        "unknown": ds["roller"].values[np.isnan(lives)].tolist() if "life_km" in ds else [],
+        "force": force,
+        "unknown": unknown,
         "without_file": [name for name in ds.attrs.get("without_case", "").split(", ") if name],
         "unsettled": ds["load_case"].values[~ds["converged"].values].tolist(),
         "margins": list(_first_margins(ds)),
@@ -291,12 +300,18 @@ def _first_margins(ds: xr.Dataset) -> Iterator[dict[str, Any]]:
         if not np.isfinite(first).any():
             continue
         place = int(np.nanargmin(first))
+        end = "lift-off"
+        if before[place]:
+            end = "one contact"
+            tipping = math.nan
+        else:
+            tipping = float(ds[f"{part}_to_tipping"].values[place])
         yield {
             "of": words,
-            "end": "one contact" if before[place] else "lift-off",
+            "end": end,
             "times": float(first[place]),
             "case": str(ds["load_case"].values[place]),
-            "tipping": math.nan if before[place] else float(ds[f"{part}_to_tipping"].values[place]),
+            "tipping": tipping,
         }
 
 
@@ -317,7 +332,11 @@ def _judged(table: pd.DataFrame) -> dict[str, Any]:
     states = table["state"]
     worst = next((state for state in ("missed", "open", "met") if (states == state).any()), "")
     alike = (states == worst).all() or not worst
-    return {"state": worst, "of": [] if alike else table["roller"][states == worst].tolist()}
+    if alike:
+        worst_rollers = []
+    else:
+        worst_rollers = table["roller"][states == worst].tolist()
+    return {"state": worst, "of": worst_rollers}
 
 
 def _exceeded(ds: xr.Dataset) -> Iterator[dict[str, Any]]:
@@ -483,7 +502,10 @@ def _worst_case(ds: xr.Dataset, roller: str) -> tuple[str, float]:
         return str(ds["load_case"].values[place]), part
     forces = np.nan_to_num(own["radial_force"].values)
     place = int(np.argmin(forces))
-    return (str(ds["load_case"].values[place]) if forces[place] < 0 else ""), math.nan
+    worst_case = ""
+    if forces[place] < 0:
+        worst_case = str(ds["load_case"].values[place])
+    return worst_case, math.nan
 
 
 def _beside_rolling(own: xr.Dataset) -> str:

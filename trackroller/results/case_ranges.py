@@ -329,10 +329,11 @@ class CaseRanges:
         """Return the output or an end of its range as it is stored, shape (n,)."""
         name = self.output[0]
         results = self.results
-        plain = None
+        value: np.ndarray
         if name in results.table:
-            plain = results.table[name].to_numpy(dtype=float)
-        value: np.ndarray = results.quantity(name)[0].astype(float) if plain is None else plain
+            value = results.table[name].to_numpy(dtype=float)
+        else:
+            value = results.quantity(name)[0].astype(float)
         if end and f"{name}{end}" in results.data:
             found = flat(results.data, f"{name}{end}", results.dims).astype(float)
             value = np.where(np.isnan(found), value, found)

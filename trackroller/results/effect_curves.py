@@ -186,13 +186,16 @@ class Effects:
             own = np.array(levels, dtype=float)
         else:
             own = np.zeros(0)
-        height = float(
-            np.exp(middle.max() - middle.min()) if self.by_ratio else middle.max() - middle.min()
-        )
+        height = middle.max() - middle.min()
+        if self.by_ratio:
+            height = np.exp(height)
+        units = ""
+        if known is not None and known.unit != "-":
+            units = known.units
         return Curve(
             factor=name,
             title=long_name_of(name),
-            units="" if known is None or known.unit == "-" else known.units,
+            units=units,
             role=self.results.roles.get(name, ""),
             levels=tuple(
                 level.item() if isinstance(level, np.generic) else level for level in levels
@@ -202,7 +205,7 @@ class Effects:
             high=self.back(ends[1]),
             logarithmic=bool(numbers and spaced_by_ratio(own, 5.0)),
             ordered=self.results.ordered(name),
-            height=height,
+            height=float(height),
             shape=shape,
             rows=rows,
             left_out=max(left, 0),
@@ -213,17 +216,19 @@ class Effects:
         span = float(middle.max() - middle.min())
         if self.by_ratio:
             least = np.log(FLAT)
+            split = np.log(SPLIT)
+            turn = min(np.log(TURNS), HALF * span)
         else:
             least = 0.01 * max(float(np.abs(middle).max()), 1e-300)
-        if pairs is not None and _two_groups(
-            pairs, np.log(SPLIT) if self.by_ratio else 0.25 * max(span, 1e-300)
-        ):
+            split = 0.25 * max(span, 1e-300)
+            turn = 0.1 * span
+        turn = max(turn, 0.05 * span)
+        if pairs is not None and _two_groups(pairs, split):
             return "groups"
         if span <= least:
             return "flat"
         if not self.results.ordered(name):
             return "levels"
-        turn = max(min(np.log(TURNS), HALF * span) if self.by_ratio else 0.1 * span, 0.05 * span)
         top, bottom = int(middle.argmax()), int(middle.argmin())
         inner = len(middle) - 1
         if 0 < top < inner and min(middle[top] - middle[0], middle[top] - middle[-1]) > turn:

@@ -75,9 +75,7 @@ def reached_by_body(results: SolvedCases, end: str = "") -> np.ndarray:
         ranged = flat(results.data, f"life_hours_by_limit{end}", results.dims)
         hours = np.where(np.isnan(ranged), hours, ranged)
     limits = [LIMITS[name] for name in results.data["limit"].values.tolist()]
-    breaks = np.stack(
-        [results.flagged("static", body if results.by_body else "") for body in BODIES], axis=1
-    )
+    breaks = np.stack([results.flagged("static", body) for body in BODIES], axis=1)
     counted = np.array([not limit.beside for limit in limits])[:, None]
     reached = np.where(breaking(breaks, limits), 0.0, np.where(counted, hours, np.nan))
     return np.asarray(np.nan_to_num(reached, nan=np.inf, posinf=np.inf))

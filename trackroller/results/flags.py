@@ -34,7 +34,9 @@ def not_judged(ds: xr.Dataset) -> list[str]:
     if "validity" in ds:
         flags = int(ds["validity"])
     reasons = [words for name, words in OUTSIDE.items() if flags & validity_bit(name)]
-    return reasons + ["not converged"] * ("converged" in ds and int(ds["converged"]) != 1)
+    if "converged" in ds and int(ds["converged"]) != 1:
+        reasons.append("not converged")
+    return reasons
 
 
 def bodies_of(flag: str, by_body: bool) -> tuple[str, ...]:
@@ -51,7 +53,10 @@ def of_body(flag: str, body: str) -> str:
     body.
     """
     if body:
-        return f"{'at' if flag == 'half_space' else 'of'} the {body}"
+        preposition = "of"
+        if flag == "half_space":
+            preposition = "at"
+        return f"{preposition} the {body}"
     return ""
 
 

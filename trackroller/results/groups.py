@@ -109,13 +109,18 @@ def groups(
     if rows is None:
         rows = np.ones(len(table), dtype=bool)
     index, ends = classes(table, name, rows, most)
-    low, high = zip(*(end if isinstance(end, tuple) else (end, end) for end in ends), strict=True)
-    at, own = np.arange(len(ends), dtype=float), table[name].to_numpy()[rows]
-    if in_order := ordered(table[name]):
-        at = np.array(
-            [np.median(own[index == k]) if (index == k).any() else np.nan for k in range(len(ends))]
-        )
-    return Groups(name, index, low, high, at, in_order)
+    intervals = [end if isinstance(end, tuple) else (end, end) for end in ends]
+    low, high = zip(*intervals, strict=True)
+    in_order = ordered(table[name])
+    if not in_order:
+        return Groups(name, index, low, high, np.arange(len(ends), dtype=float), in_order)
+    own = table[name].to_numpy()[rows]
+    medians = np.full(len(ends), np.nan)
+    for k in range(len(ends)):
+        members = own[index == k]
+        if members.size:
+            medians[k] = np.median(members)
+    return Groups(name, index, low, high, medians, in_order)
 
 
 def drives(table: pd.DataFrame) -> Groups:

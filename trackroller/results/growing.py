@@ -57,7 +57,8 @@ class Growing:
             self.tell(
                 f"look {len(self.looks)}: {seen['cases']} cases, widest 95 % interval: {widest}"
             )
-            if unsure := seen.get("unsure"):
+            unsure = seen.get("unsure")
+            if unsure:
                 self.tell(
                     f"wider than wanted at {len(unsure)} of {len(self.study.drawn.points)} "
                     "design points"

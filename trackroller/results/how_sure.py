@@ -43,8 +43,11 @@ def answer_how_sure(results: SolvedCases) -> Answer:
     order = _order(own, table)
     shown = with_ratios(own, table.iloc[order].reset_index(drop=True))
     one = shown.iloc[0]
+    names = []
+    if own.count > 1:
+        names = names_of(own, order[:1])
     told: dict[str, Any] = {
-        "names": names_of(own, order[:1]) if own.count > 1 else [],
+        "names": names,
         **leading(own, one),
     }
     if not own.drawn:

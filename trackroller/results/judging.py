@@ -345,9 +345,9 @@ def _over_conditions(raw: np.ndarray, good: np.ndarray, kind: str, way: str) -> 
         out[some] = np.mean(raw[some], axis=1, where=good[some])
     else:
         if way == "max":
-            worst, end = (np.min, np.inf)
+            worst, end = np.min, np.inf
         else:
-            worst, end = (np.max, -np.inf)
+            worst, end = np.max, -np.inf
         out[some] = worst(np.where(good, raw, end)[some], axis=1)
     return out
 

@@ -65,7 +65,10 @@ def look(results: SolvedCases) -> dict[str, Any]:
     unsure = np.zeros(len(names), dtype=bool)
     inside = results.inside.any() or results.config.analysis.keep != ("rolling",)
     for name in until.of:
-        values, widths = (_of_points if design.method.points else _of_indices)(results, name)
+        if design.method.points:
+            values, widths = _of_points(results, name)
+        else:
+            values, widths = _of_indices(results, name)
         if np.isnan(values).all() or not (inside or statistic(name)[1] in REGIMES):
             seen["empty"].append(name)
             widths[:] = np.inf
@@ -81,7 +84,9 @@ def look(results: SolvedCases) -> dict[str, Any]:
         if np.isfinite(widths[widest]):
             seen["half_width"][name] = float(widths[widest])
         seen["at"][name] = names[widest]
-    return seen | ({"unsure": np.flatnonzero(unsure).tolist()} if design.method.points else {})
+    if design.method.points:
+        seen["unsure"] = np.flatnonzero(unsure).tolist()
+    return seen
 
 
 def _of_indices(results: SolvedCases, name: str) -> tuple[np.ndarray, np.ndarray]:

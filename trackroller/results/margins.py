@@ -226,7 +226,11 @@ def _order(margin: Margin) -> tuple[float, bool, float]:
         low = math.inf
     else:
         low = margin.low
-    return low, margin.beside, 0.0 if math.isnan(margin.used) else -margin.used
+    if math.isnan(margin.used):
+        used = 0.0
+    else:
+        used = -margin.used
+    return low, margin.beside, used
 
 
 def _of_limits(
@@ -467,7 +471,10 @@ def _of_loads(ranges: Limits, inputs: Mapping[str, Any]) -> list[Margin]:
             used = value / bound
         words = f"{PARAMETERS[field].long_name} between {low:.4g} and {high:.4g} N"
         margin = Margin(name, word, title, "pair", value, bound, "N", words, least=min(low, high))
-        out.append(_with_use(margin, used if math.isfinite(bound) else math.nan))
+        known_use = math.nan
+        if math.isfinite(bound):
+            known_use = used
+        out.append(_with_use(margin, known_use))
     now = float(inputs["friction_coefficient"])
     for name, word, title, bound in (
         ("self_locking", "self-locking", "self-locking by friction", ranges.self_locking_friction),
@@ -485,8 +492,11 @@ def _of_loads(ranges: Limits, inputs: Mapping[str, Any]) -> list[Margin]:
             used = now / bound
         words = PARAMETERS["friction_coefficient"].long_name
         margin = Margin(name, word, title, "pair", now, bound, "1", words)
-        none = replace(margin, state="kept", bound=f"{words}: none up to 2")
-        out.append(_with_use(margin, used) if math.isfinite(bound) else none)
+        if math.isfinite(bound):
+            margin = _with_use(margin, used)
+        else:
+            margin = replace(margin, state="kept", bound=f"{words}: none up to 2")
+        out.append(margin)
     return out
 
 

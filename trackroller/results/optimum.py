@@ -189,7 +189,8 @@ def _reported(search: _Search, decided: Judged, facts: dict[str, Any], tell: Tel
     if usable:
         designs, reached = _with_corners(search, decided, choices)
     else:
-        designs, reached = (decided, {})
+        designs = decided
+        reached = {}
     front = np.flatnonzero(nondominated_ranks(designs.costs, designs.missed) == 0)
     best = designs.take(front)
     chosen = recommended(best)
@@ -198,9 +199,9 @@ def _reported(search: _Search, decided: Judged, facts: dict[str, Any], tell: Tel
         shown = np.union1d(spread(best.costs, REPORTED), [chosen, *corners])
     else:
         shown = np.empty(0, int)
-    exact = {"accuracy": "reference"} | (
-        {"contact_model": ELEMENTS} if study.config.contact_model == TABLE else {}
-    )
+    exact = {"accuracy": "reference"}
+    if study.config.contact_model == TABLE:
+        exact["contact_model"] = ELEMENTS
     around = []
     if usable:
         checked = search.judged(_with(study, **exact), best.genes[shown])
@@ -213,7 +214,10 @@ def _reported(search: _Search, decided: Judged, facts: dict[str, Any], tell: Tel
         moved = best.take(np.empty(0, int))
     beside = f"{len(designs.genes) - len(decided.genes)} polished designs, {len(around)} neighbours"
     beside = f"solved beside the budget: {beside}, {len(shown)} optima at reference"
-    tell(beside if usable else "no design is valid, so there is no optimum to check")
+    if usable:
+        tell(beside)
+    else:
+        tell("no design is valid, so there is no optimum to check")
     final = search.of(study, designs.genes)
     optima = [
         {
@@ -316,7 +320,11 @@ def _polished(
 def _leader(designs: Judged, goal: int | None) -> np.ndarray:
     """Return the genes of the best design in a goal, or of the recommended one."""
     front = designs.take(np.flatnonzero(nondominated_ranks(designs.costs, designs.missed) == 0))
-    return np.asarray(front.genes[recommended(front) if goal is None else best_in(front, goal)])
+    if goal is None:
+        row = recommended(front)
+    else:
+        row = best_in(front, goal)
+    return np.asarray(front.genes[row])
 
 
 def _top(factor: Factor) -> float:

@@ -85,7 +85,10 @@ def study_pareto(results: SolvedCases) -> xr.Dataset | None:
         return None
     front = pareto(results, goals, config.constraints)
     front = front.assign(_beyond(results, dict.fromkeys(goals, front["row"].values)))
-    return front.assign_attrs(kind="case" if mixed else "design")
+    kind = "design"
+    if mixed:
+        kind = "case"
+    return front.assign_attrs(kind=kind)
 
 
 def pareto_mask(objectives: np.ndarray, directions: Iterable[str]) -> np.ndarray:
@@ -112,7 +115,11 @@ def pareto_mask(objectives: np.ndarray, directions: Iterable[str]) -> np.ndarray
     for direction in directions:
         if direction not in ("min", "max"):
             raise InputError("objectives", direction, "min or max")
-        signs.append(1.0 if direction == "min" else -1.0)
+        if direction == "min":
+            sign = 1.0
+        else:
+            sign = -1.0
+        signs.append(sign)
     costs = np.asarray(objectives, dtype=float) * np.array(signs)
     rows = np.flatnonzero(~np.isnan(costs).any(axis=1))
     # in lexicographic order only an earlier row can beat a row
@@ -368,13 +375,14 @@ def pareto_of_candidates(candidates: Candidates, objectives: Mapping[str, str]) 
         for name, (values, units, words) in columns.items()
     }
     goals["valid_in"] = (held[kept].astype(float), "1", "conditions in which it is valid")
+    model = ""
+    if "contact_model" in results.factors:
+        model = str(results.held_level("contact_model"))
     attrs = {
         "constraints": "; ".join(results.config.constraints),
         "rows": len(held),
         "conditions": candidates.possible,
-        "model": str(results.held_level("contact_model"))
-        if "contact_model" in results.factors
-        else "",
+        "model": model,
         "judged": "each goal at the worst of the conditions in which the design is valid",
         "study": results.data.attrs.get("study", ""),
     }

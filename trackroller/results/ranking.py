@@ -86,9 +86,10 @@ def order(sens: xr.Dataset, output: str, index: str = "") -> list[Rank]:
         *estimate(part, index).tolist(),
         strict=True,
     )
-    signed = index_words(sens, index).signed
     ranks = [rank for rank in map(Rank._make, rows) if np.isfinite(rank.value)]
-    return sorted(ranks, key=lambda r: -abs(r.value) if signed else -r.value)
+    if index_words(sens, index).signed:
+        return sorted(ranks, key=lambda rank: -abs(rank.value))
+    return sorted(ranks, key=lambda rank: -rank.value)
 
 
 def used_share(sens: xr.Dataset, output: str) -> float:

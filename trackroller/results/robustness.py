@@ -92,7 +92,7 @@ def robustness(
             [np.fmin.reduce(beyond[rows]) for rows in design.points]
         )
     out = xr.Dataset(coords=_coordinates(design, columns))
-    for key in by_output[0] if by_output else ():
+    for key in dict.fromkeys(key for one in by_output for key in one):
         axes: tuple[str, ...] = ("output", "point")
         if key == "percentile_value":
             axes = ("output", "point", "percentile")
@@ -121,6 +121,9 @@ def _attributes(design: Design, scatter: float) -> dict[str, str | int | float]:
         "does a case that exceeds a limit in the life to the first one; the same inner sample at "
         "every design point"
     )
+    scatter_words = ""
+    if scatter:
+        scatter_words = ", the material's own scatter of life in B10"
     return {
         "method": design.method.name,
         "rows": design.size,
@@ -129,7 +132,7 @@ def _attributes(design: Design, scatter: float) -> dict[str, str | int | float]:
         "outer_factors": ", ".join(design.meta["outer"]),
         "inner_factors": ", ".join(design.meta["inner"]),
         "log_life_scatter": scatter,
-        "treatment": treatment + (", the material's own scatter of life in B10" if scatter else ""),
+        "treatment": treatment + scatter_words,
     }
 
 

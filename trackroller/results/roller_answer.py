@@ -30,7 +30,7 @@ from trackroller.materials import Material
 from trackroller.parameters import BODIES, PARAMETERS, REGIMES
 from trackroller.parameters.carriage_fields import long_name_of
 from trackroller.parameters.example import drive_question
-from trackroller.results.answer import Answer, Caution, Column, Part, Required
+from trackroller.results.answer import Answer, Caution, Column, Part, Required, yes_or_blank
 from trackroller.results.columns import at_surface
 from trackroller.results.flags import flags_of, not_judged
 from trackroller.results.lives import FIRST_LIMIT, OF_PAIR
@@ -227,13 +227,19 @@ def _facts(ds: xr.Dataset) -> dict[str, Any]:
         used = str(solved_by(ds).item())
     else:
         used = str(ds.attrs["contact_model"])
+    converged = True
+    if "converged" in ds:
+        converged = bool(int(ds["converged"]))
+    reason = ""
+    if "reason" in ds:
+        reason = str(ds["reason"].item())
     return facts_of_data(
         ds,
         solved_by=used,
         probability=float(ds.attrs["failure_probability"]),
         regime=REGIMES[int(ds["regime"])],
-        converged=bool(int(ds["converged"])) if "converged" in ds else True,
-        reason=str(ds["reason"].item()) if "reason" in ds else "",
+        converged=converged,
+        reason=reason,
     )
 
 
@@ -266,6 +272,9 @@ def _headline(
     unknown = any(
         m.timed and not m.beside and math.isnan(m.hours) and m.body == "guide" for m in own
     )
+    unknown_body = ""
+    if unknown:
+        unknown_body = "guide"
     head: dict[str, Any] = {
         "low": math.nan,
         "high": math.nan,
@@ -273,7 +282,7 @@ def _headline(
         "body": "",
         "extrapolated": False,
         "guessed": False,
-        "unknown": "guide" if unknown else "",
+        "unknown": unknown_body,
         "unrated": _unrated(ds),
         "broken": [_use(one) for one in own if one.breaks],
         "exceeded": [_use(one) for one in over],
@@ -315,7 +324,10 @@ def _states(ds: xr.Dataset, first: First | None, required: Sequence[Required]) -
     """Return whether each requirement is met, and whether all are."""
     states = [_state_of(ds, first, one) for one in required]
     worst = [state for state in ("missed", "open", "met") if state in states]
-    return {"states": states, "state": worst[0] if worst else ""}
+    state = ""
+    if worst:
+        state = worst[0]
+    return {"states": states, "state": state}
 
 
 def _state_of(ds: xr.Dataset, first: First | None, required: Required) -> str:
@@ -357,7 +369,7 @@ def _required(ds: xr.Dataset, inputs: Mapping[str, Any]) -> tuple[Required, ...]
     found = []
     for name, own in requirement_of(ds).items():
         if name in OF_PAIR:
-            words, units = (FIRST_LIMIT[1], "h")
+            words, units = FIRST_LIMIT[1], "h"
         else:
             words, units = (PARTS[name].words, PARTS[name].variable.units)
         found.append(Required(name, words, units, own.least, own.most, own.probability, own.years))
@@ -381,7 +393,9 @@ def _columns(ds: xr.Dataset, own: Sequence[Margin]) -> tuple[Column, ...]:
         if one.name == "hours" and not apart:
             role = "file"
         found.append(Column(one.name, one.title, one.units, one.meaning, one.kind, until, role))
-    return tuple(found) + ((YEARS,) if duty_of(ds) else ())
+    if duty_of(ds):
+        found.append(YEARS)
+    return tuple(found)
 
 
 def _table(ds: xr.Dataset, own: Sequence[Margin], required: Sequence[Required]) -> pd.DataFrame:
@@ -402,12 +416,18 @@ def _table(ds: xr.Dataset, own: Sequence[Margin], required: Sequence[Required]) 
 
 def _row(margin: Margin, least: float) -> dict[str, Any]:
     """Return the row of a limit."""
+    low = margin.low
+    high = margin.high
+    hours = margin.hours
     if margin.breaks:
         low = 0.0
         high = 0.0
-    else:
-        low = margin.low
-        high = margin.high
+        hours = 0.0
+    model = ""
+    if margin.beside:
+        model = "second"
+    elif margin.lifeless:
+        model = "no fatigue life"
     state = margin.state
     if margin.ends and state != "exceeded" and math.isfinite(least):
         state = {"met": state, "open": "open", "missed": "missed"}[state_of_life(low, high, least)]
@@ -425,10 +445,10 @@ def _row(margin: Margin, least: float) -> dict[str, Any]:
         "used_high": margin.used_high,
         "low": low,
         "high": high,
-        "hours": 0.0 if margin.breaks else margin.hours,
-        "extrapolated": "yes" if margin.beyond and not math.isnan(margin.hours) else "",
-        "guessed": "yes" if margin.guessed else "",
-        "model": "second" if margin.beside else "no fatigue life" if margin.lifeless else "",
+        "hours": hours,
+        "extrapolated": yes_or_blank(margin.beyond and not math.isnan(margin.hours)),
+        "guessed": yes_or_blank(margin.guessed),
+        "model": model,
         "bound": margin.bound,
         "units": margin.units,
         "least": margin.least,
@@ -441,30 +461,28 @@ def _required_row(ds: xr.Dataset, required: Required) -> dict[str, Any]:
     value = math.nan
     if PARTS[required.output].variable.name in ds:
         value = float(PARTS[required.output].values(ds).item())
-    uses = []
-    if math.isfinite(required.most):
-        uses.append(value / required.most if required.most else math.inf)
-    if math.isfinite(required.least):
-        uses.append(required.least / value if value else math.inf)
-    used = math.nan
-    if not math.isnan(value):
-        used = max(uses, default=math.nan)
-    kept = required.least <= value <= required.most
+    used = _used_of(value, required)
     if math.isnan(value):
         state = "unknown"
-    elif kept:
+    elif required.least <= value <= required.most:
         state = "kept"
     else:
         state = "exceeded"
+    meaning = "required: at least"
+    if math.isfinite(required.most):
+        bound = required.most
+        meaning = "required: at most"
+    else:
+        bound = required.least
     margin = Margin(
         required.output,
         required.words,
         "requirement",
         "pair",
         value,
-        required.most if math.isfinite(required.most) else required.least,
+        bound,
         required.units,
-        "required: at most" if math.isfinite(required.most) else "required: at least",
+        meaning,
         least=required.least,
         used=used,
         used_low=used,
@@ -472,6 +490,24 @@ def _required_row(ds: xr.Dataset, required: Required) -> dict[str, Any]:
         state=state,
     )
     return _row(margin, -math.inf)
+
+
+def _used_of(value: float, required: Required) -> float:
+    """Return the largest share that a value uses of a requirement's bounds [1]."""
+    if math.isnan(value):
+        return math.nan
+    uses = []
+    if math.isfinite(required.most):
+        uses.append(_ratio(value, required.most))
+    if math.isfinite(required.least):
+        uses.append(_ratio(required.least, value))
+    return max(uses, default=math.nan)
+
+
+def _ratio(value: float, bound: float) -> float:
+    if bound == 0:
+        return math.inf
+    return value / bound
 
 
 QUANTITY = Column("quantity", "Quantity", "", "", "text", role="name")
@@ -576,7 +612,11 @@ def checks_left_out(ds: xr.Dataset, known: Collection[str] = ()) -> dict[str, tu
         for body in limit.bodies:
             why = ", ".join(_missing(ds, limit.name, body))
             if not _is_known(ds, limit.name, body):
-                found[body].append(f"{limit.word} ({why})" if why else limit.word)
+                if why:
+                    words = f"{limit.word} ({why})"
+                else:
+                    words = limit.word
+                found[body].append(words)
             elif why and _lacks_hours(ds, limit.name, body):
                 found[body].append(f"hours of {limit.word} ({why})")
     return {body: tuple(words) for body, words in found.items()}
@@ -624,7 +664,11 @@ def _missing(ds: xr.Dataset, name: str, body: str) -> list[str]:
             continue
         if lack.material and material and lack.material != material:
             continue
-        found.append(lack.words if lack.material else f"give {lack.name}")
+        if lack.material:
+            words = lack.words
+        else:
+            words = f"give {lack.name}"
+        found.append(words)
     if not found and regime in STOPPED:
         return [STOPPED[regime]]
     return found

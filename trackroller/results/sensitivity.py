@@ -196,7 +196,8 @@ def _of_groups_and_levels(design: Design, columns: Sequence[Output], asked: Anal
             design.method.group_indices(column.values, design, groups) for column in columns
         ]
         variables |= stacked(design.method, estimates, ("output", "group"))
-    if category := asked.conditional_on:
+    category = asked.conditional_on
+    if category:
         levels = design.factors[category].levels
         coords["level"] = (
             "level",

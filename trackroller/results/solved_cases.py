@@ -343,7 +343,9 @@ class SolvedCases:
         """Return columns, wordings and units of lives by the S-N curve; the pair needs the hours of
         the guide.
         """
-        return LIVES[0 if self.knows("guide_life_hours") else 1 :]
+        if self.knows("guide_life_hours"):
+            return LIVES
+        return LIVES[1:]
 
     @cached_property
     def regime(self) -> np.ndarray:
@@ -381,7 +383,7 @@ class SolvedCases:
         if flag not in self.flags:
             return np.zeros(len(self.table), dtype=bool)
         name = "validity"
-        if body:
+        if body and self.by_body:
             name = f"validity_{body}"
         bit = 1 << self.flags.index(flag)
         return np.asarray((np.nan_to_num(self.column(name, 0.0)).astype(np.int64) & bit) != 0)
@@ -648,7 +650,9 @@ def _usual_goals(ds: xr.Dataset) -> dict[str, str]:
     goals: dict[str, str] = {}
     known = "guide_life_hours" in ds and not bool(ds["guide_life_hours"].isnull().all())
     # of the pair where the guide's hours are known
-    lives = ["pair_life_to_first_limit_hours", *["pair_life_hours"] * known, "roller_life_hours"]
+    lives = ["pair_life_to_first_limit_hours", "roller_life_hours"]
+    if known:
+        lives.insert(1, "pair_life_hours")
     lives = [n for n in lives if n in ds and np.isfinite(ds[n]).any()]
     if lives:
         goals[lives[0]] = "max"

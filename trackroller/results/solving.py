@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 import tempfile
 from collections.abc import Mapping
-from contextlib import nullcontext
+from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
 from typing import Any
 
@@ -70,7 +70,10 @@ def run(
         if results is None and not checked.decides:
             return Results(checked, checked.drawn, solve_study(checked, bar.started, bar.advanced))
         # the cases of a study that decides follow from stored results
-        with tempfile.TemporaryDirectory() if results is None else nullcontext(results) as place:
+        folder: AbstractContextManager[Path | str] = tempfile.TemporaryDirectory()
+        if results is not None:
+            folder = nullcontext(results)
+        with folder as place:
             solved = open_study(run_any(checked, place, **shown).folder.root)
             if results is not None:
                 return solved

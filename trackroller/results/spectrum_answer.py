@@ -25,7 +25,7 @@ from trackroller.damage.verdict import STATES
 from trackroller.parameters import BODIES, PARAMETERS, REGIME_LABELS, REGIMES
 from trackroller.parameters.carriage_fields import long_name_of
 from trackroller.parameters.example import ABSENT, drive_question
-from trackroller.results.answer import Answer, Caution, Column, Part
+from trackroller.results.answer import Answer, Caution, Column, Part, yes_or_blank
 from trackroller.results.flags import flags_of, not_judged
 from trackroller.results.lives import FIRST_LIMIT, past_data
 from trackroller.results.margins import First, Margin, is_guessed
@@ -351,18 +351,25 @@ def _table(ds: xr.Dataset, own: list[Margin]) -> pd.DataFrame:
 
 def _row(ds: xr.Dataset, margin: Margin) -> dict[str, Any]:
     """Return the row of a limit."""
+    low = margin.low
+    high = margin.high
     if margin.breaks:
         low = 0.0
         high = 0.0
-    else:
-        low = margin.low
-        high = margin.high
-    block, share = _worst_block(ds, margin)
-    shift = float(ds["duration"].sum())
-    if margin.state == "kept" and margin.used > 1.0:
+    state = margin.state
+    if state == "kept" and margin.used > 1.0:
         state = "finite"
-    else:
-        state = margin.state
+    model = ""
+    if margin.beside:
+        model = "second"
+    shift = float(ds["duration"].sum())
+    block, share = _worst_block(ds, margin)
+    block_words = ""
+    if block:
+        block_words = f"{block}, {100 * share:.0f} %"
+    contact = math.nan
+    if margin.name == "fatigue" and block:
+        contact = known_damage(ds, margin.body)[0]
     return {
         "limit": margin.word,
         "body": margin.body,
@@ -375,14 +382,12 @@ def _row(ds: xr.Dataset, margin: Margin) -> dict[str, Any]:
         "km_high": high * _km_an_hour(ds),
         "shifts_low": low / shift,
         "shifts_high": high / shift,
-        "block": f"{block}, {100 * share:.0f} %" if block else "",
+        "block": block_words,
         "share": share,
-        "contact": known_damage(ds, margin.body)[0]
-        if margin.name == "fatigue" and block
-        else math.nan,
-        "extrapolated": "yes" if margin.beyond else "",
-        "guessed": "yes" if margin.guessed else "",
-        "model": "second" if margin.beside else "",
+        "contact": contact,
+        "extrapolated": yes_or_blank(margin.beyond),
+        "guessed": yes_or_blank(margin.guessed),
+        "model": model,
         "blocks": ", ".join(_blocks_of(ds, margin)),
         "name": margin.name,
     }

@@ -123,9 +123,11 @@ def open_as_reported(root: Path) -> Results:
     """
     results, stored = open_study(root), root / "sensitivity.nc"
     known = stored.is_file() and not results.unfinished and digests_of(stored)
-    return dataclasses.replace(
-        results, known_indices=read_result(stored) if known else xr.Dataset()
-    )
+    if known:
+        indices = read_result(stored)
+    else:
+        indices = xr.Dataset()
+    return dataclasses.replace(results, known_indices=indices)
 
 
 def solved_results(ledger: Ledger) -> Results:
@@ -139,7 +141,11 @@ def _materials_file(path: Path) -> Path:
     """Return the materials file in the folder of a study; `path` is that folder, or `study.nc` in
     it.
     """
-    return StudyFolder(path if path.is_dir() else path.parent).inputs / MATERIALS
+    if path.is_dir():
+        folder = path
+    else:
+        folder = path.parent
+    return StudyFolder(folder).inputs / MATERIALS
 
 
 def _gathered(path: Path) -> xr.Dataset | None:
@@ -164,7 +170,10 @@ def _gathered(path: Path) -> xr.Dataset | None:
         data = read_result(file)
     if data is None or planned not in (None, data.attrs.get("study")):
         return None
-    return data.assign_attrs({DATE: record["planned"]} if "planned" in record else {})
+    date = {}
+    if "planned" in record:
+        date = {DATE: record["planned"]}
+    return data.assign_attrs(date)
 
 
 def _read_unfinished(folder: StudyFolder, indices: xr.Dataset | None) -> Results:
@@ -263,7 +272,8 @@ def _study(data: xr.Dataset) -> Study:
         wrong = f"has a study file that this version does not read ({error.errors[0]})"
         raise InputError("study", name, "", _REMEDY, wrong) from None
     study = Study(config, not_given=tuple(json.loads(data.attrs.get(NOT_GIVEN, "[]"))))
-    if changed := _changed(stored, study.as_dict()):
+    changed = _changed(stored, study.as_dict())
+    if changed:
         allowed, wrong = (
             "a study file that is read as it was written",
             f"has another {changed} in this version",
@@ -280,7 +290,8 @@ def _changed(stored: Mapping[str, Any], now: Mapping[str, Any]) -> str:
         if key not in now:
             return key
         if isinstance(value, Mapping) and isinstance(now[key], Mapping):
-            if inner := _changed(value, now[key]):
+            inner = _changed(value, now[key])
+            if inner:
                 return f"{key}.{inner}"
         elif value != now[key]:
             return key

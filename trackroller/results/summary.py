@@ -55,7 +55,10 @@ def _factors(results: SolvedCases) -> str:
     """Return the first factors with their numbers of levels."""
     named = [f"{name} ({len(results.levels(name))})" for name in results.factors[:MOST_NAMED]]
     left = len(results.factors) - len(named)
-    return ", ".join(named) + (f" and {left} more" if left > 0 else "")
+    further = ""
+    if left > 0:
+        further = f" and {left} more"
+    return ", ".join(named) + further
 
 
 def _regimes(results: SolvedCases) -> str:

@@ -99,14 +99,16 @@ def targets(
     if len(names) > 1:
         hits, names = np.column_stack([hits, _all(hits, names)]), [*names, "all"]
     robust = design.method.points
-    levels, estimates = (_of_points if robust else _of_rows)(hits, design)
+    dims: tuple[str, ...]
+    if robust:
+        dims = ("target", "point")
+        levels, estimates = _of_points(hits, design)
+    else:
+        dims = ("target",)
+        levels, estimates = _of_rows(hits, design)
     out = xr.Dataset(coords=_coordinates(names, columns, wanted, levels))
     for end, whole in zip(ENDS, estimates[0], strict=True):
-        out[f"target_probability{end}"] = (
-            ("target", "point") if robust else ("target",),
-            whole,
-            {"units": "1"},
-        )
+        out[f"target_probability{end}"] = (dims, whole, {"units": "1"})
     for end, part in zip(ENDS, zip(*estimates[1:], strict=True), strict=False):
         out[f"level_probability{end}"] = (
             ("target", "target_level"),
@@ -150,7 +152,10 @@ def _share_above(lives: np.ndarray, limit: float, deviation: np.ndarray) -> np.n
     scatter, shape (n,).
     """
     if np.isinf(limit):
-        return np.full(len(lives), 1.0 if limit < 0 else 0.0)
+        share = 0.0
+        if limit < 0:
+            share = 1.0
+        return np.full(len(lives), share)
     with np.errstate(divide="ignore", invalid="ignore"):
         return np.asarray(stats.norm.cdf(np.log10(lives / limit) / np.maximum(deviation, 1e-9)))
 
@@ -294,8 +299,11 @@ def _finite(limits: list[float]) -> np.ndarray:
 def _coordinates(
     names: list[str], columns: list[Output], wanted: Mapping[str, Requirement], levels: list[Level]
 ) -> dict[str, Any]:
-    words = [c.long_name for c in columns] + ["all targets"] * (len(names) - len(columns))
-    units = [c.units for c in columns] + ["1"] * (len(names) - len(columns))
+    words = [c.long_name for c in columns]
+    units = [c.units for c in columns]
+    if len(names) > len(columns):
+        words.append("all targets")
+        units.append("1")
     limits = [wanted.get(name, Requirement()) for name in names]
     return {
         "target": np.array(names, dtype=str),

@@ -45,7 +45,9 @@ class Turning:
         found = []
         for end in ("_low", "_high"):
             moved = self.own.ranges.hours_at(end)
-            found.append(reached_by_body(self.own.results, end) if moved is None else moved)
+            if moved is None:
+                moved = reached_by_body(self.own.results, end)
+            found.append(moved)
         return found[0], found[1]
 
     @cached_property
@@ -132,9 +134,11 @@ class Turning:
                 )
                 if ahead.mean() >= best:
                     best = float(ahead.mean())
-                    found = self.told(
-                        one, int(np.argmin(ahead)) if ahead[0] else int(np.argmax(ahead))
-                    )
+                    if ahead[0]:
+                        first_met = int(np.argmin(ahead))
+                    else:
+                        first_met = int(np.argmax(ahead))
+                    found = self.told(one, first_met)
         return found
 
     def decides(self, number: int, least: float) -> dict[str, Any] | None:

@@ -79,6 +79,9 @@ def answer_of_wear(ds: xr.Dataset) -> Answer:
     table = _table(ds)
     required = _required(ds)
     head = _headline(ds) | {"fatigue": _first_by_fatigue(table, float(ds["travel"][-1]))}
+    parts = [states_part(ds)]
+    if not guesses.table.empty:
+        parts.append(guesses)
     return Answer(
         question="wear",
         kind="worn",
@@ -87,7 +90,7 @@ def answer_of_wear(ds: xr.Dataset) -> Answer:
         table=table,
         columns=COLUMNS,
         required=required,
-        parts=(states_part(ds), *([guesses] if not guesses.table.empty else [])),
+        parts=tuple(parts),
         not_given=_not_given(ds),
         warnings=tuple(_warnings(ds, guesses)),
         facts=facts_of_data(ds, name="A track roller while it wears"),
@@ -154,13 +157,15 @@ def _fatigue(own: xr.Dataset) -> dict[str, float]:
     if np.isnan(damage).any() or np.isnan(new):
         return unknown
     reached = bool(own["life_travel"].notnull().any())
+    life_high = np.inf
     if reached:
         life = float(own["life_travel"].min())
+        life_high = life
     else:
         life = float(own["travel"][-1])
     return {
         "life_travel": life,
-        "life_travel_high": life if reached else np.inf,
+        "life_travel_high": life_high,
         "life_new": new,
         "damage": float(damage.max()),
         "damage_error": float(own["fatigue_damage_error"].isel(travel=-1).max()),
