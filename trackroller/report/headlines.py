@@ -363,7 +363,10 @@ def how_sure(answer: Answer) -> Headline:
         if _known(head, "wanted"):
             wanted = [f"{percent(head['wanted'])} are wanted"]
         clauses = [*wanted, *_worst(answer), *_other_rules(head)]
-        return Headline(lead, f"; {'; '.join(clauses)}." if clauses else ".")
+        end = "."
+        if clauses:
+            end = f"; {'; '.join(clauses)}."
+        return Headline(lead, end)
     named = _name(answer, _first(head.get("names")))
     lead = capital(f"{named} meets {head['meets']:,} of {head['of']:,} loads".strip())
     return _joined(lead, [*_worst(answer), *_other_rules(head), *_required(answer)])
@@ -378,7 +381,8 @@ def _worst(answer: Answer) -> list[str]:
 
 def what_matters(answer: Answer) -> Headline:
     """Say the two largest factors, and from what to what the larger one takes the output."""
-    head, words = answer.headline, lowered(answer.output[1])
+    head = answer.headline
+    words = lowered(answer.output[1])
     factors = list(head.get("factors", ()))
     if not factors:
         return Headline(f"No factor changes the {words}", ".")
@@ -529,8 +533,7 @@ def _goal(goal: Mapping[str, Any], units_only: bool = False) -> str:
     """Return a goal with its value; the words of a life are left to its hours."""
     value = carried(goal["value"])
     if goal["units"] == "h":
-        years = years_of(goal["value"])
-        return _noted(f"{value} h", [years] if years else [])
+        return _noted(f"{value} h", [years_of(goal["value"])])
     text = _measured(value, goal["units"])
     if units_only and text != value:
         return text
@@ -557,7 +560,10 @@ def _ends(head: Mapping[str, Any]) -> list[str]:
         return []
     of = int(head.get("of", 0))
     if len(ends) == 1 and ends[0]["count"] == of:
-        return [f"{_end(ends[0])} ends {'every case' if of > 1 else 'it'}"]
+        whole = "it"
+        if of > 1:
+            whole = "every case"
+        return [f"{_end(ends[0])} ends {whole}"]
     said = [f"{_end(one)} ends {one['count']:,}" for one in ends[:3]]
     return [f"{', '.join(said)} of {of:,} cases"]
 
@@ -573,9 +579,7 @@ def roller(answer: Answer) -> Headline:
     head = answer.headline
     if answer.kind in STOPS:
         return STOPS[answer.kind](answer)
-    unsure = ""
-    if head["not_judged"]:
-        unsure = f"if the model holds ({listing(head['not_judged'])}: not judged), "
+    unsure = _if_model_holds(head)
     clauses = [*_open_limits(head), *_unknown_hours(answer), *_required_states(answer)]
     if answer.kind == "no_life":
         lasts = "no limit with hours is known"
@@ -695,9 +699,10 @@ def _breaks(answer: Answer) -> Headline:
     if len(broken) > 1 or " and " in bodies:
         verb = "break"
     lead = f"The {bodies} {verb} at once"
-    return Headline(
-        lead, f": peak stress {percent(use)} of what the material bears." if use == use else "."
-    )
+    end = "."
+    if not math.isnan(use):
+        end = f": peak stress {percent(use)} of what the material bears."
+    return Headline(lead, end)
 
 
 def _skids(answer: Answer) -> Headline:
@@ -735,9 +740,7 @@ def spectrum(answer: Answer) -> Headline:
         return _joined(f"The {bodies} {verb} at once in {blocks}", clauses)
     if answer.kind == "unknown":
         return _joined("The life is not known", [*head["why"][:2], *clauses])
-    unsure = ""
-    if head["not_judged"]:
-        unsure = f"if the model holds ({listing(head['not_judged'])}: not judged), "
+    unsure = _if_model_holds(head)
     if answer.kind == "unlimited":
         return _joined(capital(f"{unsure}no limit ends this spectrum"), clauses)
     if head["block"]:
@@ -808,12 +811,9 @@ def carriage(answer: Answer) -> Headline:
 def _carriage_lasts(answer: Answer, margins: Sequence[str]) -> Headline:
     """Say which roller ends first; a limit that is exceeded comes before it."""
     head = answer.headline
-    years = years_of(head["low"], head["high"])
-    life = _noted(f"{carried_range(head['low'], head['high'])} h", [years] if years else [])
-    unsure = ""
-    if head["not_judged"]:
-        unsure = f"if the model holds ({listing(head['not_judged'])}: not judged), "
-    lasts = f"{unsure}roller {head['roller']} ends first: {life}, {grouped(head['km'], 3)} km"
+    life = _life_to_end(head)
+    lasts = f"roller {head['roller']} ends first: {life}, {grouped(head['km'], 3)} km"
+    lasts = f"{_if_model_holds(head)}{lasts}"
     clauses = []
     if head["limit"]:
         clauses = [f"then {head['limit']} of the {head['body']}"]
@@ -854,9 +854,21 @@ def end_of_carriage(answer: Answer) -> str:
         place = f"the rail under roller {head['roller']}"
     else:
         place = f"roller {head['roller']}"
-    years = years_of(head["low"], head["high"])
-    life = _noted(f"{carried_range(head['low'], head['high'])} h", [years] if years else [])
-    return f"The carriage lasts {life}: then {place} reaches its first limit, {head['limit']}."
+    reaches = f"then {place} reaches its first limit, {head['limit']}"
+    return f"The carriage lasts {_life_to_end(head)}: {reaches}."
+
+
+def _life_to_end(head: Mapping[str, Any]) -> str:
+    """Return the range of a life in hours, with its years where the duty is known."""
+    text = f"{carried_range(head['low'], head['high'])} h"
+    return _noted(text, [years_of(head["low"], head["high"])])
+
+
+def _if_model_holds(head: Mapping[str, Any]) -> str:
+    """Return the condition of a life that the model does not judge; '' for one that it judges."""
+    if not head["not_judged"]:
+        return ""
+    return f"if the model holds ({listing(head['not_judged'])}: not judged), "
 
 
 PEAK = 1.01  # times the pressure at both ends, from which on a larger one between them is said
@@ -864,8 +876,7 @@ PEAK = 1.01  # times the pressure at both ends, from which on a larger one betwe
 
 def _hours_said(hours: float) -> str:
     """Return hours with their years where the duty is known."""
-    years = years_of(hours)
-    return f"{grouped(hours, 3)} h{f', {years}' if years else ''}"
+    return ", ".join(filter(None, [f"{grouped(hours, 3)} h", years_of(hours)]))
 
 
 def _exceeded_in_blocks(listed: Sequence[Mapping[str, Any]]) -> list[str]:
@@ -921,11 +932,10 @@ WARNING_HEADS = {
 
 def warning_line(caution: Caution) -> str:
     """Return a warning in one line: its head, how many rows of how many, and where."""
-    where = ""
+    head = ", ".join(filter(None, [WARNING_HEADS[caution.code], warning_rows(caution)]))
     if caution.where:
-        where = f": {caution.where}"
-    rows = warning_rows(caution)
-    return f"{WARNING_HEADS[caution.code]}{f', {rows}' if rows else ''}{where}"
+        return f"{head}: {caution.where}"
+    return head
 
 
 def warning_rows(caution: Caution) -> str:
@@ -939,10 +949,12 @@ def warning_rows(caution: Caution) -> str:
 
 def _joined(lead: str, clauses: Sequence[str]) -> Headline:
     """Return a headline of its lead and the clauses behind it."""
+    if not clauses:
+        return Headline(lead, ".")
     separator = ": "
     if ":" in lead:
         separator = "; "
-    return Headline(lead, f"{separator if clauses else ''}{'; '.join(clauses)}.")
+    return Headline(lead, f"{separator}{'; '.join(clauses)}.")
 
 
 def _known(head: Mapping[str, Any], key: str) -> bool:
@@ -969,14 +981,19 @@ def _name(answer: Answer, name: Mapping[str, Any]) -> str:
         alone = isinstance(level, str) and len(texts) == 1
         alone = alone or (key in NAMED and not isinstance(level, str))
         text = _level(column, level)
-        spoken.append(text if alone else f"{lowered(column.title)} {text}")
+        if not alone:
+            text = f"{lowered(column.title)} {text}"
+        spoken.append(text)
     shown = spoken[:1]
     for text in spoken[1:]:
         if len(" ".join([*shown, text]).split()) > NAME_WORDS:
             break
         shown.append(text)
     left = len(spoken) - len(shown)
-    return ", ".join(shown) + (f" and {left} more" if left else "")
+    further = ""
+    if left:
+        further = f" and {left} more"
+    return ", ".join(shown) + further
 
 
 def _column_of(key: str) -> Column:
@@ -1065,8 +1082,7 @@ def _value(answer: Answer, low: float, high: float | None = None, notes: Sequenc
     text = carried_range(low, high, answer.headline.get("error", math.nan), bounds)
     if answer.output[2] != "h":
         return _noted(_measured(text, answer.output[2]), notes)
-    years = years_of(low, high)
-    return _noted(f"{text} h", [years, *notes] if years else notes)
+    return _noted(f"{text} h", [years_of(low, high), *notes])
 
 
 def _measured(text: str, units: str) -> str:
@@ -1076,8 +1092,10 @@ def _measured(text: str, units: str) -> str:
 
 
 def _noted(text: str, notes: Sequence[str]) -> str:
-    if notes:
-        return f"{text} ({', '.join(notes)})"
+    """Return a text with notes in brackets behind it; blank notes are left out."""
+    words = ", ".join(note for note in notes if note)
+    if words:
+        return f"{text} ({words})"
     return text
 
 
@@ -1144,7 +1162,7 @@ def _amount(required: Required, value: float) -> str:
     years = ""
     if required.units == "h":
         years = years_of(value)
-    return _noted(text, [years] if years else [])
+    return _noted(text, [years])
 
 
 def _reach(required: Sequence[Required]) -> str:
@@ -1183,7 +1201,10 @@ def _share(head: Mapping[str, Any]) -> str:
 def _part(lost: Mapping[str, Any], what: str) -> str:
     """Return 'COUNT of ALL conditions', with the levels that hold them where they are short."""
     where = _short(lost.get("where"))
-    return f"{lost['count']:,} of {lost['of']:,} {what}" + (f" ({where})" if where else "")
+    place = ""
+    if where:
+        place = f" ({where})"
+    return f"{lost['count']:,} of {lost['of']:,} {what}" + place
 
 
 def _short(text: Any) -> str:

@@ -139,7 +139,8 @@ def _print(text: str, path: Path) -> None:
     with tempfile.TemporaryDirectory(
         prefix="trackroller-print-", ignore_cleanup_errors=True
     ) as place:
-        page, made = Path(place, "page.html"), Path(place, "page.pdf")
+        page = Path(place, "page.html")
+        made = Path(place, "page.pdf")
         page.write_text(text, encoding="utf-8")
         # root has no sandbox
         alone = []

@@ -73,14 +73,20 @@ def number(value: float, figures: int = 0) -> str:
         if value > 0:
             return "∞"
         return "−∞"
-    small = 1e-3 <= abs(value) < 1e4 or value == 0
-    figures = figures or (4 if small else 3)
+    if figures == 0:
+        figures = 3
+        if 1e-3 <= abs(value) < 1e4 or value == 0:
+            figures = 4
     value = float(f"{value:.{figures}g}") + 0.0  # -0 is 0
     size = abs(value)
     if size >= 1e7 or (0 < size < 1e-3):
         mantissa, exponent = f"{value:e}".split("e")
         return f"{float(mantissa):g}·10{str(int(exponent)).translate(_RAISED)}".replace("-", "−")
-    return (f"{value:,.0f}" if size >= 1e4 else f"{value:.10g}").replace("-", "−")
+    if size >= 1e4:
+        text = f"{value:,.0f}"
+    else:
+        text = f"{value:.10g}"
+    return text.replace("-", "−")
 
 
 def rounded(value: float, figures: int = 3) -> str:
@@ -130,7 +136,11 @@ def lives_in_years(function: Callable[..., Any]) -> Callable[..., Any]:
 
     @functools.wraps(function)
     def on_its_duty(result: Any, *args: Any, **settings: Any) -> Any:
-        with on_duty(duty_of(result) if hasattr(result, "data_vars") else result.config.duty):
+        if hasattr(result, "data_vars"):
+            duty = duty_of(result)
+        else:
+            duty = result.config.duty
+        with on_duty(duty):
             return function(result, *args, **settings)
 
     return on_its_duty
@@ -172,7 +182,10 @@ def year_text(lasts: float) -> str:
 
 def _year_words(*ends: str) -> str:
     """Write years, or a range of them: '1 year', '1 to 4.2 years'."""
-    return f"{' to '.join(dict.fromkeys(ends))} year{'s' * (set(ends) != {'1'})}"
+    unit = "years"
+    if set(ends) == {"1"}:
+        unit = "year"
+    return f"{' to '.join(dict.fromkeys(ends))} {unit}"
 
 
 def life_unit(unit: str, value: float) -> str:
@@ -188,7 +201,14 @@ def lasting(value: float, unit: str = "", beyond: bool = False) -> str:
     """
     if value == math.inf:
         return f"{NO_FAILURE} ({BEYOND})"
-    return f"{rounded(value)} {life_unit(unit, value)}".strip() + (f" ({BEYOND})" if beyond else "")
+    return _with_beyond(f"{rounded(value)} {life_unit(unit, value)}".strip(), beyond)
+
+
+def _with_beyond(text: str, beyond: bool) -> str:
+    """Return a life with the words for one that lies beyond the data of its rule."""
+    if beyond:
+        return f"{text} ({BEYOND})"
+    return text
 
 
 def between(low: float, high: float, beyond: bool = False) -> str:
@@ -199,9 +219,7 @@ def between(low: float, high: float, beyond: bool = False) -> str:
         return lasting(low, "h", beyond)
     if math.isinf(high):
         return f"{lasting(low, 'h')} or more ({BEYOND})"
-    return f"{rounded(low)} to {rounded(high)} {range_unit(low, high)}" + (
-        f" ({BEYOND})" if beyond else ""
-    )
+    return _with_beyond(f"{rounded(low)} to {rounded(high)} {range_unit(low, high)}", beyond)
 
 
 def years_of(low: float, high: float | None = None) -> str:
@@ -272,7 +290,8 @@ def share(part: int, whole: int) -> str:
         if part:
             return "100 %"
         return "0 %"
-    exact, digits = 100 * part / whole, 0
+    exact = 100 * part / whole
+    digits = 0
     while not 0.5 * 10**-digits < exact < 100 - 10**-digits:
         digits += 1
     return f"{exact:.{digits}f} %"
@@ -309,7 +328,8 @@ def percent(value: float, low: float = math.nan, high: float = math.nan) -> str:
     """
     if math.isinf(value):
         return "unlimited"
-    exact, half = 100 * max(0.0, value), 50 * (high - low)
+    exact = 100 * max(0.0, value)
+    half = 50 * (high - low)
     if math.isfinite(half):
         if 100 * min(value - low, high - value) < LOPSIDED * half:
             return f"{percent(value)} ({percent(low).removesuffix(' %')} to {percent(high)})"
@@ -338,7 +358,10 @@ def times(ratio: float) -> str:
     '2.64-fold'.
     """
     ratio = max(ratio, 1 / ratio)
-    return f"{rounded(ratio, 3 if ratio < 10 else 2)}-fold"
+    figures = 2
+    if ratio < 10:
+        figures = 3
+    return f"{rounded(ratio, figures)}-fold"
 
 
 def capital(text: str) -> str:
@@ -402,7 +425,9 @@ def quantity(value: float, units: str, figures: int = 3) -> str:
         unit = hour_unit(value)
     else:
         unit = unit_text(units)
-    return f"{rounded(value, figures)} {unit if unit != '–' else ''}".strip().replace(" °", "°")
+    if unit == "–":
+        unit = ""
+    return f"{rounded(value, figures)} {unit}".strip().replace(" °", "°")
 
 
 def as_given(value: float, units: str) -> str:
@@ -429,7 +454,8 @@ def symbol(text: str) -> str:
     if not text:
         return ""
     letter, _, index = text.partition("_")
-    letter = f"\\{letter}" if len(letter) > 1 else letter  # alpha, mu
+    if len(letter) > 1:  # alpha, mu
+        letter = f"\\{letter}"
     if index:
         return f"${letter}_\\mathrm{{{index}}}$"
     return f"${letter}$"
@@ -461,11 +487,17 @@ def level_text(name: str, value: Any, unit: bool = True, words: bool = True) -> 
     if name == "motor_force" and words:
         if value == 0:
             return "free rolling"
-        return f"{'driven' if value < 0 else 'braked'} {number(value)} N"
+        drive = "braked"
+        if value < 0:
+            drive = "driven"
+        return f"{drive} {number(value)} N"
     if name == "guide_curve_radius" and words:
         if math.isinf(value):
             return "straight"
-        return f"{'outer' if value > 0 else 'inner'} curve {number(abs(value))} mm"
+        side = "inner"
+        if value > 0:
+            side = "outer"
+        return f"{side} curve {number(abs(value))} mm"
     parameter = parameter_of(name)
     if not unit or parameter is None or parameter.unit == "-":
         return number(value)
@@ -578,4 +610,7 @@ def as_required(value: float) -> str:
     ('10,500', '417')
     """
     given = math.isclose(value, float(f"{value:.6g}"), rel_tol=1e-12)
-    return grouped(value, 6 if given else 3)
+    figures = 3
+    if given:
+        figures = 6
+    return grouped(value, figures)

@@ -60,6 +60,9 @@ def _print_rows(table: Rows, title: str | None = None, most: int = MOST_ROWS) ->
     right = [i for i, head in enumerate(table.heads) if "n" in head.kind.split()]
     if rows:
         names = sum("u" in head.kind.split() for head in table.heads)
-        print_table(heads, rows, right, title, max(1, names) if names < len(heads) else 1)
+        name_columns = 1
+        if names < len(heads):
+            name_columns = max(1, names)
+        print_table(heads, rows, right, title, name_columns)
     if table.shared:
         print_text("; ".join(table.shared), "all rows")

@@ -64,7 +64,10 @@ def print_table(
         parts[-1].append(i)
     console = Console(width=width, highlight=False, markup=False)
     for number, own in enumerate(parts):
-        table = Table(title=None if number else title, title_justify="left")
+        heading = title
+        if number:
+            heading = None
+        table = Table(title=heading, title_justify="left")
         spare = width - 1 - sum(least[i] + FRAME for i in own)
         for i in own:
             more = max(0, min(spare, max(map(len, columns[i])) - least[i]))
@@ -91,11 +94,16 @@ def _least(cells: Sequence[str]) -> int:
 
 def print_text(text: str, head: str = "", to: TextIO | None = None) -> None:
     """Print a sentence after a head of its own column, broken between words where the line ends."""
+    first_indent = ""
+    indent = "  "
+    if head:
+        first_indent = f"{head:<9}"
+        indent = " " * 9
     lines = textwrap.wrap(
         text,
         room(),
-        initial_indent=f"{head:<9}" if head else "",
-        subsequent_indent=" " * 9 if head else "  ",
+        initial_indent=first_indent,
+        subsequent_indent=indent,
         break_long_words=False,
         break_on_hyphens=False,
     )

@@ -574,7 +574,8 @@ def _step(found: _Found) -> dict[str, Any]:
     """
     way = next(iter(found.goals.values()))
     own = float(found.judged.values[found.chosen, 0])
-    worst, step = np.nan, ""
+    worst = np.nan
+    step = ""
     for one in found.search["neighbours"]:
         ratio = np.nan
         if own:
@@ -594,7 +595,8 @@ def _binds(found: _Found, number: int) -> list[str]:
 
     A goal in which a design that misses no more is better is bound by the other goals.
     """
-    judged, words = found.judged, []
+    judged = found.judged
+    words = []
     for costs in judged.costs.T:
         better = costs < costs[number]
         misses = judged.missed > judged.missed[number]
@@ -665,7 +667,8 @@ def _second_life(found: _Found, number: int) -> tuple[str, float, str] | None:
 
     None where no second model knows its life in every condition that is judged.
     """
-    data, rows = found.results.data, found.rows(number)
+    data = found.results.data
+    rows = found.rows(number)
     if "life_hours_by_limit" not in data:
         return None
     hours = flat(data, "life_hours_by_limit", found.results.dims)[rows]
@@ -707,7 +710,8 @@ def _exceeded(found: _Found, number: int) -> dict[str, Any] | None:
 
     A use of the S-N curve above 1 is a finite life, and no excess.
     """
-    data, rows = found.results.data, found.rows(number)
+    data = found.results.data
+    rows = found.rows(number)
     if "utilisation" not in data:
         return None
     use = flat(data, "utilisation", found.results.dims)[rows]
@@ -734,7 +738,8 @@ def _picture(found: _Found) -> dict[str, Any]:
     Of one goal `history` holds the best value that was known after each design, among those that
     miss least.
     """
-    judged, names = found.judged, list(found.goals)
+    judged = found.judged
+    names = list(found.goals)
     picture: dict[str, Any] = {
         "goals": judged.values,
         "front": found.front,
@@ -794,7 +799,8 @@ def _warnings(found: _Found) -> tuple[Caution, ...]:
 
 def _facts(found: _Found) -> dict[str, Any]:
     """Return what the title line says, and how the search went."""
-    results, search = found.results, found.search
+    results = found.results
+    search = found.search
     conditions = int(results.design.meta["inner_samples"])
     return facts_of(results) | {
         "candidates": int(results.design.meta["design_points"]),

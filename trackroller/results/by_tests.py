@@ -67,7 +67,8 @@ def not_held(results: SolvedCases) -> dict[str, str]:
     """Return the fitted materials of a study that was solved with other options than their fit,
     with these options.
     """
-    used, found = options_of(results), {}
+    used = options_of(results)
+    found = {}
     for name, fit in materials_fitted(results).items():
         other = [
             f"{k} {fit.given[k]}"
@@ -214,10 +215,12 @@ class ByTests:
         """Return the stress of a body at which the line of its material gives its life, (n,) [MPa];
         else NaN.
         """
-        names, cycles = self.results.material(body), self.results.column(f"life_cycles_{body}")
+        names = self.results.material(body)
+        cycles = self.results.column(f"life_cycles_{body}")
         out = np.full(len(names), np.nan)
         for name, fit in self.fits.items():
-            best, rows = fit.line.best, (names == name) & (cycles > 0) & np.isfinite(cycles)
+            best = fit.line.best
+            rows = (names == name) & (cycles > 0) & np.isfinite(cycles)
             out[rows] = np.exp(
                 fit.line.reference + (best.level - np.log(cycles[rows])) / best.slope
             )
@@ -245,11 +248,9 @@ class ByTests:
         """Return the cases whose stress or life of a body lies beyond the tests of its material,
         (n,).
         """
-        names, stress, cycles = (
-            self.named[body],
-            self.stress[body],
-            self.results.column(f"life_cycles_{body}"),
-        )
+        names = self.named[body]
+        stress = self.stress[body]
+        cycles = self.results.column(f"life_cycles_{body}")
         out = np.zeros(len(names), dtype=bool)
         for name, fit in self.fits.items():
             rows = names == name
@@ -278,7 +279,8 @@ class ByTests:
         tuple of numpy.ndarray
             0 and NaN where the material was not fitted.
         """
-        names, stress = self.named[body][rows], self.stress[body][rows]
+        names = self.named[body][rows]
+        stress = self.stress[body][rows]
         if isinstance(draws, slice):
             size = len(range(*draws.indices(DRAWS)))
         else:
@@ -287,10 +289,8 @@ class ByTests:
         deviate = float(ndtri(probability))
         for name, fit in self.fits.items():
             own = names == name
-            best, values = (
-                fit.line.best,
-                Values(*(np.asarray(value)[draws] for value in self.drawn[name])),
-            )
+            best = fit.line.best
+            values = Values(*(np.asarray(value)[draws] for value in self.drawn[name]))
             away = np.log(stress[own])[:, None] - fit.line.reference
             spread = np.exp(values.log_scatter)
             shift[own] = (values.level - best.level) - (values.slope - best.slope) * away
@@ -313,7 +313,8 @@ class ByTests:
         """Return the hours until each limit when those by fatigue are moved, see `lives`, (n,
         limit, body) [h].
         """
-        out, limits = self._reached[end].copy(), self.results.data["limit"].values.tolist()
+        out = self._reached[end].copy()
+        limits = self.results.data["limit"].values.tolist()
         for i, body in enumerate(BODIES):
             if "fatigue" in limits:
                 out[:, limits.index("fatigue"), i] *= np.exp(shift(body))
@@ -407,8 +408,10 @@ def _drawn_lives(
     """Return the lives of a column and the deviations of log10 life under each draw, (n, draws)
     each.
     """
-    name, n = column.name, len(column.values)
-    every, p = np.arange(n), probability_of(own.results, column.name)
+    name = column.name
+    n = len(column.values)
+    every = np.arange(n)
+    p = probability_of(own.results, column.name)
     lives = np.stack(
         [own.lives(name, column.values, own.at(i, probability=p)) for i in range(DRAWS)], axis=1
     )
@@ -438,7 +441,8 @@ def bands(results: SolvedCases, deviations: Mapping[str, np.ndarray]) -> xr.Data
         with the scatter of the material; over the cases that roll. Their attributes `tests` and
         `materials` say how many tests the bands rest on, and of which materials.
     """
-    own, wanted = required(results), results.config.requirement
+    own = required(results)
+    wanted = results.config.requirement
     words = {
         "tests": str(sum(fit.rows for fit in own.fits.values())),
         "materials": listing(list(own.fits)),
@@ -487,7 +491,8 @@ def _b10_bands(
     """Return B10 of each life and its band by the tests, at each design point or over all cases of
     a sample.
     """
-    results, design = own.results, own.results.design
+    results = own.results
+    design = own.results.design
     lives = [
         name
         for name, _, _ in (results.life or ("", "", ""), *results.fatigue_lives)

@@ -389,7 +389,8 @@ def _end_words(own: Comparison, case: np.ndarray, end: str) -> tuple[list[str], 
         value = own.ranges.low
     else:
         value = own.ranges.high
-    words, bodies = [], []
+    words = []
+    bodies = []
     for row in case:
         if row < 0:
             word = ""
@@ -433,7 +434,8 @@ def states_of(own: Comparison, table: pd.DataFrame, exact: bool = False) -> list
 
     Conditions that no candidate holds do not count. `exact` leaves the errors of the solution out.
     """
-    held, unjudged = table["holds"].to_numpy(), (table["of"] - table["judged"]).to_numpy()
+    held = table["holds"].to_numpy()
+    unjudged = (table["of"] - table["judged"]).to_numpy()
     never = (held == 0) & (unjudged == 0)
     if not own.required or (own.drawn and not np.isfinite(own.wanted_share)):
         return ["none" if gone else "" for gone in never]
@@ -616,7 +618,8 @@ def _second_states(own: Comparison, lives: np.ndarray) -> np.ndarray:
         return np.full(own.count, "")
     sure, may = own.met(lives=lives)
     if not own.drawn:
-        surely, perhaps = _everywhere(own, sure), _everywhere(own, may)
+        surely = _everywhere(own, sure)
+        perhaps = _everywhere(own, may)
     elif np.isfinite(own.wanted_share):
         surely, perhaps = (own.shares(rows) >= own.wanted_share for rows in (sure, may))
     else:
@@ -682,7 +685,8 @@ def _edges(own: Comparison) -> list[str]:
     """Return the choices of each candidate that stand at the smallest or largest of at least three
     numbers.
     """
-    table, out = own.members, np.full(own.count, "", dtype=object)
+    table = own.members
+    out = np.full(own.count, "", dtype=object)
     for name in own.choices:
         levels = own.results.levels(name)
         if len(levels) < 3 or not own.results.numeric(name):

@@ -200,9 +200,11 @@ class Candidates:
         untried = shared
         if shared.any():
             untried = own & ~shared
-        design, place = place, np.where(untried, -1, place)
+        design = place
+        place = np.where(untried, -1, place)
         kept = place >= 0
-        several, many = place.max() + 1, len(np.unique(use[kept]))
+        several = place.max() + 1
+        many = len(np.unique(use[kept]))
         pairs = len(np.unique(place[kept] * (use.max() + 1) + use[kept]))
         matched = bool(pairs == kept.sum() == several * many)
         return cls(results, choices, conditions, goal, place, matched, untried, design)
@@ -347,7 +349,8 @@ class Candidates:
         if self.drawn and self.rising:
             table = table.assign(**self._quantile())
             sure = table["b10"] > 0
-            key, held = table["b10"].where(sure, key), held.where(~sure, 2.0)
+            key = table["b10"].where(sure, key)
+            held = held.where(~sure, 2.0)
         return table, held, key, sign * table["median"]
 
     def cases_of(self, design: int) -> np.ndarray:
@@ -388,14 +391,16 @@ class Candidates:
         """Return worst, median and best of the goal of each design, and whether they lie beyond the
         S-N data.
         """
-        values, rows = self.results.column(self.goal[0]), np.flatnonzero(self.usable)
+        values = self.results.column(self.goal[0])
+        rows = np.flatnonzero(self.usable)
         if self.rising:
             rising_values = values[rows]
         else:
             rising_values = -values[rows]
         order = rows[np.lexsort((rising_values, self.place[rows]))]
         number = self._count(self.usable)
-        start, some = np.cumsum(number) - number, number > 0
+        start = np.cumsum(number) - number
+        some = number > 0
         beyond = beyond_sn_data(self.results, self.goal[0])
         ends = {
             "worst": (0, 0),
@@ -443,7 +448,8 @@ def _ranked(
     tie.
     """
     order = np.lexsort((-middle.fillna(-np.inf), -key.fillna(-np.inf), -held))
-    shares, keys = held.to_numpy()[order], key.to_numpy()[order]
+    shares = held.to_numpy()[order]
+    keys = key.to_numpy()[order]
     same = np.isclose(shares[1:], shares[:-1], TIED, 0) & np.isclose(
         keys[1:], keys[:-1], TIED, 0, equal_nan=True
     )
@@ -459,7 +465,8 @@ def hardest_first(candidates: Candidates) -> np.ndarray:
 
     Cases of a less exact contact model have the number -1.
     """
-    table, own = candidates.results.table, candidates.place >= 0
+    table = candidates.results.table
+    own = candidates.place >= 0
     use = codes(table, candidates.conditions)
     use = np.unique(np.where(own, use, -1), return_inverse=True)[1] - int(not own.all())
     worst = np.full(use.max() + 1, np.inf)

@@ -402,18 +402,19 @@ def _not_checked(ds: xr.Dataset) -> dict[str, tuple[str, ...]]:
         known = []
         if not math.isnan(_by_catalogue(own)[0]):
             known = [catalogue.LIMIT.name]  # the limit by the catalogue is that of the carriage
-        for body, limits in checks_left_out(
-            own.assign_attrs({MATERIALS: json.dumps(names)}), known
-        ).items():
+        own = own.assign_attrs({MATERIALS: json.dumps(names)})
+        for body, limits in checks_left_out(own, known).items():
             for words in limits:
                 lacking[body].setdefault(words, []).append(roller)
-    return {
-        body: tuple(
-            words if rollers == loaded else f"{', '.join(rollers)}: {words}"
-            for words, rollers in own.items()
-        )
-        for body, own in lacking.items()
-    }
+    not_checked: dict[str, tuple[str, ...]] = {}
+    for body, rollers_by_limit in lacking.items():
+        texts = []
+        for words, rollers in rollers_by_limit.items():
+            if rollers != loaded:
+                words = f"{', '.join(rollers)}: {words}"
+            texts.append(words)
+        not_checked[body] = tuple(texts)
+    return not_checked
 
 
 def _not_given(ds: xr.Dataset) -> Iterator[Caution]:

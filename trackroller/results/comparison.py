@@ -408,7 +408,8 @@ class Comparison:
             upper = order[np.minimum(start + number // 2, max(len(order) - 1, 0))]
         if not len(order):
             return np.full(self.count, np.nan)
-        one, other = values[lower], values[upper]
+        one = values[lower]
+        other = values[upper]
         return np.where(number > 0, np.where(one == other, one, 0.5 * (one + other)), np.nan)
 
     @cached_property
@@ -554,7 +555,9 @@ class Comparison:
         """
         name = self.ranges.output[0]
         data = self.results.data
-        stated = data.get("life_cycles" if is_life(name) else "peak_stress")
+        stated = data.get("peak_stress")
+        if is_life(name):
+            stated = data.get("life_cycles")
         if stated is None or "expected_relative_error" not in stated.attrs:
             return None  # solved patches, falling friction, tolerances and settings of a user
         if "contact_model" not in data.attrs:

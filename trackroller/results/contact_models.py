@@ -220,7 +220,8 @@ def errors(paired: xr.Dataset) -> xr.Dataset:
     is a difference of shares. The larger error of both contacts and bodies counts.
     """
     reference = str(paired.attrs["reference"])
-    ref, parts = paired.sel(contact_model=reference), []
+    ref = paired.sel(contact_model=reference)
+    parts = []
     for model in (str(m) for m in paired["contact_model"].values if m != reference):
         one = paired.sel(contact_model=model)
         rolls = (one["regime"] == 0) & (ref["regime"] == 0)

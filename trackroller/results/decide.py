@@ -201,7 +201,8 @@ class Decider:
         return Decision("measure", order, [leader], measure=found or {})
 
     def _by_rank(self) -> Decision:
-        own, table = self.own, self.table
+        own = self.own
+        table = self.table
         every = np.arange(own.count)
         order = self.nearest_first(every)
         judged = (table["judged"] == table["of"]).to_numpy()

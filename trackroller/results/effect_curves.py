@@ -19,6 +19,7 @@ from trackroller.results.answer import Curve
 from trackroller.results.case_ranges import CaseRanges
 from trackroller.results.columns import codes
 from trackroller.results.groups import BINS, MOST_LEVELS, groups, spaced_by_ratio
+from trackroller.results.places import plain
 from trackroller.results.solved_cases import SolvedCases
 from trackroller.study.design.entries import OPTION_FACTORS
 
@@ -134,7 +135,8 @@ class Effects:
         """
         if self.fit is None or name not in self.fit.parts:
             return None
-        part, own = self.fit.parts[name], self.fit.values[name]
+        part = self.fit.parts[name]
+        own = self.fit.values[name]
         others = self.fit.whole - part
         middle, ends = np.median(others), np.quantile(others, BAND)
         if self.results.ordered(name):
@@ -197,9 +199,7 @@ class Effects:
             title=long_name_of(name),
             units=units,
             role=self.results.roles.get(name, ""),
-            levels=tuple(
-                level.item() if isinstance(level, np.generic) else level for level in levels
-            ),
+            levels=tuple(plain(level) for level in levels),
             middle=self.back(middle),
             low=self.back(ends[0]),
             high=self.back(ends[1]),
@@ -253,7 +253,8 @@ class Effects:
         good = np.flatnonzero(self.rows)
         if len(good) > MAX_ROWS:
             good = good[np.linspace(0, len(good) - 1, MAX_ROWS).astype(int)]
-        table, y = self.results.table.iloc[good], self.y[good]
+        table = self.results.table.iloc[good]
+        y = self.y[good]
         names = [
             n for n in self.results.factors if n not in OPTION_FACTORS and table[n].nunique() > 1
         ]

@@ -23,9 +23,9 @@ def first_limit(results: SolvedCases) -> np.ndarray:
         np.nan_to_num(results.column(f"limiting_mechanism_{body}", np.nan), nan=-1).astype(int)
         for body in BODIES
     ]
-    names = np.array(
-        [*(name if name in LIMITS else "" for name in results.limits), ""], dtype=object
-    )
+    # the last one, -1, is that of a case whose limit is not known
+    names = np.array([*results.limits, ""], dtype=object)
+    names[~np.isin(names, list(LIMITS))] = ""
     return np.asarray(names[np.where(guide, numbers[1], numbers[0])])
 
 
@@ -102,5 +102,6 @@ def first_at(
 
 
 # values that are known within a range only
-COEFFICIENT, POSITION = "wear_coefficient_factor", "placeholder_position"
+COEFFICIENT = "wear_coefficient_factor"
+POSITION = "placeholder_position"
 UNSURE = (COEFFICIENT, POSITION)

@@ -77,7 +77,8 @@ def flags_of(ds: xr.Dataset) -> list[Flag]:
     ds : xarray.Dataset
         Result of one case.
     """
-    bits, flags = int(ds["validity"]), []
+    bits = int(ds["validity"])
+    flags = []
     by_body = {}
     if "validity_body" in ds:
         by_body = dict(zip(ds["body"].values, ds["validity_body"].values, strict=True))

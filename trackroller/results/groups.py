@@ -89,7 +89,8 @@ def classes(
     Index of the class of each of the chosen rows, shape (rows.sum(),), and per class its level or
     its ends (low, high).
     """
-    values, known = table[name].to_numpy()[rows], levels(table[name])
+    values = table[name].to_numpy()[rows]
+    known = levels(table[name])
     if most is None or not numeric(table[name]) or len(known) <= MOST_LEVELS:
         place = {v: i for i, v in enumerate(known)}
         return np.array([place.get(v, 0) for v in values], dtype=int), known
@@ -178,7 +179,8 @@ def confined(
     """
     coded = {name: pd.factorize(table[name][among]) for name in names}
     best: list[Product] = []
-    own, rank = hit[among], (np.inf, np.inf)
+    own = hit[among]
+    rank = (np.inf, np.inf)
     for one, other in permutations(names, 2):
         (a, firsts), (b, others) = coded[one], coded[other]
         shape = len(firsts), len(others)
@@ -186,7 +188,8 @@ def confined(
         of, hits = (
             np.bincount(cell, w, shape[0] * shape[1]).reshape(shape) for w in (np.ones(len(a)), own)
         )
-        there, full = hits > 0, (hits > 0) & (hits == of)
+        there = hits > 0
+        full = (hits > 0) & (hits == of)
         inside = of[there].sum()
         alone = min(of[there.any(axis=1)].sum(), of[:, there.any(axis=0)].sum())
         if inside >= alone or 2 * hits.sum() < inside or (whole and (there & ~full).any()):
@@ -197,7 +200,8 @@ def confined(
         blocks = [*((rows, list(columns)) for columns, rows in merged.items())]
         blocks += [([i], [j]) for i, j in np.argwhere(there & ~full).tolist()]
         if len(blocks) <= most and (inside, len(blocks)) < rank:
-            best, rank = [], (inside, len(blocks))
+            best = []
+            rank = (inside, len(blocks))
             for rows, columns in blocks:
                 at = np.ix_(rows, columns)
                 held = {one: _in_order(firsts[rows]), other: _in_order(others[columns])}

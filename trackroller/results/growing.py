@@ -39,7 +39,9 @@ class Growing:
 
     def __init__(self, study: Study, folder: StudyFolder, tell: Tell) -> None:
         assert study.config.until is not None
-        self.study, self.until, self.tell = study, study.config.until, tell
+        self.study = study
+        self.until = study.config.until
+        self.tell = tell
         self.folder = folder
         self.looks: list[dict[str, Any]] = []
 
@@ -64,14 +66,16 @@ class Growing:
                     "design points"
                 )
             larger = doubled(self.study, unsure)
-            if why := self._why(larger, ledger):
+            why = self._why(larger, ledger)
+            if why:
                 self.tell(f"stopped: {why}")
                 return why
             self.study = larger
 
     def _why(self, larger: Study, ledger: Ledger) -> str:
         """Return why the study stops at its last look, '' if it goes on with the larger sample."""
-        seen, until = self.looks[-1], self.until
+        seen = self.looks[-1]
+        until = self.until
         widths = seen["half_width"].values()
         if seen["empty"]:
             return (
@@ -164,7 +168,8 @@ def next_step(study: Study, results: Path | str, tell: Tell) -> dict[str, Any]:
         that are not solved.
     """
     growing = Growing(study, study_folder(study.name, results).create(), tell)
-    if why := growing.advance():
+    why = growing.advance()
+    if why:
         return {"stopped": why, "chunks": []}
     with working_ledger(growing.study, results, tell=tell) as ledger:
         return {"stopped": "", "chunks": ledger.open}

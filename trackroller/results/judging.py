@@ -110,7 +110,8 @@ def judge(results: SolvedCases, genes: np.ndarray | None = None) -> Judged:
     genes : numpy.ndarray, shape (n, choices), optional
         Genes of the designs; by default those of the design.
     """
-    design, goals = results.design, goals_of_search(results)
+    design = results.design
+    goals = goals_of_search(results)
     table, known = _values(results)
     counted = all(judged_by(goal)[0] in ("b10", "probability") for goal in goals)
     if genes is None:
@@ -187,8 +188,10 @@ def _values(results: SolvedCases) -> tuple[np.ndarray, np.ndarray]:
     """
     design = results.design
     shape = design.meta["design_points"], design.meta["inner_samples"]
-    valid, goals = results.held.reshape(shape), goals_of_search(results)
-    values, known = [], valid.copy()
+    valid = results.held.reshape(shape)
+    goals = goals_of_search(results)
+    values = []
+    known = valid.copy()
     for goal in goals:
         kind, output = judged_by(goal)
         if kind == "probability":
@@ -400,7 +403,8 @@ def _normalised(costs: np.ndarray) -> np.ndarray:
         finite = values[np.isfinite(values)]
         if not finite.size:
             continue
-        size, sign = np.abs(finite), np.sign(finite[0])
+        size = np.abs(finite)
+        sign = np.sign(finite[0])
         if (np.sign(finite) == sign).all() and size.max() > 10 * size.min() > 0:
             values, finite = (sign * np.log(np.abs(v)) for v in (values, finite))
         low, high = finite.min(), finite.max()
@@ -459,7 +463,8 @@ def ends_of_goal(results: SolvedCases, goal: str) -> tuple[np.ndarray, np.ndarra
     if not is_life(output) or kind == "probability" or f"{output}_low" not in results.data:
         return None
     shape = results.design.meta["design_points"], results.design.meta["inner_samples"]
-    raw, valid = results.quantity(output)[0].astype(float), results.held.reshape(shape)
+    raw = results.quantity(output)[0].astype(float)
+    valid = results.held.reshape(shape)
     ends = []
     for end in ("_low", "_high"):
         own = flat(results.data, f"{output}{end}", results.dims).astype(float)

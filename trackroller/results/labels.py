@@ -85,9 +85,7 @@ def first_order_sums(result: xr.Dataset, drawn: bool) -> dict[str, Any]:
     if "correlated" in result:
         tied = [str(n) for n in result["factor_name"].values[result["correlated"].values == 1]]
     rows = zip(total, error, result["used_share"].values, strict=True)
-    notes = np.array(
-        [_excess(*row, tied, drawn) if row[0] > 1.005 else "" for row in rows], dtype=object
-    )
+    notes = np.array([_excess(*row, tied, drawn) for row in rows], dtype=object)
     return {
         "first_order_sum": (
             "output",
@@ -103,9 +101,9 @@ def first_order_sums(result: xr.Dataset, drawn: bool) -> dict[str, Any]:
 
 
 def _excess(total: float, error: float, used: float, tied: list[str], drawn: bool) -> str:
-    """Return the reason why first-order indices add up to more than 100 %, see
-    `first_order_sums`.
-    """
+    """Return why first-order indices add up to more than 100 %; '' where they do not."""
+    if not total > 1.005:
+        return ""
     text = (
         f"The first-order indices add up to {100 * total:.0f} %, those of independent factors "
         "to 100 % at most: "

@@ -51,7 +51,8 @@ def look(results: SolvedCases) -> dict[str, Any]:
         share is clear of the share that a requirement wants: their interval counts as 0. `unsure`
         numbers the design points with a wider interval than wanted (inner_outer).
     """
-    design, until = results.design, results.config.until
+    design = results.design
+    until = results.config.until
     assert until is not None
     seen: dict[str, Any] = {
         "cases": design.size,
@@ -79,7 +80,8 @@ def look(results: SolvedCases) -> dict[str, Any]:
             decided = _decided(results, name, widths)
             seen["decided"][name] = int(decided.sum())
             widths = np.where(decided, 0.0, widths)
-        widest, unsure = int(widths.argmax()), unsure | (widths > until.half_width)
+        widest = int(widths.argmax())
+        unsure = unsure | (widths > until.half_width)
         seen["half_width"][name] = None
         if np.isfinite(widths[widest]):
             seen["half_width"][name] = float(widths[widest])
@@ -93,7 +95,8 @@ def _of_indices(results: SolvedCases, name: str) -> tuple[np.ndarray, np.ndarray
     """Return an output (n,) and the half widths of its headline indices; those of effects over the
     output's range.
     """
-    design, given = results.design, results.config.analysis
+    design = results.design
+    given = results.config.analysis
     y = outputs(
         results.data, design.factors, [name], given.keep, scale=given.scale, allowed=results.allowed
     )[0].values
@@ -111,12 +114,14 @@ def _of_points(results: SolvedCases, name: str) -> tuple[np.ndarray, np.ndarray]
     It is 0 at a point without a value in any case: more cases would not decide there.
     """
     design, (kind, output), own = results.design, statistic(name), material_deviations(results)
-    copies, points = int(design.meta["replicates"]), design.points
+    copies = int(design.meta["replicates"])
+    points = design.points
     if output in REGIMES:
         values = hits = (regimes(results.data, results.dims) == REGIMES.index(output)).astype(float)
     else:
         column = _natural_output(results, output)
-        values, scatter = results.with_breaks(column), own.get(scattering_body(output))
+        values = results.with_breaks(column)
+        scatter = own.get(scattering_body(output))
         if kind != "probability":
             if scatter is None:
                 scatter = np.zeros(design.size)
@@ -145,7 +150,8 @@ def _shares(results: SolvedCases, hits: np.ndarray) -> tuple[np.ndarray, np.ndar
     """Return the share of hits at each design point and the half width of its interval, shape
     (points,) each.
     """
-    copies, points = int(results.design.meta["replicates"]), results.design.points
+    copies = int(results.design.meta["replicates"])
+    points = results.design.points
     found = [
         share(hits[rows], np.arange(rows.stop - rows.start) % copies, copies) for rows in points
     ]

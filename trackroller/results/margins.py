@@ -111,6 +111,20 @@ class Margin:
         return self.hours
 
     @property
+    def soonest(self) -> float:
+        """Return the low end of the hours; 0 if the body breaks, NaN if they are not known."""
+        if self.breaks:
+            return 0.0
+        return self.low
+
+    @property
+    def latest(self) -> float:
+        """Return the high end of the hours; 0 if the body breaks, NaN if they are not known."""
+        if self.breaks:
+            return 0.0
+        return self.high
+
+    @property
     def bodies(self) -> tuple[str, ...]:
         """Return the bodies that the limit concerns; none for the pair."""
         if self.body == BOTH:
@@ -220,17 +234,13 @@ def _order(margin: Margin) -> tuple[float, bool, float]:
     """Return by what margins are ordered: the low end of the life, a second model behind others,
     and the use.
     """
-    if margin.breaks:
-        low = 0.0
-    elif math.isnan(margin.low):
+    low = margin.soonest
+    if math.isnan(low):
         low = math.inf
-    else:
-        low = margin.low
-    if math.isnan(margin.used):
+    used = margin.used
+    if math.isnan(used):
         used = 0.0
-    else:
-        used = -margin.used
-    return low, margin.beside, used
+    return low, margin.beside, -used
 
 
 def _of_limits(
@@ -334,7 +344,8 @@ def _of_body(
     permitted = math.nan
     if used > 0:
         permitted = value / used
-    units, bound = ds.variables[variable].attrs["units"], limit.compares[1]
+    units = ds.variables[variable].attrs["units"]
+    bound = limit.compares[1]
     if math.isnan(used):
         permitted, units, bound = _given_bound(limit, inputs)
         value = math.nan
@@ -407,9 +418,12 @@ def _at(ds: xr.Dataset, name: str, places: Mapping[str, list[Any]], **labels: st
     long.
     """
     variable = ds.variables[name]
-    return variable.values[
-        tuple(places[d].index(labels[d]) if d in labels else slice(None) for d in variable.dims)
-    ]
+    at: list[Any] = [slice(None)] * variable.ndim
+    for i, dim in enumerate(variable.dims):
+        if dim in labels:
+            at[i] = places[dim].index(labels[dim])
+    values: np.ndarray = variable.values[tuple(at)]
+    return values
 
 
 def _of_pressure(ds: xr.Dataset, materials: Mapping[str, Material]) -> list[Margin]:
@@ -525,8 +539,8 @@ class First:
         )
         if not ending:
             return None
-        low = min(0.0 if margin.breaks else margin.low for margin in ending)
-        high = min(0.0 if margin.breaks else margin.high for margin in ending)
+        low = min(margin.soonest for margin in ending)
+        high = min(margin.latest for margin in ending)
         return cls(
             tuple(m for m in ending if m is ending[0] or m.low <= high * (1.0 + TIED)), low, high
         )

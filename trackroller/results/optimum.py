@@ -42,7 +42,8 @@ from trackroller.study.store.gather import gather
 from trackroller.study.store.ledger import Ledger
 from trackroller.study.store.put import put_text
 
-TABLE, ELEMENTS = "kalker_table", "kalker"
+TABLE = "kalker_table"
+ELEMENTS = "kalker"
 REPORTED = 10  # optima that are solved again at reference, spread along the front
 DECIDED = 2  # designs of the best fronts that the study's model decides among, in populations
 TOLERANCE = 0.05  # mm; a choice without the unit mm is changed by 1 % of its range
@@ -62,7 +63,8 @@ class _Search:
 
     def of(self, study: Study, genes: np.ndarray) -> Study:
         """Return a study with these designs, which stand in `designs.csv`."""
-        path, choices = self.folder.root / "designs.csv", study.drawn.meta["outer"]
+        path = self.folder.root / "designs.csv"
+        choices = study.drawn.meta["outer"]
         lines = [",".join(choices), *(",".join(repr(float(gene)) for gene in row) for row in genes)]
         put_text(path, "\n".join(lines) + "\n")
         config = study.config.model_copy(update={"table": path.name})
@@ -146,8 +148,12 @@ def _evolve(search: _Search, study: Study, tell: Tell) -> tuple[Judged, dict[str
     """Return all designs of the search and facts about it; stop at the budget or when no design is
     left.
     """
-    budget, choices = study.config.budget, _choices(study)
-    genes, known, number, why = genes_of(choices), None, 0, "every design is solved"
+    budget = study.config.budget
+    choices = _choices(study)
+    genes = genes_of(choices)
+    known = None
+    number = 0
+    why = "every design is solved"
     drawn = first_generation(genes, min(budget.generation, budget.designs), study.config.seed)
     while len(drawn):
         if known is not None and budget.hours is not None:
@@ -168,7 +174,9 @@ def _evolve(search: _Search, study: Study, tell: Tell) -> tuple[Judged, dict[str
             f"{first.sum()} best"
         )
         if len(known.genes) >= budget.designs:
-            why = f"the budget of {budget.designs} design{'s' * (budget.designs != 1)} is spent"
+            why = f"the budget of {budget.designs} designs is spent"
+            if budget.designs == 1:
+                why = "the budget of 1 design is spent"
             break
         many = min(budget.generation, budget.designs - len(known.genes))
         drawn = next_generation(
@@ -184,7 +192,8 @@ def _choices(study: Study) -> dict[str, Factor]:
 
 def _reported(search: _Search, decided: Judged, facts: dict[str, Any], tell: Tell) -> Ledger:
     """Polish the recommended design, solve the optima at reference, and gather the designs."""
-    study, choices = search.study, _choices(search.study)
+    study = search.study
+    choices = _choices(search.study)
     usable = decided.violation.min() < 1  # a design that is never valid is no optimum
     if usable:
         designs, reached = _with_corners(search, decided, choices)

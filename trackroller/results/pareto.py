@@ -177,7 +177,9 @@ def pareto(
     keep: tuple[str, ...] = ("rolling",)
     if "regime" in wanted:
         keep = REGIMES[:3]
-    ds, design, dims = results.data, results.design, results.dims
+    ds = results.data
+    design = results.design
+    dims = results.dims
     regime = regimes(ds, dims)
     names = dict.fromkeys([*objectives, *sorted(wanted)])
     columns = {name: results.quantity(name) for name in names}
@@ -313,16 +315,15 @@ def _of_points(table: xr.Dataset, name: str) -> Column:
         known = parameter_of(name)
         return table[name].values, known.units if known else "", known.long_name if known else name
     if kind == "probability" and output in REGIMES:
-        estimates, words, units = (
-            table["probability"].sel(regime=output),
-            REGIME_LABELS[REGIMES.index(output)],
-            "1",
-        )
+        estimates = table["probability"].sel(regime=output)
+        words = REGIME_LABELS[REGIMES.index(output)]
+        units = "1"
     elif kind == "probability":
         if output not in table["target"].values:
             raise InputError("pareto", name, f"a target: {', '.join(table['target'].values)}")
         part = table.isel(target=int(np.argmax(table["target"].values == output)))
-        estimates, units = part["target_probability"], "1"
+        estimates = part["target_probability"]
+        units = "1"
         words = f"meeting the target for {part['target_name'].item()}"
     else:
         if output not in table["output"].values or kind not in table:
@@ -330,11 +331,9 @@ def _of_points(table: xr.Dataset, name: str) -> Column:
                 "pareto", name, f"an analysed output: {', '.join(map(str, table['output'].values))}"
             )
         part = table.sel(output=output)
-        estimates, words, units = (
-            part[kind],
-            str(part["output_name"].item()),
-            str(part["output_units"].item()),
-        )
+        estimates = part[kind]
+        words = str(part["output_name"].item())
+        units = str(part["output_units"].item())
     named = {"b10": "B10 of {}", "b10_safe": SAFE_B10}.get(
         kind, f"{kind} of {{}}".replace("_", " ")
     )
@@ -409,7 +408,9 @@ def pareto_of_search(results: SolvedCases) -> xr.Dataset:
     The dimension `row` numbers the designs. Only the designs are compared that are valid in the
     most conditions, and that meet the target of the study if any of them does.
     """
-    judged, goals, design = judge(results), goals_of_search(results), results.design
+    judged = judge(results)
+    goals = goals_of_search(results)
+    design = results.design
     least = judged.violation.min()
     if (judged.missed == 0).any():
         missed = judged.missed

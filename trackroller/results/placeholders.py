@@ -91,7 +91,8 @@ def _notes(values: dict[str, Any]) -> Iterator[dict[str, Any]]:
     polymers need.
     """
     name = str(values.get("name", ""))
-    notes, guesses = values.get("notes", {}), [str(one) for one in values.get("guesses", ())]
+    notes = values.get("notes", {})
+    guesses = [str(one) for one in values.get("guesses", ())]
     for key in dict.fromkeys((*notes, *guesses)):
         yield _row(name, key, yes_or_blank(key in guesses), notes.get(key, ""))
     if _is_polymer(values):

@@ -64,7 +64,9 @@ def robustness(
     InputError
         If the study has another design.
     """
-    ds, design, config = results.data, results.design, results.config
+    ds = results.data
+    design = results.design
+    config = results.config
     if not design.method.points:
         allowed = "design inner_outer: lists as outer array, distributions as inner array"
         raise InputError("design", design.method.name, allowed)
@@ -150,7 +152,9 @@ def material_deviations(results: SolvedCases) -> dict[str, np.ndarray]:
     -------
     body -> array [1] of shape (n,), 0 for a material without scatter. Empty if not wanted.
     """
-    ds, dims, wanted = results.data, results.dims, results.config.analysis.material_scatter
+    ds = results.data
+    dims = results.dims
+    wanted = results.config.analysis.material_scatter
     if wanted is False:
         return {}
     known = json.loads(ds.attrs.get("materials", "{}"))
@@ -203,7 +207,8 @@ def _statistics(
     out = {name: np.full(len(points), np.nan) for name in names}
     out["percentile_value"] = np.full((len(points), len(PERCENTILES)), np.nan)
     for p, rows in enumerate(points):
-        own, spread = values[rows], scatter[rows]
+        own = values[rows]
+        spread = scatter[rows]
         known = ~np.isnan(own)
         good = own[known]
         out["used_share"][p] = good.size / own.size
@@ -213,7 +218,8 @@ def _statistics(
         # as in the table of candidates
         out["percentile_value"][p, PERCENTILES.index(50.0)] = np.median(good)
         if np.isfinite(good).all():
-            out["mean"][p], out["standard_deviation"][p] = good.mean(), good.std(ddof=1)
+            out["mean"][p] = good.mean()
+            out["standard_deviation"][p] = good.std(ddof=1)
         if life:
             out["b10"][p], out["b10_low"][p], out["b10_high"][p] = b10(good, spread[known])
             # a rolling case without a life (not converged) must not count as a long life

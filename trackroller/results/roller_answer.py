@@ -268,7 +268,7 @@ def _headline(
     # the use of wear is a required travel over its life, which is a requirement
     checks = [one for one in own if one.name not in (*skipped, wear.LIMIT.name) and not one.breaks]
     over = [one for one in checks if one.state == "exceeded"]
-    over.sort(key=lambda one: 0.0 if math.isnan(one.used) else -one.used)
+    over.sort(key=lambda one: -np.nan_to_num(one.used, posinf=math.inf))
     unknown = any(
         m.timed and not m.beside and math.isnan(m.hours) and m.body == "guide" for m in own
     )
@@ -416,12 +416,8 @@ def _table(ds: xr.Dataset, own: Sequence[Margin], required: Sequence[Required]) 
 
 def _row(margin: Margin, least: float) -> dict[str, Any]:
     """Return the row of a limit."""
-    low = margin.low
-    high = margin.high
     hours = margin.hours
     if margin.breaks:
-        low = 0.0
-        high = 0.0
         hours = 0.0
     model = ""
     if margin.beside:
@@ -430,7 +426,9 @@ def _row(margin: Margin, least: float) -> dict[str, Any]:
         model = "no fatigue life"
     state = margin.state
     if margin.ends and state != "exceeded" and math.isfinite(least):
-        state = {"met": state, "open": "open", "missed": "missed"}[state_of_life(low, high, least)]
+        verdict = state_of_life(margin.soonest, margin.latest, least)
+        if verdict != "met":
+            state = verdict
     if margin.lifeless:
         state = "none"
     elif state == "kept" and margin.used > 1.0:
@@ -443,8 +441,8 @@ def _row(margin: Margin, least: float) -> dict[str, Any]:
         "permitted": margin.permitted,
         "used_low": margin.used_low,
         "used_high": margin.used_high,
-        "low": low,
-        "high": high,
+        "low": margin.soonest,
+        "high": margin.latest,
         "hours": hours,
         "extrapolated": yes_or_blank(margin.beyond and not math.isnan(margin.hours)),
         "guessed": yes_or_blank(margin.guessed),

@@ -160,7 +160,8 @@ class SolvedCases:
     @cached_property
     def grid(self) -> bool:
         """Return whether every combination of levels is there."""
-        names, rows = self.factors, len(self.table)
+        names = self.factors
+        rows = len(self.table)
         full = 1
         if names:
             full = int(np.prod([self.table[f].nunique(dropna=False) for f in names], dtype=float))
@@ -178,7 +179,8 @@ class SolvedCases:
     @cached_property
     def derived(self) -> dict[str, tuple[str, ...]]:
         """Return the parameters that are computed from factors, each with these factors."""
-        ds, table = self.data, self.table
+        ds = self.data
+        table = self.table
         return {
             p: tuple(d for d in map(str, ds[p].dims) if d in self.factors or d == "case")
             for p in PARAMETERS
@@ -453,7 +455,8 @@ class SolvedCases:
         # (n, body)
         known = ~np.isnan(flat(self.data.sel(limit="fatigue"), "life_hours_by_limit", self.dims))
         for i, body in enumerate(BODIES):
-            of, rows = self.material(body), self.inside
+            of = self.material(body)
+            rows = self.inside
             if known[rows, i].any():
                 never = [
                     name for name in np.unique(of[rows]) if not known[rows & (of == name), i].any()
@@ -543,9 +546,9 @@ class SolvedCases:
         material scatters.
         """
         name = f"limiting_mechanism_{body}"
-        return np.asarray(
-            self.column(name) == self.limits.index("fatigue") if name in self.table else True
-        )
+        if name not in self.table:
+            return np.asarray(True)
+        return np.asarray(self.column(name) == self.limits.index("fatigue"))
 
     @cached_property
     def ranged(self) -> bool:

@@ -351,11 +351,8 @@ def _table(ds: xr.Dataset, own: list[Margin]) -> pd.DataFrame:
 
 def _row(ds: xr.Dataset, margin: Margin) -> dict[str, Any]:
     """Return the row of a limit."""
-    low = margin.low
-    high = margin.high
-    if margin.breaks:
-        low = 0.0
-        high = 0.0
+    low = margin.soonest
+    high = margin.latest
     state = margin.state
     if state == "kept" and margin.used > 1.0:
         state = "finite"
@@ -434,10 +431,8 @@ def _why_unknown(ds: xr.Dataset, body: str) -> tuple[str, float]:
         return "", math.nan
     damage = known_damage(ds, body)[1]
     unknown = ds["damage"].sel(body=body).isnull().any("contact").values
-    names, regimes = (
-        ds["block"].values.astype(str)[unknown],
-        ds["regime"].values.astype(int)[unknown],
-    )
+    names = ds["block"].values.astype(str)[unknown]
+    regimes = ds["regime"].values.astype(int)[unknown]
     skids = regimes == REGIMES.index("full_slip")
     breaks = np.zeros(len(names), dtype=bool)
     if "validity_body" in ds:
@@ -550,17 +545,24 @@ def _reasons(ds: xr.Dataset) -> dict[str, list[str]]:
     return found
 
 
+def _flagged_blocks(ds: xr.Dataset) -> dict[tuple[str, str], list[str]]:
+    """Return the blocks in which a flag is set, by the code and the words of the flag."""
+    if "validity" not in ds:
+        return {}
+    flagged: dict[tuple[str, str], list[str]] = {}
+    for place, name in enumerate(ds["block"].values):
+        for flag in flags_of(ds.isel(block=place)):
+            code = CODES.get(flag.name, "flagged")
+            flagged.setdefault((code, f"{flag.sentence} {flag.remedy}"), []).append(str(name))
+    return flagged
+
+
 def _warnings(ds: xr.Dataset) -> Iterator[Caution]:
     """Yield the warnings of a spectrum, flags with their blocks."""
     total = ds.sizes["block"]
     for reason, names in _reasons(ds).items():
         yield Caution("not_judged", len(names), total, f"{reason}: {', '.join(names)}", "blocks")
-    flagged: dict[tuple[str, str], list[str]] = {}
-    for place, name in enumerate(ds["block"].values if "validity" in ds else ()):
-        for flag in flags_of(ds.isel(block=place)):
-            code = CODES.get(flag.name, "flagged")
-            flagged.setdefault((code, f"{flag.sentence} {flag.remedy}"), []).append(str(name))
-    for (code, text), names in flagged.items():
+    for (code, text), names in _flagged_blocks(ds).items():
         yield Caution(code, len(names), total, f"{', '.join(names)}: {text}", "blocks")
     yield from guess_cautions(placeholders_part(ds))
     for note in notes_of(ds):

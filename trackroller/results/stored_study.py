@@ -121,7 +121,8 @@ def open_as_reported(root: Path) -> Results:
 
     Nothing is computed: a page or a figure that must not wait takes these results.
     """
-    results, stored = open_study(root), root / "sensitivity.nc"
+    results = open_study(root)
+    stored = root / "sensitivity.nc"
     known = stored.is_file() and not results.unfinished and digests_of(stored)
     if known:
         indices = read_result(stored)
@@ -196,7 +197,8 @@ def _read_unfinished(folder: StudyFolder, indices: xr.Dataset | None) -> Results
             "Run the study to its end first.",
             state,
         )
-    drawn, cases = solved_part(study.drawn, rows), ledger.cases.design.isel(case=solved)
+    drawn = solved_part(study.drawn, rows)
+    cases = ledger.cases.design.isel(case=solved)
     if ROW in cases.coords:
         cases = cases.assign_coords({ROW: ("case", np.searchsorted(rows, cases[ROW].values))})
     data = labelled(study, drawn, cases, collect(ledger, solved)).assign_coords(case=rows)
@@ -241,12 +243,14 @@ def _checked_version(data: xr.Dataset) -> dict[str, str]:
     """Refuse results in another format; return the notice for results of another solver, {} for
     those of this one.
     """
-    solver, written = data.attrs.get("solver_digest"), data.attrs.get("store_format")
+    solver = data.attrs.get("solver_digest")
+    written = data.attrs.get("store_format")
     if solver is None or (solver == solver_digest() and written == STORE_FORMAT):
         return {}
     if written != STORE_FORMAT:
         name = f"study.nc of {data.attrs.get('study_name')}"
-        allowed, wrong = f"results in format {STORE_FORMAT}", "is that of another version"
+        allowed = f"results in format {STORE_FORMAT}"
+        wrong = "is that of another version"
         raise InputError(name, f"format {written}", allowed, _REMEDY, wrong)
     warnings.warn(_EARLIER, stacklevel=3)
     return {NOTICE: _EARLIER}
@@ -274,10 +278,8 @@ def _study(data: xr.Dataset) -> Study:
     study = Study(config, not_given=tuple(json.loads(data.attrs.get(NOT_GIVEN, "[]"))))
     changed = _changed(stored, study.as_dict())
     if changed:
-        allowed, wrong = (
-            "a study file that is read as it was written",
-            f"has another {changed} in this version",
-        )
+        allowed = "a study file that is read as it was written"
+        wrong = f"has another {changed} in this version"
         raise InputError("study", name, allowed, _REMEDY, wrong)
     return study
 

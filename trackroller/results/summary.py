@@ -93,11 +93,12 @@ def _range(results: SolvedCases, name: str) -> str:
         unit = ""
     else:
         unit = f" {units}"
-    low, middle, high = own.min(), np.quantile(own, 0.5, method="inverted_cdf"), own.max()
+    low = own.min()
+    middle = np.quantile(own, 0.5, method="inverted_cdf")
+    high = own.max()
     return f"{words} ({name}): {low:.4g} to {high:.4g}{unit}, median {middle:.4g}"
 
 
 def _ends(ends: dict[str, float]) -> str:
-    return " ".join(
-        f"{'at least' if end == 'min' else 'at most'} {value:g}" for end, value in ends.items()
-    )
+    words = {"min": "at least", "max": "at most"}
+    return " ".join(f"{words[end]} {value:g}" for end, value in ends.items())

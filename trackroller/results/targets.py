@@ -97,7 +97,8 @@ def targets(
     )
     names = [c.name for c in columns]
     if len(names) > 1:
-        hits, names = np.column_stack([hits, _all(hits, names)]), [*names, "all"]
+        hits = np.column_stack([hits, _all(hits, names)])
+        names = [*names, "all"]
     robust = design.method.points
     dims: tuple[str, ...]
     if robust:
@@ -201,10 +202,8 @@ def at_points(hits: np.ndarray, design: Design) -> Found:
     -------
     Probability, lower and upper bound [1], each of shape (points, m).
     """
-    sizes, sample = (
-        np.array([rows.stop - rows.start for rows in design.points]),
-        inner_sample(design),
-    )
+    sizes = np.array([rows.stop - rows.start for rows in design.points])
+    sample = inner_sample(design)
     bounds = np.empty((3, len(sizes), hits.shape[1]))
     for size in np.unique(sizes):
         own = np.flatnonzero(sizes == size)

@@ -123,7 +123,8 @@ class Turning:
         """
         if self.hours is None:
             return None
-        best, found = LEAST, None
+        best = LEAST
+        found = None
         for one in self.placeholders:
             mine = self.worst(leader, one)
             if mine[-1] <= mine[0] * (1 + 1e-9):
@@ -149,7 +150,8 @@ class Turning:
         """
         if self.hours is None:
             return None
-        widest, found = 1.0, None
+        widest = 1.0
+        found = None
         for one in self.placeholders:
             mine = self.worst(number, one)
             width = np.inf
@@ -158,8 +160,11 @@ class Turning:
             if width <= widest * (1 + 1e-9):
                 continue
             enough = mine >= least
-            turns = bool(enough[-1] and not enough[0])
-            widest, found = width, self.told(one, int(np.argmax(enough)) if turns else -1)
+            step = -1
+            if enough[-1] and not enough[0]:
+                step = int(np.argmax(enough))
+            widest = width
+            found = self.told(one, step)
         return found
 
     def told(self, one: Placeholder, step: int) -> dict[str, Any]:

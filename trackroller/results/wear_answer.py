@@ -110,7 +110,8 @@ def _headline(ds: xr.Dataset) -> dict[str, Any]:
     last = ds["groove_depth"].isel(travel=-1)
     depths = {body: MICROMETRES * float(last.sel(body=body).max()) for body in BODIES}
     own = ds.sel(contact=deeper_contact(ds))
-    pressures, wide = own["max_pressure"].values, own["semi_axis_lateral"].values
+    pressures = own["max_pressure"].values
+    wide = own["semi_axis_lateral"].values
     most = int(np.argmax(pressures))
     travel = float(ds["travel"][-1])
     return {
@@ -153,7 +154,8 @@ def _fatigue(own: xr.Dataset) -> dict[str, float]:
     )
     if "fatigue_damage" not in own:
         return unknown
-    damage, new = own["fatigue_damage"].isel(travel=-1).values, float(own["life_travel_new"].min())
+    damage = own["fatigue_damage"].isel(travel=-1).values
+    new = float(own["life_travel_new"].min())
     if np.isnan(damage).any() or np.isnan(new):
         return unknown
     reached = bool(own["life_travel"].notnull().any())

@@ -90,7 +90,8 @@ def collect(results: Results) -> list[Column]:
     Columns of equal length. Outputs hold the numbers that `pareto` and the analyses use, in double
     precision; figures of single contacts hold single precision.
     """
-    ds, dims = results.data, results.dims
+    ds = results.data
+    dims = results.dims
     columns = [_setting(results, name, "factor") for name in results.factors]
     columns += [_setting(results, name, "input") for name in results.derived]
     columns += [_good(results, name) for name in results.goods]
@@ -161,7 +162,10 @@ def coded(
     array = np.asarray(values)
     number = array.dtype.kind in "fiu"
     codes, different = pd.factorize(array, sort=number)
-    levels = different.astype(float if number else str).tolist()
+    if number:
+        levels = different.astype(float).tolist()
+    else:
+        levels = different.astype(str).tolist()
     return Column(
         name, label, unit, role, codes, tuple(levels), tuple(texts) or tuple(map(str, levels))
     )
@@ -259,10 +263,13 @@ def _states(ds: xr.Dataset, dims: tuple[str, ...], results: Results) -> list[Col
             masks = np.nan_to_num(results.column(name, 0.0)).astype(int)
             texts_of_masks = [flag_text(int(mask), results.flags) for mask in np.unique(masks)]
             body = name.partition("_")[2]
+            of_body = ""
+            if body:
+                of_body = f" of the {body}"
             columns.append(
                 coded(
                     name,
-                    f"Flags{f' of the {body}' if body else ''}",
+                    f"Flags{of_body}",
                     "state",
                     masks,
                     texts_of_masks,
@@ -299,9 +306,8 @@ def _first_limits(results: Results) -> list[Column]:
     """
     if not results.limits:
         return []
-    words = np.array(
-        [LIMITS[name].title if name in LIMITS else "not known" for name in results.limits]
-    )
+    titles = {name: limit.title for name, limit in LIMITS.items()}
+    words = np.array([titles.get(name, "not known") for name in results.limits])
     last = len(words) - 1
     columns = {
         "limiting_mechanism": [
@@ -343,8 +349,10 @@ def solve_inputs(
         the text varies
     columns : further columns that the settings name
     """
-    ds, dims = results.data, results.dims
-    settings, more = [], []
+    ds = results.data
+    dims = results.dims
+    settings = []
+    more = []
     for key in (*PARAMETERS, *MATERIAL_FIELDS, *MAPPING_FIELDS, *OPTIONS):
         name = key
         if f"{key}_value" in ds.variables:
@@ -353,7 +361,9 @@ def solve_inputs(
             if name not in known:
                 more.append(_input(name, flat(ds, name, dims)))
             settings.append([key, [name]])
-        elif (text := setting_text(_fixed(ds, results, name))) is not None and key != "shortcuts":
+            continue
+        text = setting_text(_fixed(ds, results, name))
+        if text is not None and key != "shortcuts":
             settings.append([key, text])
     if results.config.duty:
         settings.append(["duty", setting_text(dict(results.config.duty)) or ""])

@@ -57,9 +57,12 @@ def views(ds: xr.Dataset) -> style.Drawn:
         for colour, scale, forces in zip(style.PAIR, scales, (radial, axial), strict=False):
             _arrows(axes, at[:, [across, up]], scale * forces[:, [across, up]], colour)
         _name(axes, own, at[:, [across, up]], worst, masses[:, [across, up]], size)
+        direction = "y, left"
+        if up == 2:
+            direction = "z, up"
         axes.set(
             xlabel="x, forward [mm]",
-            ylabel=f"{'z, up' if up == 2 else 'y, left'} [mm]",
+            ylabel=f"{direction} [mm]",
             title=words,
         )
         axes.set_aspect("equal", adjustable="datalim")
@@ -114,7 +117,9 @@ def _name(
             forces = "lifted"
         else:
             forces = f"{radial}, {axial}"
-        text = f"{name} {forces}{' (worst)' if name == worst else ''}"
+        text = f"{name} {forces}"
+        if name == worst:
+            text += " (worst)"
         labels.setdefault((float(at[j, 0]), float(at[j, 1])), []).append(text)
     for place, texts in labels.items():
         away = (masses - np.array(place)) / size

@@ -76,9 +76,9 @@ class Patch:
         wide = [
             np.concatenate([[2 * v[0] - v[1]], v, [2 * v[-1] - v[-2]]]) for v in (self.x, self.y)
         ]
-        return *wide, np.pad(field, 1, mode="edge") if rim is None else np.pad(
-            field, 1, constant_values=rim
-        )
+        if rim is None:
+            return *wide, np.pad(field, 1, mode="edge")
+        return *wide, np.pad(field, 1, constant_values=rim)
 
     @property
     def spin_pole(self) -> tuple[float, float] | None:
@@ -105,10 +105,11 @@ def _bears(part: xr.Dataset) -> np.ndarray:
 
 def _strips(part: xr.Dataset, axis: str) -> list[tuple[float, float]]:
     """Return the first and last edge [mm] of each run of loaded elements along 'x' or 'y'."""
-    centres, loaded = (
-        part[f"patch_{axis}"].values,
-        np.any(_bears(part), axis=0 if axis == "x" else 1),
-    )
+    other_axis = 1
+    if axis == "x":
+        other_axis = 0
+    centres = part[f"patch_{axis}"].values
+    loaded = np.any(_bears(part), axis=other_axis)
     half = 0.5 * (centres[1] - centres[0])
     steps = np.diff(np.concatenate([[0], loaded.astype(int), [0]]))
     starts, ends = np.flatnonzero(steps == 1), np.flatnonzero(steps == -1) - 1

@@ -27,11 +27,13 @@ def sn_line(fit: Fit) -> style.Drawn:
     if not fit.has("fatigue"):
         return None
     line = fit.group("fatigue").line
-    tests, failed = line.tests, line.tests.failed
+    tests = line.tests
+    failed = line.tests.failed
     figure, (axes,) = style.panels(f"S-N line of {fit.name}", 95)
     reach = max(np.ptp(tests.stress), 0.1)
     low, high = tests.stress.min() - 0.6 * reach, tests.stress.max() + 0.2 * reach
-    stresses, fine = np.linspace(low, high, ACROSS), np.linspace(low, high, FINE)
+    stresses = np.linspace(low, high, ACROSS)
+    fine = np.linspace(low, high, FINE)
     entries = [("failure", {"marker": "o", "linestyle": "none", "color": "0.1"})]
     if failed.any():
         for probability, colour, dash in ((0.5, UP, "-"), (0.1, DOWN, "--")):
@@ -97,13 +99,15 @@ def predicted(fit: Fit) -> style.Drawn:
 
 
 def _against(axes: Axes, own: Group) -> None:
-    line, failed = own.line, own.line.tests.failed
+    line = own.line
+    failed = own.line.tests.failed
     median = np.array([float(line.log_life(line.best, x, 0.5)) for x in line.tests.stress])
     straight = float(line.best.level) - float(line.best.slope) * (
         line.tests.stress - line.reference
     )
     median = np.where(np.isfinite(median), median, straight)
-    observed, scatter = line.tests.middle, 1.645 * math.exp(float(line.best.log_scatter))
+    observed = line.tests.middle
+    scatter = 1.645 * math.exp(float(line.best.log_scatter))
     _marks(axes, np.exp(median), np.exp(observed), failed)
     both = np.concatenate([median, observed])
     ends = np.array([both.min() - 0.5, both.max() + 0.5])

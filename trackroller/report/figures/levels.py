@@ -34,7 +34,9 @@ def material_of_level(text: str) -> str:
 def _parts(name: str) -> list[str]:
     if name.endswith(" on itself"):
         return [name.removesuffix(" on itself")] * 2
-    return name.split(" / " if " / " in name else " on ")
+    if " / " in name:
+        return name.split(" / ")
+    return name.split(" on ")
 
 
 def _drive(low: float, high: float) -> str:
@@ -42,7 +44,10 @@ def _drive(low: float, high: float) -> str:
     if low == high:
         return level_text(DRIVE, low)
     least, most = sorted((abs(low), abs(high)))
-    return f"{'driven' if low < 0 else 'braked'}, {rounded(least, 2)} to {rounded(most, 2)} N"
+    way = "braked"
+    if low < 0:
+        way = "driven"
+    return f"{way}, {rounded(least, 2)} to {rounded(most, 2)} N"
 
 
 def held_words(held: Mapping[str, Any]) -> str:

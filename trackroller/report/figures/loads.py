@@ -41,7 +41,7 @@ def stress_against_fit(results: Results) -> style.Drawn:
     if not fits or not bodies:
         return None
     hue = _hue(results, f"peak_stress_{bodies[0]}", fits)
-    rows, held = results.hold((*fits, hue) if hue else fits)
+    rows, held = results.hold(tuple(name for name in (*fits, hue) if name))
     rows, label = add_fit(results, rows[results.rolling[rows.index]])
     if rows["_fit"].nunique() < 2:
         return None
@@ -144,7 +144,8 @@ def _merged(groups: Groups, columns: list[str]) -> Groups:
 def _stress_series(
     axes: Any, part: pd.DataFrame, body: str, look: dict[str, Any], single: bool
 ) -> None:
-    part, y = part.sort_values("_fit"), f"peak_stress_{body}"
+    part = part.sort_values("_fit")
+    y = f"peak_stress_{body}"
     if not single:
         return running(axes, part["_fit"].to_numpy(), part[y].to_numpy(), look)
     axes.plot(part["_fit"], part[y], color=look["color"], linestyle=look["linestyle"], zorder=2)
@@ -169,32 +170,24 @@ def forces_against_axial(results: Results) -> style.Drawn:
     ]
     if not kinds:
         return None
-    levels = []
-    if "motor_force" in results.factors:
-        levels = results.levels("motor_force")
-    # otherwise one line for all drives
-    drives: list[Any] = levels if 0 < len(levels) <= 5 else [None]
-    shown = (*results.behind(x), *(["motor_force"] if drives != [None] else []))
+    drives: list[Any] = [None]  # one line for all drives
+    shown = tuple(results.behind(x))
+    if "motor_force" in results.factors and len(results.levels("motor_force")) <= 5:
+        drives = results.levels("motor_force")
+        shown = (*shown, "motor_force")
     rows, held = results.hold(shown)
     figure, panels = style.panels(
         "Forces of both contacts against axial force", 74, len(kinds), sharex=True
     )
-    marks: list[dict[str, Any]] = [{"marker": "o"}, {"marker": "s"}]
-    if results.grid:
-        marks = [
-            {"marker": "o", "markersize": 3},
-            {"marker": "s", "markersize": 4.5, "markerfacecolor": "white"},
-        ]
-    looks = [{"color": colour} | mark for colour, mark in zip(style.PAIR, marks, strict=True)]
+    looks = _looks_of_contacts(results.grid)
     for axes, (name, words, letter) in zip(panels, kinds, strict=True):
         for contact, (j, level) in ((c, d) for c in (1, 2) for d in enumerate(drives)):
-            part = (rows if level is None else rows[rows["motor_force"] == level]).sort_values(x)
-            at, force = (part[n].to_numpy(dtype=float) for n in (x, f"{name}_{contact}"))
+            part = rows
+            if level is not None:
+                part = rows[rows["motor_force"] == level]
+            part = part.sort_values(x)
             look = looks[contact - 1] | {"linestyle": style.LINES[j % 6]}
-            if results.grid:
-                axes.plot(at, force, **look)
-            else:
-                running(axes, at, force, look)
+            _force_series(axes, part[x], part[f"{name}_{contact}"], look, results.grid)
         axes.set(xlabel=factor_label(x), ylabel=with_unit(f"{words} {letter}", "N"))
         axes.margins(y=0.1)
     if results.grid:
@@ -207,14 +200,45 @@ def forces_against_axial(results: Results) -> style.Drawn:
         if d is not None
     ]
     legend(figure, entries, 5)
+    caption = _caption_of_forces(len(drives), held, results.grid)
+    return figure, style.FigureInfo("forces_against_axial_force", caption)
+
+
+def _caption_of_forces(drives: int, held: dict[str, Any], solved: bool) -> str:
     each = ""
-    if len(drives) > 1:
-        each = f", for {len(drives)} motor forces"
+    if drives > 1:
+        each = f", for {drives} motor forces"
+    note = MEDIANS
+    if solved:
+        note = held_words(held)
     caption = (
         "Forces (N) of contact 1 (circles) and contact 2 (squares) on the roller over the axial "
-        f"force{each}. {held_words(held) if results.grid else MEDIANS}"
+        f"force{each}. {note}"
     )
-    return figure, style.FigureInfo("forces_against_axial_force", caption.strip())
+    return caption.strip()
+
+
+def _looks_of_contacts(solved: bool) -> list[dict[str, Any]]:
+    """Return the looks of the lines of both contacts; `solved` is True where each mark is a solved
+    case and no median.
+    """
+    marks: list[dict[str, Any]] = [{"marker": "o"}, {"marker": "s"}]
+    if solved:
+        marks = [
+            {"marker": "o", "markersize": 3},
+            {"marker": "s", "markersize": 4.5, "markerfacecolor": "white"},
+        ]
+    return [{"color": colour} | mark for colour, mark in zip(style.PAIR, marks, strict=True)]
+
+
+def _force_series(
+    axes: Any, at: pd.Series, forces: pd.Series, look: dict[str, Any], solved: bool
+) -> None:
+    """Draw the solved forces of a grid, or the running median of the forces of a sample."""
+    if solved:
+        axes.plot(at.to_numpy(dtype=float), forces.to_numpy(dtype=float), **look)
+    else:
+        running(axes, at.to_numpy(dtype=float), forces.to_numpy(dtype=float), look)
 
 
 def _shade_lift_off(panels: Any, rows: pd.DataFrame, x: str) -> None:

@@ -127,13 +127,21 @@ def _table(values: pd.Series, keys: list[np.ndarray], shape: tuple[int, int]) ->
 
 def _life_cells(axes: Axes, results: Results, rows: pd.DataFrame, pair: Pair, column: str) -> Any:
     inside = np.isin(np.arange(len(results.table)), rows.index)
-    sides = [classes(results.table, name, inside, None if results.grid else BINS) for name in pair]
-    keys, shape = [index for index, _ in sides], (len(sides[1][1]), len(sides[0][1]))
+    most: int | None = BINS
+    if results.grid:
+        most = None
+    sides = [classes(results.table, name, inside, most) for name in pair]
+    keys = [index for index, _ in sides]
+    shape = (len(sides[1][1]), len(sides[0][1]))
     life = _table(rows[column].where(results.rolling[rows.index]), keys, shape)
     axes.set_facecolor("0.75")  # cells without a life
     cells = np.ma.masked_invalid(np.where(np.isposinf(life), 1e300, life))
     finite = life[np.isfinite(life) & (life > 0)]
-    norm = LogNorm(finite.min(), finite.max() if finite.max() > finite.min() else 10 * finite.min())
+    if finite.max() > finite.min():
+        top = finite.max()
+    else:
+        top = 10 * finite.min()
+    norm = LogNorm(finite.min(), top)
     image = axes.pcolormesh(cells, cmap="cividis", norm=norm, edgecolor="face", linewidth=0.1)
     for axis, name, (_, ends) in zip((axes.xaxis, axes.yaxis), pair, sides, strict=True):
         set_ticks(axis, [cell_name(name, end) for end in ends])
@@ -179,7 +187,10 @@ def regime_map(results: Results) -> style.Drawn:
     if len(results.factors) < 2:
         return None
     most = np.unique(results.regime, return_counts=True)[1].max()
-    if len(results.table) - most < (1 if results.grid else FEWEST):
+    fewest = FEWEST
+    if results.grid:
+        fewest = 1
+    if len(results.table) - most < fewest:
         return None
     ranked = sorted(results.factors, key=lambda f: -_regime_spread(results, f))
     # long names go on the vertical axis, where they have room; of two numbers the one with fewer
@@ -214,9 +225,13 @@ def _regime_shares(axes: Axes, results: Results, pair: Pair) -> str:
         {"facecolor": colour, "hatch": hatch, "edgecolor": "0.25"} for colour, hatch in both
     ]
     gaps = [0.04 if len(t) <= 12 else 0.0 for t in texts]
-    width, thin = 1 - 2 * gaps[0], 0.3 if all(gaps) else 0.0
+    thin = 0.0
+    if all(gaps):
+        thin = 0.3
+    width = 1 - 2 * gaps[0]
     for i, j in np.ndindex(len(texts[0]), len(texts[1])):
-        here, left = results.regime[(keys[0] == i) & (keys[1] == j)], i + gaps[0]
+        here = results.regime[(keys[0] == i) & (keys[1] == j)]
+        left = i + gaps[0]
         for code in range(4) if here.size else ():
             part = width * float((here == code).mean())
             if part > 0:

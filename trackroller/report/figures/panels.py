@@ -35,7 +35,10 @@ def capped(life: np.ndarray) -> tuple[np.ndarray, float | None]:
     if finite.size:
         top = float(10 ** (np.ceil(np.log10(finite.max())) + 1))
     values = np.where(np.isposinf(life), top, np.where(life > 0, life, np.nan))
-    return values, top if np.isposinf(life).any() else None
+    cap = None
+    if np.isposinf(life).any():
+        cap = top
+    return values, cap
 
 
 def legend(figure: Figure, entries: Entries | Mapping[str, Artist], columns: int = 3) -> None:
@@ -87,11 +90,11 @@ def band(
     low, middle, high = values
     if ordered:
         axes.fill_between(at, low, high, color=look["color"], alpha=0.18, linewidth=0)
+        unjoined = {}
     else:
         axes.vlines(at, low, high, color=look["color"], alpha=0.35, linewidth=4)
-    return axes.plot(
-        at, middle, **{"markersize": 3, **look, **({} if ordered else {"linestyle": "none"})}
-    )[0]
+        unjoined = {"linestyle": "none"}
+    return axes.plot(at, middle, **{"markersize": 3, **look, **unjoined})[0]
 
 
 def running(axes: Axes, x: np.ndarray, y: np.ndarray, look: dict[str, Any]) -> None:

@@ -100,7 +100,10 @@ def fields(ds: xr.Dataset) -> style.Drawn:
     shear = np.hypot(one["shear_lateral"].values, one["shear_rolling"].values)
     pressure = one["pressure"].values
     discs = ds.attrs["kind"] == "discs"
-    figure, panels = style.panels("Pressure and shear traction", 75, 1 if discs else 3)
+    count = 3
+    if discs:
+        count = 1
+    figure, panels = style.panels("Pressure and shear traction", 75, count)
     middle = len(x) // 2
     axes = panels[-1]
     bound = float(one["friction_coefficient"]) * pressure[:, middle]

@@ -28,7 +28,8 @@ def main_outputs(sens: xr.Dataset) -> list[str]:
     """Name the outputs that have an index, the most important first."""
     index = headline(sens)
     names = [str(n) for n in sens["output"].values if np.isfinite(sens[index].sel(output=n)).any()]
-    return sorted(names, key=lambda n: USUAL.index(n) if n in USUAL else len(USUAL))  # lives first
+    usual = [name for name in USUAL if name in names]  # lives first
+    return [*usual, *(name for name in names if name not in usual)]
 
 
 def title(sens: xr.Dataset, output: str) -> str:

@@ -34,7 +34,8 @@ def sn_diagram(results: Results) -> style.Drawn:
     its fatigue limit? A body without a life on the axis gets no panel, because marks piled up at
     the edge would not be readable.
     """
-    known, rule = _known(results), results.config.life_rule
+    known = _known(results)
+    rule = results.config.life_rule
     bodies = [(body, points) for body in BODIES if (points := _points(results, body, known, rule))]
     if not bodies:
         return None
@@ -95,7 +96,8 @@ def _points(results: Results, body: str, known: Mapping[str, Material], rule: st
         rows = (life > 0) & results.rolling
     else:
         rows = life > 0
-    given, points = results.material(body), {}
+    given = results.material(body)
+    points = {}
     for material in dict.fromkeys(given):
         mine = (given == material) & rows
         if material not in known or not mine.any():
@@ -122,17 +124,23 @@ def _ends(points: list, materials: list[Material]) -> tuple[float, float]:
     low = min(m.sn_line[0][1] for m in materials)
     knee = max(m.cycles_at_fatigue_limit for m in materials)
     finite = lives[np.isfinite(lives)]
-    top = min(max(finite.max() * 2 if finite.size else knee, 20 * knee), BEYOND * knee)
-    low = min(low, finite.min() if finite.size else low)
-    return max(low / 2, 1.0), top
+    high = 20 * knee
+    if finite.size:
+        low = min(low, finite.min())
+        high = max(high, 2 * finite.max())
+    return max(low / 2, 1.0), min(high, BEYOND * knee)
 
 
 def _lines(
     axes: Axes, material: Material, rule: str, colour: Any, ends: tuple[float, float]
 ) -> None:
     """Draw the S-N curve of a material, with its scatter if it gives one."""
-    at, median = np.geomspace(*ends, 400), SNCurve.of(material, rule)
-    for probability in PROBABILITIES if median.scatters else (0.5,):
+    at = np.geomspace(*ends, 400)
+    median = SNCurve.of(material, rule)
+    probabilities: tuple[float, ...] = (0.5,)
+    if median.scatters:
+        probabilities = PROBABILITIES
+    for probability in probabilities:
         stress = median.changed(failure_probability=probability).allowable_stress(at)
         width = 0.8
         if probability == 0.5:

@@ -107,6 +107,12 @@ def screen_of(answer: Answer) -> dict[str, Any]:
         first = 0
         if _curves_are_the_picture(answer, picture is not None or bool(shown.bars)):
             first = MOST_EFFECTS
+        transposed = []
+        if beside:
+            transposed = transposed_names(answer)
+        caption = ""
+        if effects:
+            caption = curves.caption(answer)
         return {
             "title": str(answer.facts.get("name", "")),
             "description": str(answer.facts.get("description") or ""),
@@ -114,12 +120,12 @@ def screen_of(answer: Answer) -> dict[str, Any]:
             "headline": headline_of(answer),
             "table": shown,
             "others": _others(answer),
-            "transposed": transposed_names(answer) if beside else [],
+            "transposed": transposed,
             "shared": shown.rows.shared,
             "picture": picture,
             "effects_first": effects[:first],
             "effects": effects[first:],
-            "effects_caption": curves.caption(answer) if effects else "",
+            "effects_caption": caption,
             "map": map_of(answer),
             "not_checked": answer.not_checked,
             "not_used": {plain(name): why for name, why in answer.not_used.items()},

@@ -97,7 +97,8 @@ def sentences(fit: Fit) -> list[str]:
     """
     said = []
     for own in fit.groups:
-        failed, size = int(own.line.tests.failed.sum()), own.line.size
+        failed = int(own.line.tests.failed.sum())
+        size = own.line.size
         ends = {
             "fatigue": "failed by fatigue",
             "wear": "reached a depth",
@@ -140,9 +141,10 @@ def cannot_tell(fit: Fit) -> list[str]:
             "and is no number."
         )
     if fit.has("fatigue"):
-        said += _of_fatigue(
-            fit.group("fatigue"), fit.knee if "fatigue_limit" in fit.material else math.nan
-        )
+        limit = math.nan
+        if "fatigue_limit" in fit.material:
+            limit = fit.knee
+        said += _of_fatigue(fit.group("fatigue"), limit)
     return [*said, *fit.notes, *fit.not_given]
 
 
@@ -289,7 +291,9 @@ def next_sentences(ds: xr.Dataset) -> list[str]:
 
 def until_sentences(ds: xr.Dataset, factor: float) -> list[str]:
     """Return sentences on how many more tests are needed, from the campaigns of `tests_until`."""
-    tests, hours, most = ds["tests"].values, ds["hours"].values, int(ds.attrs["most"])
+    tests = ds["tests"].values
+    hours = ds["hours"].values
+    most = int(ds.attrs["most"])
     if not tests.max() > 0:
         return [
             f"The ends of B10 lie within a factor of {cell(factor)} already: no further test "

@@ -96,6 +96,9 @@ def render(ds: xr.Dataset, name: str = "") -> str:
 
         drawn = pictures(*contact.figures_of(ds), partial(wear.over_patch, ds))
     answer = named_answer(ds, name or "Track roller")
+    picture = ""
+    if "normal_force" in ds:
+        picture = drawing(ds)
     return record_text(
         answer,
         KIND,
@@ -103,7 +106,7 @@ def render(ds: xr.Dataset, name: str = "") -> str:
         signed=[
             (head.capitalize(), sheet_of(ds).get(head, "")) for head in (*SHEET_FIELDS, "signature")
         ],
-        drawing=drawing(ds) if "normal_force" in ds else "",
+        drawing=picture,
         figures=[drawn[one] for one in SHOWN if one in drawn],
         figures_title="Shear and stress",
         aside=_less_stressed(ds),
@@ -252,7 +255,8 @@ def as_json(ds: xr.Dataset) -> str:
         content["inputs"] = {
             name: {"value": _plain(v), "default": is_default(name, v)} for name, v in inputs.items()
         }
-        content["materials"], content["friction"] = materials_of(ds), friction_records(ds.attrs)
+        content["materials"] = materials_of(ds)
+        content["friction"] = friction_records(ds.attrs)
         content["flags"] = [vars(flag) for flag in flags_of(ds)]
         content["options"] = {k: _plain(v) for k, v in ds.attrs.items() if k not in _RECORDS}
         content["versions"] = versions()

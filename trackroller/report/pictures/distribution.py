@@ -124,14 +124,19 @@ def _names_of_lines(shown: Mapping[str, np.ndarray], across: Axis) -> list[Marku
         if place == 0:
             kind = "strong cm"
         y = percent_place(100 * float(rows[place]))
+        anchor = "start"
+        shift = 10
+        if end:
+            anchor = "end"
+            shift = -10
         parts.append(
             label(
                 cut(name, WIDE / 2),
                 x,
                 y,
-                "end" if end else "start",
+                anchor,
                 kind,
-                dx=-10 if end else 10,
+                dx=shift,
                 dy=-2,
             )
         )

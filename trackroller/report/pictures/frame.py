@@ -76,6 +76,9 @@ def lower_names(names: Sequence[str], places: Sequence[float], width: float) -> 
             whole = element("title", name)
         content = joined([Markup.escape(text), Markup(whole)])
         anchor = anchor_at(place)
+        text_anchor = anchor
+        if anchor == "start":
+            text_anchor = ""
         parts.append(
             element(
                 "text",
@@ -83,7 +86,7 @@ def lower_names(names: Sequence[str], places: Sequence[float], width: float) -> 
                 x=percent_place(place),
                 y="100%",
                 dy=15,
-                text_anchor="" if anchor == "start" else anchor,
+                text_anchor=text_anchor,
             )
         )
     return joined(parts)

@@ -63,9 +63,12 @@ def draw_like(answer: Answer, data: Mapping[str, Any]) -> Picture:
         for number_of, value in enumerate(kept):
             # golden section: an even scatter without chance
             moved = y + spread * (((number_of * 0.618034) % 1) - 0.5)
+            style = "d faint co"
+            if place % 2 == 0:
+                style = "d faint cm"
             parts.append(
                 dot(
-                    "d faint cm" if place % 2 == 0 else "d faint co",
+                    style,
                     across.place(float(value)),
                     moved,
                     3,

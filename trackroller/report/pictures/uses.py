@@ -66,7 +66,10 @@ class UseBars:
         marks = [*grid, upright("r", self.axis.place(1.0))]
         if not math.isnan(low):
             start, end = self.axis.place(low), self.axis.place(high)
-            marks.append(line("w", 0.0 if end - start < DIFFERENT else start, "50%", end, "50%"))
+            left = start
+            if end - start < DIFFERENT:
+                left = 0.0
+            marks.append(line("w", left, "50%", end, "50%"))
         if math.isnan(low):
             words = "not known"
         else:

@@ -118,11 +118,16 @@ def input_row(name: str, value: Any) -> Row:
         words = f"{parameter.long_name} {parameter.symbol}"
         return Row(words, shown, row_unit(parameter.unit), is_default(name, value))
     if name in MAPPING_FIELDS and name not in MECHANICAL_MAPPINGS:
-        shown = entries(json.loads(value) if isinstance(value, str) else value)
+        mapping = value
+        if isinstance(value, str):
+            mapping = json.loads(value)
+        shown = entries(mapping)
     elif name in MAPPING_FIELDS:
-        shown = level_text(
-            name, value if isinstance(value, str) else json.dumps(value, sort_keys=True)
-        )
+        if isinstance(value, str):
+            text = value
+        else:
+            text = json.dumps(value, sort_keys=True)
+        shown = level_text(name, text)
     elif isinstance(value, Mapping):
         shown = str(value.get("name", "inline"))
     else:
@@ -140,11 +145,10 @@ def material_rows(material: Material) -> list[Row]:
             words = one.label
         else:
             words = f"{one.label} {one.symbol}"
-        rows.append(
-            Row(words, "not given")
-            if value is None
-            else Row(words, number(value), row_unit(one.unit))
-        )
+        row = Row(words, "not given")
+        if value is not None:
+            row = Row(words, number(value), row_unit(one.unit))
+        rows.append(row)
     rows.append(Row("exponent k of the S-N curve", rounded(material.woehler_exponent)))
     if material.second_exponent is not None:
         rows.append(
@@ -170,15 +174,18 @@ def factor_table(results: Results) -> Table | None:
     ]
     rows = []
     for name in (*results.factors, *follows):
-        levels, parameter = results.levels(name), parameter_of(name)
+        levels = results.levels(name)
+        parameter = parameter_of(name)
         if results.numeric(name) and (name in follows or not results.grid) and len(levels) > 12:
             values = " … ".join(near(v, levels[-1] - levels[0]) for v in (levels[0], levels[-1]))
         else:
             values = ", ".join(level_text(name, v, unit=name in NAMED) for v in levels)
         if parameter:
-            symbol, unit = (parameter.symbol, unit_text(parameter.unit))
+            symbol = parameter.symbol
+            unit = unit_text(parameter.unit)
         else:
-            symbol, unit = ("", "")
+            symbol = ""
+            unit = ""
         rows.append(
             [
                 f"{capital(long_name(name))} {symbol}",
@@ -223,11 +230,9 @@ def correlation_row(results: Results) -> list[Row]:
 
 def base_rows(results: Results) -> list[Row]:
     """List the inputs that are the same in all cases."""
-    names = [
-        *PARAMETERS,
-        *(MATERIAL_FIELDS if "material_pair" not in results.factors else ()),
-        *MAPPING_FIELDS,
-    ]
+    names = [*PARAMETERS, *MATERIAL_FIELDS, *MAPPING_FIELDS]
+    if "material_pair" in results.factors:
+        names = [*PARAMETERS, *MAPPING_FIELDS]
     given = {
         name: results.base.get(name)
         for name in names
@@ -283,11 +288,9 @@ def material_source(values: Mapping[str, Any]) -> str:
     """Return where the values of a material come from, and which of them are guesses."""
     source = "; ".join(dict.fromkeys(values.get("sources", {}).values())) or "not given"
     guesses = values.get("guesses", ())
-    return f"{source}." + (
-        f" Guesses without a source: {', '.join(map(plain, guesses))}. Measure them."
-        if guesses
-        else ""
-    )
+    if not guesses:
+        return f"{source}."
+    return f"{source}. Guesses without a source: {', '.join(map(plain, guesses))}. Measure them."
 
 
 def friction_table(attrs: Mapping[str, Any]) -> Table | None:
@@ -311,10 +314,12 @@ def friction_source(record: Mapping[str, Any]) -> str:
     """Return where a friction coefficient of the database comes from, its note, and whether it is a
     placeholder.
     """
-    note = ""
+    source = str(record["source"])
+    if record["placeholder"]:
+        source += " (placeholder)"
     if record.get("note"):
-        note = f"; {record['note']}"
-    return f"{record['source']}{' (placeholder)' * record['placeholder']}{note}"
+        source += f"; {record['note']}"
+    return source
 
 
 def record_rows(attrs: Mapping[str, Any], skip: set[str]) -> list[Row]:

@@ -144,7 +144,10 @@ def classes_of(answer: Answer, column: Column) -> str:
     if _is_number(answer, column):
         classes.append("n")
     elif column.kind == "state":
-        classes.append("v" if column is _first_state(answer) else "s")
+        css = "s"
+        if column is _first_state(answer):
+            css = "v"
+        classes.append(css)
     elif column.role == "name" and _longest(answer, column) <= WRAPPED:
         classes.append("s")
     if column.kind in NARROW_KINDS or column.name in NARROW_NAMES:
@@ -234,7 +237,10 @@ def _bounded_text(column: Column, row: Mapping[Any, Any]) -> str:
 
 def ratio_text(ratio: float) -> str:
     """Write a ratio: three figures near 1, where small differences count, otherwise two."""
-    return grouped(ratio, 3 if 0.1 <= ratio < 10 else 2)
+    figures = 2
+    if 0.1 <= ratio < 10:
+        figures = 3
+    return grouped(ratio, figures)
 
 
 def rows_before_fold(answer: Answer) -> int:
@@ -269,7 +275,10 @@ def _percent(value: float) -> str:
     if math.isinf(whole):
         return grouped(whole)
     if 0 < whole < 1 or 99 < whole < 100:
-        return grouped(whole, 2 if whole < 1 else 4)
+        figures = 4
+        if whole < 1:
+            figures = 2
+        return grouped(whole, figures)
     if whole >= 1:
         return grouped(float(f"{whole:.0f}"), 12)
     return "0"
@@ -313,7 +322,8 @@ def fit_columns(answer: Answer, bars: int, width: float = PAGE) -> ColumnSplit:
     """
     shared = answer.shared
     left = width - bars * (BARS if bars == 1 else HALF_BARS)
-    shown, others = [], []
+    shown = []
+    others = []
     for column in sorted(answer.columns, key=lambda one: not one.role and one.kind != "state"):
         if column.name in shared or _is_hidden(column):
             continue
@@ -356,7 +366,10 @@ def definitions(answer: Answer) -> Iterator[tuple[str, str]]:
         if column.meaning and column.role != IN_FILES:
             unit = unit_of(column)
             title = capital(column.title)
-            yield (f"{title} [{unit}]" if unit else title), capital(column.meaning)
+            heading = title
+            if unit:
+                heading = f"{title} [{unit}]"
+            yield heading, capital(column.meaning)
 
 
 def ends_table(answer: Answer) -> tuple[list[str], list[list[str]], str]:
@@ -380,6 +393,9 @@ def ends_table(answer: Answer) -> tuple[list[str], list[list[str]], str]:
         else:
             level = grouped(float(row["level"]))
         counts = [grouped(float(row[limit]), 12) for limit in ending]
-        shown.append(["" if factor == last else factor, level, *counts])
+        factor_cell = factor
+        if factor == last:
+            factor_cell = ""
+        shown.append([factor_cell, level, *counts])
         last = factor
     return ["Factor", "Level", *(capital(limit) for limit in ending)], shown, ""
