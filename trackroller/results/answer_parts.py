@@ -13,7 +13,7 @@ import pandas as pd
 from trackroller.damage import LIMITS, limit_word
 from trackroller.parameters import BODIES
 from trackroller.parameters.carriage_fields import long_name_of
-from trackroller.parameters.example import ABSENT
+from trackroller.parameters.example import is_absent
 from trackroller.results.answer import Caution
 from trackroller.results.candidates import slip_margin
 from trackroller.results.case_ranges import CaseRanges
@@ -148,10 +148,11 @@ def not_given_words(results: SolvedCases) -> dict[str, str]:
     """Return the values that nobody gave, with their units."""
     words = {}
     for name in names_not_given(results.data.attrs):
-        if name in results.factors or name in results.derived or name in ABSENT:
+        if name in results.factors or name in results.derived:
             continue
         value = results.base.get(name)
-        if value is not None and not (isinstance(value, float) and np.isnan(value)):
+        unknown = value is None or (isinstance(value, float) and np.isnan(value))
+        if not unknown and not is_absent(name, value):
             words[name] = level_text(name, value)
     return words
 

@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from trackroller.carriage.files import name_of_study
 from trackroller.errors import InputError, unknown_name
 from trackroller.files import files_beside
 from trackroller.numerics.numbers import finite_number
@@ -28,7 +29,7 @@ from trackroller.roller.aliases import with_options
 from trackroller.roller.duty import OVERROLLINGS
 from trackroller.roller.requirement import DEFAULT
 from trackroller.roller.settings import LOADS, checked_case
-from trackroller.study.file.config import IN_STUDY, NAME
+from trackroller.study.file.config import IN_STUDY
 from trackroller.study.file.load import load_study
 from trackroller.study.file.shelf import ROLLER, base_of_case, with_rows, without_overridden
 from trackroller.study.file.study import Study
@@ -233,7 +234,8 @@ def _keys_of(case: Path | str | Mapping[str, Any], shelf: Path | str) -> dict[st
             "Remove it: --shelf gives it.",
             "stands there already",
         )
-    keys["name"] = _name(str(keys.get("name", stem)), Path(shelf).stem)
+    case = keys.get("name", stem)
+    keys["name"] = name_of_study(f"size-{case}-{Path(shelf).stem}")
     keys["factors"] = {ROLLER: {"file": Path(shelf).name}, **(keys.get("factors") or {})}
     base = dict(keys.get("base") or {})
     with files_beside(Path(shelf)):
@@ -260,14 +262,6 @@ def _of_case(values: Mapping[str, Any]) -> dict[str, Any]:
     return keys
 
 
-def _name(case: str, shelf: str) -> str:
-    """Return the name of the study of a case and a shelf, which names its folder."""
-    name = "-".join(("size", case, shelf))[:50].rstrip(".")
-    if NAME.fullmatch(name) and ".." not in name:
-        return name
-    return "size"
-
-
 def _overloaded(keys: Mapping[str, Any], safety: str | float) -> dict[str, Any]:
     """Return the keys of the study whose forces are those of another study times the safety."""
     factor = finite_number(safety, "-", "safety")
@@ -287,7 +281,7 @@ def _overloaded(keys: Mapping[str, Any], safety: str | float) -> dict[str, Any]:
         for name, value in keys.items()
         if name not in ("requirement", "pareto", "goals")
     }
-    return left | {"name": f"{keys['name']}-{OVERLOAD}", "base": base}
+    return left | {"name": name_of_study(f"{keys['name']}-{OVERLOAD}"), "base": base}
 
 
 def sizing_of(at_loads: Results | None, overload: Results | None, least: str = "") -> Sizing:

@@ -24,7 +24,7 @@ from trackroller.damage import LIMITS
 from trackroller.damage.verdict import STATES
 from trackroller.parameters import BODIES, PARAMETERS, REGIME_LABELS, REGIMES
 from trackroller.parameters.carriage_fields import long_name_of
-from trackroller.parameters.example import ABSENT, drive_question
+from trackroller.parameters.example import drive_question, is_absent
 from trackroller.results.answer import Answer, Caution, Column, Part, yes_or_blank
 from trackroller.results.flags import flags_of, not_judged
 from trackroller.results.lives import FIRST_LIMIT, past_data
@@ -472,7 +472,7 @@ def _blocks(ds: xr.Dataset) -> Part:
     their sum.
     """
     known = [name for name in LOAD_FIELDS if np.isfinite(ds[name].values).any()]
-    loads = [name for name in known if name not in ABSENT or ds[name].values.any()]
+    loads = [name for name in known if not is_absent(name, ds[name].values)]
     columns = [
         Column("block", "Block", "", "name of the block", "text", role="name"),
         Column("distance", "Distance", "m", "travel of the block", "whole"),
