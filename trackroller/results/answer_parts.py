@@ -20,8 +20,8 @@ from trackroller.results.case_ranges import CaseRanges
 from trackroller.results.columns import codes
 from trackroller.results.comparison import Comparison
 from trackroller.results.lives import OF_PAIR, body_lives
-from trackroller.results.places import level_text, places_of, places_text
 from trackroller.results.solved_cases import SolvedCases
+from trackroller.results.subgroups import level_text, places_of, places_text
 from trackroller.roller.limit_notes import given_in_vain
 from trackroller.roller.output_names import body_of, is_life
 from trackroller.roller.stored_inputs import names_not_given

@@ -31,8 +31,8 @@ from trackroller.results.comparison import EQUAL, Comparison
 from trackroller.results.effect_curves import Effects
 from trackroller.results.first_ends import ends_by_factor
 from trackroller.results.lives import OF_PAIR
-from trackroller.results.places import places_of, places_text, plain
 from trackroller.results.solved_cases import SolvedCases
+from trackroller.results.subgroups import places_of, places_text, plain
 from trackroller.results.turning import Turning
 from trackroller.roller.output_names import is_life
 

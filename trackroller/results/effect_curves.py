@@ -19,8 +19,8 @@ from trackroller.results.answer import Curve
 from trackroller.results.case_ranges import CaseRanges
 from trackroller.results.columns import codes
 from trackroller.results.groups import BINS, MOST_LEVELS, groups, spaced_by_ratio
-from trackroller.results.places import plain
 from trackroller.results.solved_cases import SolvedCases
+from trackroller.results.subgroups import plain
 from trackroller.study.design.entries import OPTION_FACTORS
 
 FEWEST_ROWS = 30  # smallest number of cases that are fitted

@@ -36,8 +36,8 @@ from trackroller.results.flags import flags_of, not_judged
 from trackroller.results.lives import FIRST_LIMIT, OF_PAIR
 from trackroller.results.margins import First, Margin, lifeless_bodies, margins, worst_contact
 from trackroller.results.placeholders import guess_cautions, placeholders_part
-from trackroller.results.places import level_text
 from trackroller.results.roller_lives import lives_part
+from trackroller.results.subgroups import level_text
 from trackroller.roller import stored_inputs as record
 from trackroller.roller.dataset import VARIABLES, shown, solved_by
 from trackroller.roller.duty import duty_of, strokes_of, years

@@ -256,9 +256,7 @@ class SolvedCases:
         their levels.
         """
         return tuple(
-            f
-            for f in self.factors
-            if not self.ordered(f) and len(self.levels(f)) <= MOST_LEVELS
+            f for f in self.factors if not self.ordered(f) and len(self.levels(f)) <= MOST_LEVELS
         )
 
     def behind(self, name: str) -> tuple[str, ...]:

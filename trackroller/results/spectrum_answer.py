@@ -30,7 +30,6 @@ from trackroller.results.flags import flags_of, not_judged
 from trackroller.results.lives import FIRST_LIMIT, past_data
 from trackroller.results.margins import First, Margin, is_guessed
 from trackroller.results.placeholders import guess_cautions, placeholders_part
-from trackroller.results.places import level_text
 from trackroller.results.roller_answer import (
     CODES,
     OF_ANY_LIMIT,
@@ -38,6 +37,7 @@ from trackroller.results.roller_answer import (
     facts_of_data,
     material_name,
 )
+from trackroller.results.subgroups import level_text
 from trackroller.roller.dataset import validity_bit
 from trackroller.roller.duty import strokes_words
 from trackroller.roller.limit_notes import notes_of

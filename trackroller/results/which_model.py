@@ -28,9 +28,9 @@ from trackroller.results.comparison import Comparison, compared_output
 from trackroller.results.decide import Decider
 from trackroller.results.effect_curves import Effects
 from trackroller.results.first_ends import ends_by_factor
-from trackroller.results.places import level_text, plain
 from trackroller.results.requirement import required_of
 from trackroller.results.solved_cases import SolvedCases
+from trackroller.results.subgroups import level_text, plain
 
 MODEL = "contact_model"
 
