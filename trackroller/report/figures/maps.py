@@ -25,7 +25,7 @@ from trackroller.report.numbers import (
     with_unit,
 )
 from trackroller.results.by_tests import beyond_sn_data
-from trackroller.results.groups import BINS, classes
+from trackroller.results.factor_levels import BINS, classes
 from trackroller.results.ranking import ranked_factors
 from trackroller.results.results import Results
 
