@@ -16,7 +16,7 @@ from trackroller.methods import METHODS, Method, register
 from trackroller.methods.method import Estimated, Index
 from trackroller.methods.sample import RandomSample
 from trackroller.results.growing import grow_study
-from trackroller.results.looks import looks_of
+from trackroller.results.interim_looks import looks_of
 
 RECIPE = Path(__file__).parents[2] / "CONTRIBUTING.md"
 STUDY = {
