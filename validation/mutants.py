@@ -151,7 +151,7 @@ DECISIONS = {
     "drive-in-words": ("report/numbers.py", "'driven' if value < 0", "'driven' if value > 0", WORDS),
     "fold": ("report/numbers.py", "ratio = max(ratio, 1", "ratio = min(ratio, 1", WORDS),
     "way-of-a-goal": (
-        "results/judging.py",
+        "results/search_fitness.py",
         '== "max", -1.0, 1.0',
         '== "max", 1.0, -1.0',
         ("results/test_best.py", "results/test_optimum.py"),

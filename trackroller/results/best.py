@@ -26,7 +26,9 @@ from trackroller.results.answer_parts import (
 )
 from trackroller.results.case_ranges import CaseRanges
 from trackroller.results.comparison import wilson
-from trackroller.results.judging import (
+from trackroller.results.lives import OF_PAIR, lacks_a_body
+from trackroller.results.requirement import required_of
+from trackroller.results.search_fitness import (
     Judged,
     Shares,
     beyond_data,
@@ -41,8 +43,6 @@ from trackroller.results.judging import (
     shares_of,
     shortfall,
 )
-from trackroller.results.lives import OF_PAIR, lacks_a_body
-from trackroller.results.requirement import required_of
 from trackroller.results.solved_cases import SAME_ENDS, SolvedCases
 from trackroller.roller.output_names import is_life
 from trackroller.study.design.levels import in_words

@@ -19,7 +19,13 @@ from trackroller.results.by_tests import beyond_sn_data
 from trackroller.results.candidates import Candidates, candidates_of
 from trackroller.results.columns import codes
 from trackroller.results.constraints import Column, meeting
-from trackroller.results.judging import SAFE_B10, beyond_data, goal_column, goals_of_search, judge
+from trackroller.results.search_fitness import (
+    SAFE_B10,
+    beyond_data,
+    goal_column,
+    goals_of_search,
+    judge,
+)
 from trackroller.results.sensitivity import analysis_of
 from trackroller.results.solved_cases import SolvedCases, made_once
 from trackroller.roller.output_names import is_life
