@@ -14,8 +14,8 @@ from trackroller.methods.optimise import (
     next_generation,
     nondominated_ranks,
 )
-from trackroller.results.optimum import cheaper, search_designs
 from trackroller.results.pareto import pareto_mask
+from trackroller.results.search import cheaper, search_designs
 from trackroller.results.search_fitness import optimum_of, shortfall
 from trackroller.study.file.load import load_study
 from validation.benchmarks.optimum import hypervolume
