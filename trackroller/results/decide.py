@@ -33,7 +33,7 @@ from trackroller.results.first_ends import ends_by_factor
 from trackroller.results.lives import OF_PAIR
 from trackroller.results.solved_cases import SolvedCases
 from trackroller.results.subgroups import places_of, places_text, plain
-from trackroller.results.turning import Turning
+from trackroller.results.turning_values import Turning
 from trackroller.roller.output_names import is_life
 
 RIVALS = 200  # of the leader that are compared with it pair by pair, the best ones
