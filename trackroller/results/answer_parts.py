@@ -19,7 +19,7 @@ from trackroller.results.candidates import slip_margin
 from trackroller.results.case_ranges import CaseRanges
 from trackroller.results.columns import codes
 from trackroller.results.comparison import Comparison
-from trackroller.results.lives import OF_PAIR, body_lives
+from trackroller.results.life_columns import OF_PAIR, body_lives
 from trackroller.results.solved_cases import SolvedCases
 from trackroller.results.subgroups import level_text, places_of, places_text
 from trackroller.roller.limit_notes import given_in_vain

@@ -26,7 +26,7 @@ from trackroller.results.answer_parts import (
 )
 from trackroller.results.case_ranges import CaseRanges
 from trackroller.results.comparison import wilson
-from trackroller.results.lives import OF_PAIR, lacks_a_body
+from trackroller.results.life_columns import OF_PAIR, lacks_a_body
 from trackroller.results.requirement import required_of
 from trackroller.results.search_fitness import (
     Judged,

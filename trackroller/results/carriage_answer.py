@@ -30,7 +30,7 @@ from trackroller.parameters.carriage_fields import long_name_of
 from trackroller.parameters.validity import VALIDITY
 from trackroller.results.answer import Answer, Caution, Column, Part, Required
 from trackroller.results.flags import OUTSIDE
-from trackroller.results.lives import FIRST_LIMIT
+from trackroller.results.life_columns import FIRST_LIMIT
 from trackroller.results.placeholders import guess_cautions, placeholders_part
 from trackroller.results.roller_answer import (
     CODES,

@@ -33,7 +33,7 @@ from trackroller.parameters.example import drive_question
 from trackroller.results.answer import Answer, Caution, Column, Part, Required, yes_or_blank
 from trackroller.results.columns import at_surface
 from trackroller.results.flags import flags_of, not_judged
-from trackroller.results.lives import FIRST_LIMIT, OF_PAIR
+from trackroller.results.life_columns import FIRST_LIMIT, OF_PAIR
 from trackroller.results.margins import First, Margin, lifeless_bodies, margins, worst_contact
 from trackroller.results.placeholders import guess_cautions, placeholders_part
 from trackroller.results.roller_lives import lives_part

@@ -26,7 +26,7 @@ from trackroller.parameters import (
 from trackroller.results.columns import base_values, case_columns, codes, factor_names
 from trackroller.results.constraints import Column, meeting, quantity_of
 from trackroller.results.factor_levels import MOST_LEVELS, levels, numeric, ordered
-from trackroller.results.lives import BESIDE, FIRST_LIMIT, LIVES, OF_PAIR, body_lives
+from trackroller.results.life_columns import BESIDE, FIRST_LIMIT, LIVES, OF_PAIR, body_lives
 from trackroller.results.own_outputs import with_own_outputs
 from trackroller.roller.output_names import body_of
 from trackroller.study.design.entries import CASE_FIELDS, OPTION_FACTORS

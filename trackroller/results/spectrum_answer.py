@@ -27,7 +27,7 @@ from trackroller.parameters.carriage_fields import long_name_of
 from trackroller.parameters.example import drive_question, is_absent
 from trackroller.results.answer import Answer, Caution, Column, Part, yes_or_blank
 from trackroller.results.flags import flags_of, not_judged
-from trackroller.results.lives import FIRST_LIMIT, past_data
+from trackroller.results.life_columns import FIRST_LIMIT, past_data
 from trackroller.results.margins import First, Margin, is_guessed
 from trackroller.results.placeholders import guess_cautions, placeholders_part
 from trackroller.results.roller_answer import (
