@@ -21,7 +21,7 @@ from trackroller.methods.factor import label
 from trackroller.methods.method import Estimated, Estimates
 from trackroller.methods.saltelli import all_groups
 from trackroller.results.by_tests import bands
-from trackroller.results.labels import (
+from trackroller.results.index_labels import (
     RELIABLE,
     correlated,
     factor_name,
