@@ -16,8 +16,8 @@ from trackroller.parameters.carriage_fields import long_name_of
 from trackroller.parameters.example import is_absent
 from trackroller.results.answer import Caution
 from trackroller.results.candidates import slip_margin
+from trackroller.results.case_columns import codes
 from trackroller.results.case_ranges import CaseRanges
-from trackroller.results.columns import codes
 from trackroller.results.comparison import Comparison
 from trackroller.results.life_columns import OF_PAIR, body_lives
 from trackroller.results.solved_cases import SolvedCases

@@ -11,7 +11,7 @@ import pandas as pd
 import xarray as xr
 
 from trackroller.parameters import EXACTNESS
-from trackroller.results.columns import CONTACT_RESULTS, codes, input_columns
+from trackroller.results.case_columns import CONTACT_RESULTS, codes, input_columns
 from trackroller.results.solved_cases import SolvedCases
 from trackroller.study.outputs import flat
 

@@ -17,7 +17,7 @@ from trackroller.parameters import EXACTNESS, REGIME_LABELS, REGIMES
 from trackroller.parameters.carriage_fields import parameter_of
 from trackroller.results.by_tests import beyond_sn_data
 from trackroller.results.candidates import Candidates, candidates_of
-from trackroller.results.columns import codes
+from trackroller.results.case_columns import codes
 from trackroller.results.constraints import Column, meeting
 from trackroller.results.search_fitness import (
     SAFE_B10,

@@ -31,7 +31,7 @@ from trackroller.parameters import BODIES, PARAMETERS, REGIMES
 from trackroller.parameters.carriage_fields import long_name_of
 from trackroller.parameters.example import drive_question
 from trackroller.results.answer import Answer, Caution, Column, Part, Required, yes_or_blank
-from trackroller.results.columns import at_surface
+from trackroller.results.case_columns import at_surface
 from trackroller.results.flags import flags_of, not_judged
 from trackroller.results.life_columns import FIRST_LIMIT, OF_PAIR
 from trackroller.results.margins import First, Margin, lifeless_bodies, margins, worst_contact

@@ -23,7 +23,7 @@ from trackroller.parameters import (
     ROLE_OF,
     expressions,
 )
-from trackroller.results.columns import base_values, case_columns, codes, factor_names
+from trackroller.results.case_columns import base_values, case_columns, codes, factor_names
 from trackroller.results.constraints import Column, meeting, quantity_of
 from trackroller.results.factor_levels import MOST_LEVELS, levels, numeric, ordered
 from trackroller.results.life_columns import BESIDE, FIRST_LIMIT, LIVES, OF_PAIR, body_lives

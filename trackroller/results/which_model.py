@@ -22,8 +22,8 @@ from trackroller.results.answer_parts import (
 )
 from trackroller.results.candidate_table import candidate_table, names_of
 from trackroller.results.candidates import Candidates
+from trackroller.results.case_columns import codes
 from trackroller.results.case_ranges import CaseRanges
-from trackroller.results.columns import codes
 from trackroller.results.comparison import Comparison, compared_output
 from trackroller.results.decide import Decider
 from trackroller.results.effect_curves import Effects
