@@ -26,7 +26,6 @@ from trackroller.parameters import BODIES, PARAMETERS, REGIME_LABELS, REGIMES
 from trackroller.parameters.carriage_fields import long_name_of
 from trackroller.parameters.example import drive_question, is_absent
 from trackroller.results.answer import Answer, Caution, Column, Part, yes_or_blank
-from trackroller.results.flags import flags_of, not_judged
 from trackroller.results.life_columns import FIRST_LIMIT, past_data
 from trackroller.results.margins import First, Margin, is_guessed
 from trackroller.results.placeholders import guess_cautions, placeholders_part
@@ -38,6 +37,7 @@ from trackroller.results.roller_answer import (
     material_name,
 )
 from trackroller.results.subgroups import level_text
+from trackroller.results.validity_flags import flags_of, not_judged
 from trackroller.roller.dataset import validity_bit
 from trackroller.roller.duty import strokes_words
 from trackroller.roller.limit_notes import notes_of
