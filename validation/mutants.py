@@ -143,7 +143,7 @@ DECISIONS = {
     "fewest-conditions": ("results/candidates.py", "self.size.min() >= FEWEST", "self.size.max() >= FEWEST", DESIGNS),
     "unequal-loads": ("results/candidates.py", "np.min(loads, axis=0) /", "np.mean(loads, axis=0) /", DESIGNS),
     "median-case": ("results/candidates.py", "((number - 1) // 2, number", "(number // 2, number", DESIGNS),
-    "beyond-data": ("results/by_tests.py", "dtype=float)) | endless", "dtype=float)) & endless", DESIGNS),
+    "beyond-data": ("results/lives_by_tests.py", "dtype=float)) | endless", "dtype=float)) & endless", DESIGNS),
     "class-of-a-value": ("results/factor_levels.py", 'side="right") - 1', 'side="left") - 1', (*DESIGNS, *WORDS)),
     "target-met": ("roller/requirement.py", "(values >= self.least) &", "(values > self.least) &", TARGETS),
     "all-targets": ("results/targets.py", ".min(axis=1) for body", ".max(axis=1) for body", TARGETS),
