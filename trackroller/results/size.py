@@ -24,7 +24,7 @@ from trackroller.numerics.plain import mapping_of
 from trackroller.parameters import BODIES
 from trackroller.parameters.example import EXAMPLE
 from trackroller.results.results import Results
-from trackroller.results.solving import run
+from trackroller.results.run import run
 from trackroller.roller.aliases import with_options
 from trackroller.roller.duty import OVERROLLINGS
 from trackroller.roller.requirement import DEFAULT
