@@ -29,7 +29,7 @@ from trackroller.results.candidate_table import (
 )
 from trackroller.results.comparison import EQUAL, Comparison
 from trackroller.results.effect_curves import Effects
-from trackroller.results.first_ends import ends_by_factor
+from trackroller.results.ends_by_factor import ends_by_factor
 from trackroller.results.life_columns import OF_PAIR
 from trackroller.results.solved_cases import SolvedCases
 from trackroller.results.subgroups import places_of, places_text, plain

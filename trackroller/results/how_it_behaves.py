@@ -17,7 +17,7 @@ from trackroller.results.answer_parts import (
 )
 from trackroller.results.case_ranges import CaseRanges
 from trackroller.results.effect_curves import Effects
-from trackroller.results.first_ends import UNKNOWN, end_of_case, ends_by_factor
+from trackroller.results.ends_by_factor import UNKNOWN, end_of_case, ends_by_factor
 from trackroller.results.output_ranges import COLUMNS, output_ranges
 from trackroller.results.requirement import required_of
 from trackroller.results.solved_cases import SolvedCases

@@ -20,7 +20,7 @@ from trackroller.results.candidate_table import candidate_columns, candidate_tab
 from trackroller.results.comparison import Comparison
 from trackroller.results.decide import Decider, leading, not_held_by_any, with_ratios
 from trackroller.results.effect_curves import Effects
-from trackroller.results.first_ends import ends_by_factor
+from trackroller.results.ends_by_factor import ends_by_factor
 from trackroller.results.solved_cases import SolvedCases
 
 

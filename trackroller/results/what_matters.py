@@ -21,7 +21,7 @@ from trackroller.results.answer_parts import (
 from trackroller.results.case_ranges import CaseRanges
 from trackroller.results.comparison import compared_output
 from trackroller.results.effect_curves import Effects
-from trackroller.results.first_ends import ends_by_factor
+from trackroller.results.ends_by_factor import ends_by_factor
 from trackroller.results.ranking import estimate, headline, index_words, order, robust_design
 from trackroller.results.requirement import required_of
 from trackroller.results.sensitivity import analysis_of

@@ -27,7 +27,7 @@ from trackroller.results.case_ranges import CaseRanges
 from trackroller.results.comparison import Comparison, compared_output
 from trackroller.results.decide import Decider
 from trackroller.results.effect_curves import Effects
-from trackroller.results.first_ends import ends_by_factor
+from trackroller.results.ends_by_factor import ends_by_factor
 from trackroller.results.requirement import required_of
 from trackroller.results.solved_cases import SolvedCases
 from trackroller.results.subgroups import level_text, plain
