@@ -17,13 +17,6 @@ from trackroller.methods.optimise import nondominated_ranks
 from trackroller.parameters import BODIES, REGIMES
 from trackroller.parameters.carriage_fields import long_name_of, parameter_of
 from trackroller.results.answer import Answer, Caution, Column, Required, yes_or_blank
-from trackroller.results.answer_parts import (
-    case_cautions,
-    checks_left_out,
-    facts_of,
-    given_for_nothing,
-    not_given_words,
-)
 from trackroller.results.case_ranges import CaseRanges
 from trackroller.results.comparison import wilson
 from trackroller.results.life_columns import OF_PAIR, lacks_a_body
@@ -44,6 +37,13 @@ from trackroller.results.search_fitness import (
     shortfall,
 )
 from trackroller.results.solved_cases import SAME_ENDS, SolvedCases
+from trackroller.results.study_facts import (
+    case_cautions,
+    checks_left_out,
+    facts_of,
+    given_for_nothing,
+    not_given_words,
+)
 from trackroller.roller.output_names import is_life
 from trackroller.study.design.levels import in_words
 from trackroller.study.file.search import judged_by

@@ -13,13 +13,6 @@ import pandas as pd
 from trackroller.parameters import EXACTNESS
 from trackroller.parameters.carriage_fields import long_name_of
 from trackroller.results.answer import Answer, Column
-from trackroller.results.answer_parts import (
-    case_cautions,
-    checks_left_out,
-    facts_of,
-    given_for_nothing,
-    not_given_words,
-)
 from trackroller.results.candidate_table import candidate_table, names_of
 from trackroller.results.candidates import Candidates
 from trackroller.results.case_columns import codes
@@ -30,6 +23,13 @@ from trackroller.results.effect_curves import Effects
 from trackroller.results.ends_by_factor import ends_by_factor
 from trackroller.results.requirement import required_of
 from trackroller.results.solved_cases import SolvedCases
+from trackroller.results.study_facts import (
+    case_cautions,
+    checks_left_out,
+    facts_of,
+    given_for_nothing,
+    not_given_words,
+)
 from trackroller.results.subgroups import level_text, plain
 
 MODEL = "contact_model"
