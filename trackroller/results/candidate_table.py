@@ -113,22 +113,14 @@ SECOND_MODEL = (
         "text",
     ),
     Column(
-        "second_low",
-        "By second model",
-        "h",
-        "its life at its worst condition",
-        until="second_high",
+        "second_low", "By second model", "h", "its life at its worst condition", until="second_high"
     ),
 )
 SECOND_STATE = Column(
     "second_state", "Its verdict", "", "the requirement by the second model", "state"
 )
 EXCEEDED = Column(
-    "exceeded",
-    "Above 100 %",
-    "",
-    "limits that are exceeded somewhere, the worst one",
-    "text",
+    "exceeded", "Above 100 %", "", "limits that are exceeded somewhere, the worst one", "text"
 )
 TO_THE_LEADER = (
     Column(

@@ -33,10 +33,7 @@ from trackroller.study.outputs import Output, default_names, flat, of_first_limi
 PERCENTILES = (1.0, 5.0, 10.0, 50.0, 90.0, 95.0, 99.0)
 
 
-def robustness(
-    results: SolvedCases,
-    log_life_scatter: Mapping[str, np.ndarray],
-) -> xr.Dataset:
+def robustness(results: SolvedCases, log_life_scatter: Mapping[str, np.ndarray]) -> xr.Dataset:
     """Summarise every output and the probability of each regime at every design point.
 
     Parameters
