@@ -50,7 +50,7 @@ def random_file(seed):
         told["base"]["guide_overrollings_per_hour"] = float(rng.choice([60, 600, 2e5]))
     told["life_rule"] = str(rng.choice(["elementary", "haibach", "unlimited"]))
     if seed % 5 == 3:
-        told |= {"design": "inner_outer", "samples": 32, "seed": int(seed)}
+        told |= {"method": "inner_outer", "samples": 32, "seed": int(seed)}
         factors |= {"friction_coefficient": {"uniform": [0.05, 0.3]}, "axial_force": {"uniform": [0.0, 60.0]}}
         for name in ("motor_force", "radial_force", "guide_curve_radius"):
             factors.pop(name, None)

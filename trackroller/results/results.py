@@ -91,11 +91,11 @@ class Results(SolvedCases):
             If the study has another design.
         """
         if not self.design.method.points:
-            remedy = "Take indices() for this study, or give the study design: inner_outer."
+            remedy = "Take indices() for this study, or give the study method: inner_outer."
             raise InputError(
-                "design",
+                "method",
                 self.design.method.name,
-                "design inner_outer, which has design points",
+                "method inner_outer, which has design points",
                 remedy,
             )
         return self.indices()
@@ -190,11 +190,11 @@ class Results(SolvedCases):
             return pd.DataFrame()
         if not candidates.comparable:
             remedy = (
-                "Give the choices as lists and the conditions as distributions with design: "
+                "Give the choices as lists and the conditions as distributions with method: "
                 "inner_outer."
             )
             raise InputError(
-                "design", self.design.method.name, "designs that share their conditions", remedy
+                "method", self.design.method.name, "designs that share their conditions", remedy
             )
         if not candidates.ranks:
             remedy = "Add life to outputs, and run the study again."

@@ -65,8 +65,8 @@ def robustness(results: SolvedCases, log_life_scatter: Mapping[str, np.ndarray])
     design = results.design
     config = results.config
     if not design.method.points:
-        allowed = "design inner_outer: lists as outer array, distributions as inner array"
-        raise InputError("design", design.method.name, allowed)
+        allowed = "method inner_outer: lists as outer array, distributions as inner array"
+        raise InputError("method", design.method.name, allowed)
     regime = regimes(ds, results.dims)
     names = list(config.analysis.outputs or default_names(ds, design.factors, results.dims))
     goals = [statistic(goal) for goal in config.pareto]

@@ -1,4 +1,4 @@
-"""Search for the best designs of a study, `design: optimise`.
+"""Search for the best designs of a study, `method: optimise`.
 
 The search draws a generation of designs, solves each of them at all its conditions, judges it by
 the goals and draws the next generation. Every generation is a design of the study whose cases go
@@ -111,7 +111,7 @@ def search_designs(study: Study, results: Path | str = "results", **how: Any) ->
     Parameters
     ----------
     study : Study
-        The checked study, with `design: optimise`.
+        The checked study, with `method: optimise`.
     results : path
         Parent of the study's folder.
     **how

@@ -115,9 +115,8 @@ def analyse(results: SolvedCases) -> xr.Dataset:
     given = results.config.analysis
     if design.method.proposes:
         allowed = "a design that draws its rows evenly: a search prefers good designs"
-        raise InputError(
-            "design", design.method.name, allowed, "Take design saltelli, sobol or lhs for indices."
-        )
+        remedy = "Take method: saltelli, sobol or lhs for indices."
+        raise InputError("method", design.method.name, allowed, remedy)
     own = material_deviations(results)
     aims = _aims(results, own)
     if design.method.points:
