@@ -13,7 +13,9 @@ def required_of_output(answer: Answer) -> list[Required]:
     verdict is.
     """
     name = answer.output[0]
-    names = OF_PAIR if name == FIRST_LIMIT[0] else (name,)
+    names: tuple[str, ...] = (name,)
+    if name == FIRST_LIMIT[0]:
+        names = OF_PAIR
     return [one for one in answer.required if one.output in names]
 
 

@@ -139,10 +139,13 @@ def _print(text: str, path: Path) -> None:
     with tempfile.TemporaryDirectory(
         prefix="trackroller-print-", ignore_cleanup_errors=True
     ) as place:
-        page, made = Path(place, "page.html"), Path(place, "page.pdf")
+        page = Path(place, "page.html")
+        made = Path(place, "page.pdf")
         page.write_text(text, encoding="utf-8")
         # root has no sandbox
-        alone = ["--no-sandbox"] if getattr(os, "geteuid", lambda: 1)() == 0 else []
+        alone = []
+        if getattr(os, "geteuid", lambda: 1)() == 0:
+            alone = ["--no-sandbox"]
         own = [f"--user-data-dir={place}/profile", f"--print-to-pdf={made}", page.as_uri()]
         try:
             subprocess.run(

@@ -108,7 +108,10 @@ def _known(results: SolvedCases) -> dict[str, np.ndarray]:
     out = {}
     for place, name in enumerate(str(one) for one in data["limit"].values):
         timed = ~np.isnan(lives[:, place])
-        out[name] = timed if timed.any() else ~np.isnan(uses[:, place])
+        if timed.any():
+            out[name] = timed
+        else:
+            out[name] = ~np.isnan(uses[:, place])
     return out
 
 
@@ -181,9 +184,9 @@ def lost_by_missing_input(own: Comparison) -> str:
 def where_text(results: SolvedCases, hit: np.ndarray, among: np.ndarray) -> str:
     """Return the levels of factors that hold some rows and no others; '' if no levels do."""
     places = places_of(results.table, results.factors, hit, among)
-    return (
-        places_text([place for place in places if len(place) <= 3], results.table) if places else ""
-    )
+    if places:
+        return places_text([place for place in places if len(place) <= 3], results.table)
+    return ""
 
 
 def cautions(own: Comparison, shown: pd.DataFrame, named: int = 1) -> tuple[Caution, ...]:
@@ -218,7 +221,9 @@ def _edge_text(own: Comparison, shown: pd.DataFrame, edge: str) -> str:
         if long_name_of(name) in edge.split(", "):
             levels = own.results.levels(name)
             value = shown[name].iloc[0]
-            side = "smallest" if value == levels[0] else "largest"
+            side = "largest"
+            if value == levels[0]:
+                side = "smallest"
             ends = f"{level_text(name, levels[0])} to {level_text(name, levels[-1])}"
             parts.append(f"{long_name_of(name)} {level_text(name, value)}: {side} of {ends}")
     return "; ".join(parts)
@@ -246,9 +251,9 @@ def case_cautions(results: SolvedCases, ranges: CaseRanges, rows: np.ndarray) ->
                 f"{word} {count:,}" for word, count in reasons.value_counts().items()
             )
             where = where_text(results, hit, rows)
-            found.append(
-                Caution(code, int(hit.sum()), total, f"{counts}: {where}" if where else counts)
-            )
+            if where:
+                counts = f"{counts}: {where}"
+            found.append(Caution(code, int(hit.sum()), total, counts))
     beyond = ranges.beyond & rows
     if is_life(ranges.output[0]) and beyond.any():
         found.append(
@@ -284,7 +289,7 @@ def _outlives_groove(results: SolvedCases, output: str) -> np.ndarray:
     """
     body = body_of(output)
     if is_life(output) and body:
-        return results.flagged("worn", body if results.by_body else "")
+        return results.flagged("worn", body)
     if output not in OF_PAIR or not results.by_body:
         return results.flagged("worn")
     beyond = {body: results.flagged("worn", body) for body in BODIES}

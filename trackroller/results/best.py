@@ -16,7 +16,7 @@ from trackroller.errors import InputError, listing
 from trackroller.methods.optimise import nondominated_ranks
 from trackroller.parameters import BODIES, REGIMES
 from trackroller.parameters.carriage_fields import long_name_of, parameter_of
-from trackroller.results.answer import Answer, Caution, Column, Required
+from trackroller.results.answer import Answer, Caution, Column, Required, yes_or_blank
 from trackroller.results.answer_parts import (
     case_cautions,
     checks_left_out,
@@ -188,7 +188,9 @@ class _Found:
         order = sorted(
             others, key=lambda number: tuple(np.nan_to_num(self.judged.costs[number], nan=np.inf))
         )
-        return list(dict.fromkeys([*self.named, *self.corners, *order])) if self.usable else []
+        if self.usable:
+            return list(dict.fromkeys([*self.named, *self.corners, *order]))
+        return []
 
 
 def answer_of_search(results: SolvedCases) -> Answer:
@@ -249,20 +251,23 @@ def _kind(found: _Found) -> str:
     state = found.verdict[found.chosen]
     if found.wanted and state == "open":
         exact = shortfall(found.results, exact=True)[found.chosen]
-        return "open" if 1 <= exact < 2 else "solve_finer"
+        if 1 <= exact < 2:
+            return "open"
+        return "solve_finer"
     if found.wanted and state != "met":
         return "none"
     if len(found.goals) == 1:
         return "one"
-    return "front_required" if found.wanted else "front"
+    if found.wanted:
+        return "front_required"
+    return "front"
 
 
 def _headline(found: _Found, kind: str) -> dict[str, Any]:
     """Return the numbers and names of the headline."""
-    settled = kind in ("one", "front", "front_required")
-    head: dict[str, Any] = {
-        "designs": [_design(found, number) for number in found.named] if settled else []
-    }
+    head: dict[str, Any] = {"designs": []}
+    if kind in ("one", "front", "front_required"):
+        head["designs"] = [_design(found, number) for number in found.named]
     if not found.usable:
         return head
     chosen = found.chosen
@@ -273,7 +278,7 @@ def _headline(found: _Found, kind: str) -> dict[str, Any]:
         "exceeded": _exceeded(found, chosen),
         "count": int(found.front.sum()),
     }
-    if not settled:
+    if not head["designs"]:
         return head | {"nearest": _nearest(found, chosen)}
     if found.wanted and _is_drawn(found):
         own = _requirement(found, chosen)
@@ -284,7 +289,9 @@ def _headline(found: _Found, kind: str) -> dict[str, Any]:
         }
     if kind != "front":
         binds = _binds(found, chosen)[:2]
-        head["binds"] = listing(binds) if binds else ""
+        head["binds"] = ""
+        if binds:
+            head["binds"] = listing(binds)
     return head
 
 
@@ -292,7 +299,9 @@ def _design(found: _Found, number: int) -> dict[str, Any]:
     """Return a design of the headline: its choices and its goals at `reference`."""
     at = ""
     if len(found.named) > 1:
-        at = "corner" if number in found.corners else "knee"
+        at = "knee"
+        if number in found.corners:
+            at = "corner"
     goals = []
     for goal, value in zip(found.goals, found.optima[number]["reference"], strict=True):
         _, units, words = goal_column(found.results, goal)
@@ -321,7 +330,10 @@ def _nearest(found: _Found, number: int) -> dict[str, Any]:
     meets = min((own.sure[number] for own in found.shares), default=0.0)
     of = rows.stop - rows.start
     worse = found.ranges.worse[rows]
-    low = float(worse.min() if found.ranges.rises else worse.max())
+    if found.ranges.rises:
+        low = float(worse.min())
+    else:
+        low = float(worse.max())
     return {
         "name": _name(found, number),
         "holds": int(found.results.held[rows].sum()),
@@ -404,18 +416,15 @@ def _table(found: _Found) -> tuple[pd.DataFrame, tuple[Column, ...]]:
 
 _MEANINGS = {
     "verdict": "met: enough conditions meet the requirement also with the told error; missed: "
-    "they do not; open: "
-    "between both",
+    "they do not; open: between both",
     "share": "share of the conditions that meet the requirement with the told error",
     "share_low": "Wilson's 95 % interval of this share for the number of drawn conditions",
     "binds": "what a design with a better goal would miss, and the choices that stand at an end "
     "of their range",
     "step": "smallest ratio (of a goal to be large) or largest one (of a goal to be small) if one "
-    "choice moves by its "
-    "tolerance",
+    "choice moves by its tolerance",
     "corner": "solved: neither an end of a range nor the smallest step improves the goal; "
-    "stopped: the search stopped "
-    "before",
+    "stopped: the search stopped before",
     "second": "shortest life by a second model of an end that another limit has",
     "exceeded": "largest use of a limit other than fatigue over the conditions, if it is above "
     "100 %",
@@ -433,8 +442,12 @@ def _choice_columns(found: _Found) -> list[Column]:
     columns = []
     for name in found.results.design.meta["outer"]:
         known = parameter_of(name)
-        units = known.units if known else ""
-        role = "name" if _varies(found, name) else ""
+        units = ""
+        if known:
+            units = known.units
+        role = ""
+        if _varies(found, name):
+            role = "name"
         columns.append(
             Column(name, long_name_of(name), units, "choice of the designer", "level", role=role)
         )
@@ -450,7 +463,9 @@ def _goal_columns(found: _Found) -> list[Column]:
         if judged_by(goal)[1] in found.results.design.meta["outer"]:
             continue  # its value stands in the column of the choice
         _, units, words = goal_column(found.results, goal)
-        better = "larger is better" if way == "max" else "smaller is better"
+        better = "smaller is better"
+        if way == "max":
+            better = "larger is better"
         name = GOAL.format(number)
         columns.append(Column(name, words, units, f"{words}; {better}"))
         columns.append(
@@ -490,17 +505,27 @@ def _row(found: _Found, number: int) -> dict[str, Any]:
         row[REQUIRED.format(place)] = float(value)
     if found.wanted:
         row |= _requirement(found, number)
-    row |= _step(found) if number == found.chosen else {"step": np.nan, "step_of": ""}
-    row["binds"] = (
-        ", ".join(_binds(found, number)) if number in (*found.named, *found.corners) else ""
-    )
+    if number == found.chosen:
+        row |= _step(found)
+    else:
+        row |= {"step": np.nan, "step_of": ""}
+    row["binds"] = ""
+    if number in (*found.named, *found.corners):
+        row["binds"] = ", ".join(_binds(found, number))
     row["corner"] = _corner(found, number)
     second = _second_life(found, number)
-    row["second"] = np.nan if second is None else second[1]
-    row["second_verdict"] = "" if second is None else second[2]
+    if second is None:
+        row["second"] = np.nan
+        row["second_verdict"] = ""
+    else:
+        row["second"] = second[1]
+        row["second_verdict"] = second[2]
     over = _exceeded(found, number)
-    row["exceeded"] = np.nan if over is None else over["use"]
-    row["extrapolated"] = "yes" if _beyond(found)[number] else ""
+    if over is None:
+        row["exceeded"] = np.nan
+    else:
+        row["exceeded"] = over["use"]
+    row["extrapolated"] = yes_or_blank(_beyond(found)[number])
     return row
 
 
@@ -516,7 +541,9 @@ def _corner(found: _Found, number: int) -> str:
     """Return whether a design that ends the front, or the optimum of one goal, is solved."""
     if number not in found.corners:
         return ""
-    return "stopped" if _is_stopped(found, number) else "solved"
+    if _is_stopped(found, number):
+        return "stopped"
+    return "solved"
 
 
 def _requirement(found: _Found, number: int) -> dict[str, Any]:
@@ -547,11 +574,18 @@ def _step(found: _Found) -> dict[str, Any]:
     """
     way = next(iter(found.goals.values()))
     own = float(found.judged.values[found.chosen, 0])
-    worst, step = np.nan, ""
+    worst = np.nan
+    step = ""
     for one in found.search["neighbours"]:
-        ratio = float(one["values"][0]) / own if own else np.nan
-        if np.isnan(worst) or (ratio < worst if way == "max" else ratio > worst):
-            worst, step = ratio, f"{long_name_of(one['choice'])} {one['step']}"
+        ratio = np.nan
+        if own:
+            ratio = float(one["values"][0]) / own
+        is_worse = ratio > worst
+        if way == "max":
+            is_worse = ratio < worst
+        if np.isnan(worst) or is_worse:
+            worst = ratio
+            step = f"{long_name_of(one['choice'])} {one['step']}"
     return {"step": worst, "step_of": step}
 
 
@@ -561,7 +595,8 @@ def _binds(found: _Found, number: int) -> list[str]:
 
     A goal in which a design that misses no more is better is bound by the other goals.
     """
-    judged, words = found.judged, []
+    judged = found.judged
+    words = []
     for costs in judged.costs.T:
         better = costs < costs[number]
         misses = judged.missed > judged.missed[number]
@@ -577,7 +612,9 @@ def _missed(found: _Found, number: int) -> str:
     """Return what a design misses, in words that follow "bound by"."""
     if found.judged.violation[number] == 0:
         lacking = [own for own in found.shares if not own.enough(own.sure)[number]]
-        return f"the required {lacking[0].required.words}" if lacking else ""
+        if lacking:
+            return f"the required {lacking[0].required.words}"
+        return ""
     causes = Counter(str(word) for word in found.ranges.reason[found.rows(number)] if word)
     if not causes:
         return ""
@@ -592,11 +629,9 @@ def _at_ends(found: _Found, number: int) -> list[str]:
         factor = found.results.study.parsed[name]
         tried = factor.numbers
         if factor.discrete:
-            tried = (
-                factor.levels
-                if factor.ordered and factor.numeric and len(factor.levels) > 2
-                else ()
-            )
+            tried = ()
+            if factor.ordered and factor.numeric and len(factor.levels) > 2:
+                tried = factor.levels
         if not tried:
             continue
         low, high = min(map(float, tried)), max(map(float, tried))
@@ -632,7 +667,8 @@ def _second_life(found: _Found, number: int) -> tuple[str, float, str] | None:
 
     None where no second model knows its life in every condition that is judged.
     """
-    data, rows = found.results.data, found.rows(number)
+    data = found.results.data
+    rows = found.rows(number)
     if "life_hours_by_limit" not in data:
         return None
     hours = flat(data, "life_hours_by_limit", found.results.dims)[rows]
@@ -652,7 +688,9 @@ def _second_life(found: _Found, number: int) -> tuple[str, float, str] | None:
             continue
         verdict = ""
         if not np.isnan(least):
-            verdict = "met" if (own >= least).sum() / len(valid) >= wanted - 1e-9 else "missed"
+            verdict = "missed"
+            if (own >= least).sum() / len(valid) >= wanted - 1e-9:
+                verdict = "met"
         if shortest is None or own.min() < shortest[1]:
             shortest = limit, float(own.min()), verdict
     return shortest
@@ -672,7 +710,8 @@ def _exceeded(found: _Found, number: int) -> dict[str, Any] | None:
 
     A use of the S-N curve above 1 is a finite life, and no excess.
     """
-    data, rows = found.results.data, found.rows(number)
+    data = found.results.data
+    rows = found.rows(number)
     if "utilisation" not in data:
         return None
     use = flat(data, "utilisation", found.results.dims)[rows]
@@ -699,7 +738,8 @@ def _picture(found: _Found) -> dict[str, Any]:
     Of one goal `history` holds the best value that was known after each design, among those that
     miss least.
     """
-    judged, names = found.judged, list(found.goals)
+    judged = found.judged
+    names = list(found.goals)
     picture: dict[str, Any] = {
         "goals": judged.values,
         "front": found.front,
@@ -712,7 +752,9 @@ def _picture(found: _Found) -> dict[str, Any]:
     if len(names) == 1:
         costs = np.where(judged.missed == 0, judged.costs[:, 0], np.inf)
         best = np.minimum.accumulate(np.where(np.isnan(costs), np.inf, costs))
-        sign = -1.0 if found.goals[names[0]] == "max" else 1.0
+        sign = 1.0
+        if found.goals[names[0]] == "max":
+            sign = -1.0
         picture["history"] = np.where(np.isfinite(best), sign * best, np.nan)
     return picture
 
@@ -746,7 +788,9 @@ def _warnings(found: _Found) -> tuple[Caution, ...]:
     stopped = [number for number in found.named if _is_stopped(found, number)]
     ends = _at_ends(found, found.chosen)
     if stopped or ends:
-        where = ["the search stopped before it", *ends] if stopped else ends
+        where = ends
+        if stopped:
+            where = ["the search stopped before it", *ends]
         warnings.append(
             Caution("at_end", len(stopped) or 1, len(found.named), listing(where), "candidates")
         )
@@ -755,7 +799,8 @@ def _warnings(found: _Found) -> tuple[Caution, ...]:
 
 def _facts(found: _Found) -> dict[str, Any]:
     """Return what the title line says, and how the search went."""
-    results, search = found.results, found.search
+    results = found.results
+    search = found.search
     conditions = int(results.design.meta["inner_samples"])
     return facts_of(results) | {
         "candidates": int(results.design.meta["design_points"]),

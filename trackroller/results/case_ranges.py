@@ -66,29 +66,39 @@ class CaseRanges:
     @property
     def worse(self) -> np.ndarray:
         """Return the worse end of the range, shape (n,)."""
-        return self.low if self.rises else self.high
+        if self.rises:
+            return self.low
+        return self.high
 
     @property
     def better(self) -> np.ndarray:
         """Return the better end of the range, shape (n,)."""
-        return self.high if self.rises else self.low
+        if self.rises:
+            return self.high
+        return self.low
 
     @property
     def sign(self) -> float:
         """Return 1 if more is better, otherwise -1."""
-        return 1.0 if self.rises else -1.0
+        if self.rises:
+            return 1.0
+        return -1.0
 
     @property
     def worst_value(self) -> float:
         """Return the value of a case that is not held."""
         if not self.rises:
             return np.inf
-        return 0.0 if is_life(self.output[0]) else -np.inf
+        if is_life(self.output[0]):
+            return 0.0
+        return -np.inf
 
     @property
     def best_value(self) -> float:
         """Return the value that a case may have which the model cannot judge."""
-        return np.inf if self.rises else -np.inf
+        if self.rises:
+            return np.inf
+        return -np.inf
 
     @cached_property
     def middle(self) -> np.ndarray:
@@ -224,7 +234,9 @@ class CaseRanges:
         guide = self.results.first_failing(name) == FIRST_TO_FAIL.index("guide")
         if name == FIRST_LIMIT[0]:
             return first_limit(self.results), guide
-        word = "fatigue" if of_fatigue(name) else ""
+        word = ""
+        if of_fatigue(name):
+            word = "fatigue"
         body = body_of(name)
         if body:
             guide = np.full(len(self.value), body == "guide")
@@ -288,7 +300,10 @@ class CaseRanges:
         required : what is wanted
         exact : whether the error of the solution does not count
         """
-        error = 0.0 * self.error if exact else self.error
+        if exact:
+            error = 0.0 * self.error
+        else:
+            error = self.error
         lowest = _shrunk(self.low, error)
         highest = _grown(self.high, error)
         surely = (lowest >= required.least) & (highest <= required.most)
@@ -314,8 +329,11 @@ class CaseRanges:
         """Return the output or an end of its range as it is stored, shape (n,)."""
         name = self.output[0]
         results = self.results
-        plain = results.table[name].to_numpy(dtype=float) if name in results.table else None
-        value: np.ndarray = results.quantity(name)[0].astype(float) if plain is None else plain
+        value: np.ndarray
+        if name in results.table:
+            value = results.table[name].to_numpy(dtype=float)
+        else:
+            value = results.quantity(name)[0].astype(float)
         if end and f"{name}{end}" in results.data:
             found = flat(results.data, f"{name}{end}", results.dims).astype(float)
             value = np.where(np.isnan(found), value, found)
@@ -328,7 +346,10 @@ class CaseRanges:
         if tests is not None and is_life(self.output[0]):
             stored = tests.lives(self.output[0], stored, lambda body: self._shifts[body][side], end)
         is_better = (side == 1) == self.rises
-        unknown = self.best_value if is_better else self.worst_value
+        if is_better:
+            unknown = self.best_value
+        else:
+            unknown = self.worst_value
         missing = np.where(self.judged, self.worst_value, unknown)
         return np.where(self.held, stored, missing)
 

@@ -168,10 +168,14 @@ class Comparison:
             table = self.results.table
             inputs = {*self.results.factors, *self.results.derived}
             columns = [table[n].to_numpy() for n in table if n not in inputs]
-            word = "life" if is_life(self.ranges.output[0]) else self.ranges.output[1]
-            found[name] = (
-                "no effect" if unchanged_by(self.results, name, columns) else f"none on the {word}"
-            )
+            if is_life(self.ranges.output[0]):
+                word = "life"
+            else:
+                word = self.ranges.output[1]
+            if unchanged_by(self.results, name, columns):
+                found[name] = "no effect"
+            else:
+                found[name] = f"none on the {word}"
         return found
 
     @cached_property
@@ -210,7 +214,9 @@ class Comparison:
         """Return the factors that span the range of a placeholder, and so are no conditions."""
         given = self.results.roles
         few = (n for n in UNSURE if n in given and len(self.results.levels(n)) <= MOST_LEVELS)
-        return tuple(few) if not self.drawn else ()
+        if not self.drawn:
+            return tuple(few)
+        return ()
 
     @cached_property
     def conditions(self) -> tuple[str, ...]:
@@ -290,7 +296,9 @@ class Comparison:
         held = self.all_in_pair(self.ranges.held)
         uses = np.unique(self.pairs[1][held])
         rows = self.own & np.isin(self.use, uses)
-        return rows if rows.any() else self.own
+        if rows.any():
+            return rows
+        return self.own
 
     @property
     def unreachable(self) -> np.ndarray:
@@ -312,7 +320,9 @@ class Comparison:
         """Return why cases are not judged: `chance` without a life at the failure probability asked
         for, or `model`.
         """
-        return "chance" if self.results.without_chance else "model"
+        if self.results.without_chance:
+            return "chance"
+        return "model"
 
     # what meets the requirement
 
@@ -389,15 +399,17 @@ class Comparison:
         order = chosen[np.lexsort((values[chosen], self.place[chosen]))]
         number = np.bincount(self.place[order], minlength=self.count)
         start = np.cumsum(number) - number
-        lower = (
-            order[np.minimum(start + np.maximum(number - 1, 0) // 2, max(len(order) - 1, 0))]
-            if len(order)
-            else []
-        )
-        upper = order[np.minimum(start + number // 2, max(len(order) - 1, 0))] if len(order) else []
+        lower = []
+        upper = []
+        if len(order):
+            lower = order[
+                np.minimum(start + np.maximum(number - 1, 0) // 2, max(len(order) - 1, 0))
+            ]
+            upper = order[np.minimum(start + number // 2, max(len(order) - 1, 0))]
         if not len(order):
             return np.full(self.count, np.nan)
-        one, other = values[lower], values[upper]
+        one = values[lower]
+        other = values[upper]
         return np.where(number > 0, np.where(one == other, one, 0.5 * (one + other)), np.nan)
 
     @cached_property
@@ -468,7 +480,9 @@ class Comparison:
         rows = self.rows[number]
         lives = np.where(self.ranges.held[rows], self.ranges.middle[rows], 0.0)
         value, low, high = b10(lives, self.scatter[rows])
-        return (value, low, high) if len(rows) >= ENOUGH else (value, np.nan, np.nan)
+        if len(rows) >= ENOUGH:
+            return value, low, high
+        return value, np.nan, np.nan
 
     def middle_interval(self, number: int) -> tuple[float, float]:
         """Return the 95 % interval of the median of the drawn conditions of a candidate, by order
@@ -505,7 +519,10 @@ class Comparison:
         mine = values[table[1][np.searchsorted(table[0], both)]]
         theirs = values[other[1][np.searchsorted(other[0], both)]]
         with np.errstate(divide="ignore", invalid="ignore"):
-            found = mine / theirs if self.ranges.rises else theirs / mine
+            if self.ranges.rises:
+                found = mine / theirs
+            else:
+                found = theirs / mine
         return np.where(mine == theirs, 1.0, found)
 
     def _of_condition(self, number: int) -> tuple[np.ndarray, np.ndarray]:
@@ -538,7 +555,9 @@ class Comparison:
         """
         name = self.ranges.output[0]
         data = self.results.data
-        stated = data.get("life_cycles" if is_life(name) else "peak_stress")
+        stated = data.get("peak_stress")
+        if is_life(name):
+            stated = data.get("life_cycles")
         if stated is None or "expected_relative_error" not in stated.attrs:
             return None  # solved patches, falling friction, tolerances and settings of a user
         if "contact_model" not in data.attrs:
@@ -549,7 +568,9 @@ class Comparison:
         )
         if np.max(friction) > ORDINARY_FRICTION:
             return None
-        quantity = "life" if is_life(name) else "peak_stress"
+        quantity = "peak_stress"
+        if is_life(name):
+            quantity = "life"
         return ratio_error(str(data.attrs["accuracy"]), str(data.attrs["contact_model"]), quantity)
 
     def hours_by_limit(self, end: str) -> np.ndarray | None:

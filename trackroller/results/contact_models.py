@@ -59,7 +59,9 @@ def pairs(results: SolvedCases) -> xr.Dataset | None:
     data: dict[str, Any] = {}
     for name in (n for n in RESULTS if n in ds):
         values = flat(ds, name, tuple(dims)).astype(float)[rows]
-        values[rows < 0] = -1.0 if name == "regime" else np.nan
+        values[rows < 0] = np.nan
+        if name == "regime":
+            values[rows < 0] = -1.0
         data[name] = ((MODEL, "design", *(d for d in ds[name].dims if d not in dims)), values)
     if results.life is not None:
         data["life"] = (
@@ -69,9 +71,10 @@ def pairs(results: SolvedCases) -> xr.Dataset | None:
     inputs = table.drop(columns=MODEL).iloc[rows[-1]]
     # a word has its number beside
     given = inputs.get("friction_coefficient_value", inputs.get("friction_coefficient"))
-    inputs["friction_coefficient"] = (
-        results.base["friction_coefficient"] if given is None else pd.to_numeric(given)
-    )
+    if given is None:
+        inputs["friction_coefficient"] = results.base["friction_coefficient"]
+    else:
+        inputs["friction_coefficient"] = pd.to_numeric(given)
     coords = {str(name): ("design", inputs[name].to_numpy()) for name in inputs}
     coords |= {name: (name, ds[name].values) for name in ("contact", "body") if name in ds}
     attrs = {"reference": models[-1], "left": int(len(table) - (rows >= 0).sum())}
@@ -217,7 +220,8 @@ def errors(paired: xr.Dataset) -> xr.Dataset:
     is a difference of shares. The larger error of both contacts and bodies counts.
     """
     reference = str(paired.attrs["reference"])
-    ref, parts = paired.sel(contact_model=reference), []
+    ref = paired.sel(contact_model=reference)
+    parts = []
     for model in (str(m) for m in paired["contact_model"].values if m != reference):
         one = paired.sel(contact_model=model)
         rolls = (one["regime"] == 0) & (ref["regime"] == 0)

@@ -84,9 +84,13 @@ class Decider:
         It is the tenth part of drawn conditions, otherwise the geometric middle of the range at the
         worst condition.
         """
-        name = "tenth" if self.own.drawn and is_life(self.own.ranges.output[0]) else "middle"
+        name = "middle"
+        if self.own.drawn and is_life(self.own.ranges.output[0]):
+            name = "tenth"
         values = self.table[name].to_numpy(dtype=float)
-        worst = -np.inf if not self.own.ranges.rises else 0.0
+        worst = 0.0
+        if not self.own.ranges.rises:
+            worst = -np.inf
         return np.where(np.isnan(values), worst, self.own.ranges.sign * values)
 
     @cached_property
@@ -104,7 +108,10 @@ class Decider:
         values = self.own.results.quantity(name)[0]
         if values.dtype.kind not in "fiu":
             return np.zeros(self.own.count)
-        sign = 1.0 if way == "max" else -1.0
+        if way == "max":
+            sign = 1.0
+        else:
+            sign = -1.0
         out = np.full(self.own.count, np.inf)
         rows = self.own.reachable & ~np.isnan(values.astype(float))
         np.minimum.at(out, self.own.place[rows], sign * values[rows].astype(float))
@@ -127,7 +134,10 @@ class Decider:
         the largest low.
         """
         numbers = np.array(list(among), dtype=int)
-        worse = self.table["low" if self.own.ranges.rises else "high"].to_numpy(dtype=float)
+        worse_end = "high"
+        if self.own.ranges.rises:
+            worse_end = "low"
+        worse = self.table[worse_end].to_numpy(dtype=float)
         low = self.own.ranges.sign * np.nan_to_num(worse, nan=self.own.ranges.worst_value)
         median = self.own.ranges.sign * np.nan_to_num(
             self.table["median"].to_numpy(dtype=float), nan=-np.inf
@@ -140,7 +150,9 @@ class Decider:
         """Return which candidate to build, or why that cannot be said."""
         if self.own.drawn and self.own.required and not np.isfinite(self.own.wanted_share):
             return self._by_share()
-        return self._by_requirement() if self.own.required else self._by_rank()
+        if self.own.required:
+            return self._by_requirement()
+        return self._by_rank()
 
     def _by_share(self) -> Decision:
         """Return the candidate with the largest share; the shares are not judged."""
@@ -160,8 +172,11 @@ class Decider:
         if groups[0]:
             tied = [one for one in groups[0][1:RIVALS] if self._tied(groups[0][0], one)]
             named = [groups[0][0], *tied]
+            kind = "build"
+            if tied:
+                kind = "a_or_b"
             return Decision(
-                "a_or_b" if tied else "build",
+                kind,
                 [*named, *(n for n in order if n not in named)],
                 named,
             )
@@ -186,7 +201,8 @@ class Decider:
         return Decision("measure", order, [leader], measure=found or {})
 
     def _by_rank(self) -> Decision:
-        own, table = self.own, self.table
+        own = self.own
+        table = self.table
         every = np.arange(own.count)
         order = self.nearest_first(every)
         judged = (table["judged"] == table["of"]).to_numpy()
@@ -215,7 +231,9 @@ class Decider:
         found = self.turning.of_span(leader, rivals) or self.turning.leads(leader, rivals)
         if found:
             return Decision("measure", order, [leader], measure=found)
-        return Decision("build" if len(named) == 1 else "a_or_b", order, named)
+        if len(named) > 1:
+            return Decision("a_or_b", order, named)
+        return Decision("build", order, named)
 
     def _beats(self, one: int, other: int) -> bool:
         """Return whether a candidate is never worse than another one by more than the error, and
@@ -262,6 +280,10 @@ def answer_decide(results: SolvedCases) -> Answer:
     if turns:
         found.kind = "give"
     shown = with_ratios(own, table.iloc[found.order].reset_index(drop=True))
+    if found.kind == "none":
+        number_named = 1
+    else:
+        number_named = len(found.named)
     return Answer(
         question="decide",
         kind=found.kind,
@@ -275,7 +297,7 @@ def answer_decide(results: SolvedCases) -> Answer:
         not_checked=checks_left_out(results),
         not_used=given_for_nothing(results) | own.idle,
         not_given=not_given_words(results),
-        warnings=cautions(own, shown, 1 if found.kind == "none" else len(found.named)),
+        warnings=cautions(own, shown, number_named),
         facts=facts_of(results, own),
     )
 
@@ -326,8 +348,11 @@ def _headline(own: Comparison, table: pd.DataFrame, found: Decision) -> dict[str
     know of them.
     """
     one = table.iloc[found.order[0]]
+    names = []
+    if found.named:
+        names = names_of(own, found.named)
     told: dict[str, Any] = {
-        "names": names_of(own, found.named) if found.named else [],
+        "names": names,
         "why": found.why,
         **leading(own, one),
         "measure": found.measure,
@@ -381,7 +406,10 @@ def lost_conditions(own: Comparison, rows: np.ndarray) -> dict[str, Any]:
     judged = own.ranges.judged[rows]
     where = places_text(place, table.iloc[first]) or causes_text(own, rows)
     told = {"count": int(lost.sum()), "of": len(first), "where": where}
-    return {"not_held" if judged.any() else "not_judged": told}
+    cause = "not_judged"
+    if judged.any():
+        cause = "not_held"
+    return {cause: told}
 
 
 def causes_text(own: Comparison, rows: np.ndarray) -> str:

@@ -19,6 +19,7 @@ from trackroller.results.answer import Curve
 from trackroller.results.case_ranges import CaseRanges
 from trackroller.results.columns import codes
 from trackroller.results.groups import BINS, MOST_LEVELS, groups, spaced_by_ratio
+from trackroller.results.places import plain
 from trackroller.results.solved_cases import SolvedCases
 from trackroller.study.design.entries import OPTION_FACTORS
 
@@ -73,12 +74,17 @@ class Effects:
         """Return the output on the scale on which effects add up, shape (n,): its logarithm if
         effects are ratios.
         """
-        with np.errstate(divide="ignore", invalid="ignore"):
-            return np.log(self.ranges.value) if self.by_ratio else self.ranges.value
+        values: np.ndarray = self.ranges.value
+        if self.by_ratio:
+            with np.errstate(divide="ignore", invalid="ignore"):
+                values = np.log(values)
+        return values
 
     def back(self, values: np.ndarray) -> np.ndarray:
         """Return values of `y` as values of the output."""
-        return np.exp(values) if self.by_ratio else values
+        if self.by_ratio:
+            values = np.exp(values)
+        return values
 
     def curves(self) -> tuple[Curve, ...]:
         """Return the curve of each factor with two levels that count, the highest one first."""
@@ -129,7 +135,8 @@ class Effects:
         """
         if self.fit is None or name not in self.fit.parts:
             return None
-        part, own = self.fit.parts[name], self.fit.values[name]
+        part = self.fit.parts[name]
+        own = self.fit.values[name]
         others = self.fit.whole - part
         middle, ends = np.median(others), np.quantile(others, BAND)
         if self.results.ordered(name):
@@ -177,24 +184,28 @@ class Effects:
     ) -> Curve:
         known = parameter_of(name)
         numbers = self.results.numeric(name)
-        own = np.array(levels, dtype=float) if numbers else np.zeros(0)
-        height = float(
-            np.exp(middle.max() - middle.min()) if self.by_ratio else middle.max() - middle.min()
-        )
+        if numbers:
+            own = np.array(levels, dtype=float)
+        else:
+            own = np.zeros(0)
+        height = middle.max() - middle.min()
+        if self.by_ratio:
+            height = np.exp(height)
+        units = ""
+        if known is not None and known.unit != "-":
+            units = known.units
         return Curve(
             factor=name,
             title=long_name_of(name),
-            units="" if known is None or known.unit == "-" else known.units,
+            units=units,
             role=self.results.roles.get(name, ""),
-            levels=tuple(
-                level.item() if isinstance(level, np.generic) else level for level in levels
-            ),
+            levels=tuple(plain(level) for level in levels),
             middle=self.back(middle),
             low=self.back(ends[0]),
             high=self.back(ends[1]),
             logarithmic=bool(numbers and spaced_by_ratio(own, 5.0)),
             ordered=self.results.ordered(name),
-            height=height,
+            height=float(height),
             shape=shape,
             rows=rows,
             left_out=max(left, 0),
@@ -203,16 +214,21 @@ class Effects:
     def _shape(self, name: str, middle: np.ndarray, pairs: np.ndarray | None) -> str:
         """Return the shape of a curve in one word."""
         span = float(middle.max() - middle.min())
-        least = np.log(FLAT) if self.by_ratio else 0.01 * max(float(np.abs(middle).max()), 1e-300)
-        if pairs is not None and _two_groups(
-            pairs, np.log(SPLIT) if self.by_ratio else 0.25 * max(span, 1e-300)
-        ):
+        if self.by_ratio:
+            least = np.log(FLAT)
+            split = np.log(SPLIT)
+            turn = min(np.log(TURNS), HALF * span)
+        else:
+            least = 0.01 * max(float(np.abs(middle).max()), 1e-300)
+            split = 0.25 * max(span, 1e-300)
+            turn = 0.1 * span
+        turn = max(turn, 0.05 * span)
+        if pairs is not None and _two_groups(pairs, split):
             return "groups"
         if span <= least:
             return "flat"
         if not self.results.ordered(name):
             return "levels"
-        turn = max(min(np.log(TURNS), HALF * span) if self.by_ratio else 0.1 * span, 0.05 * span)
         top, bottom = int(middle.argmax()), int(middle.argmin())
         inner = len(middle) - 1
         if 0 < top < inner and min(middle[top] - middle[0], middle[top] - middle[-1]) > turn:
@@ -225,7 +241,9 @@ class Effects:
         steps = np.abs(np.diff(middle))
         if len(steps) >= 3 and steps.max() > CLIFF * steps.sum():
             return "cliff"
-        return "rise" if middle[-1] > middle[0] else "fall"
+        if middle[-1] > middle[0]:
+            return "rise"
+        return "fall"
 
     @cached_property
     def fit(self) -> _Fitted | None:
@@ -235,7 +253,8 @@ class Effects:
         good = np.flatnonzero(self.rows)
         if len(good) > MAX_ROWS:
             good = good[np.linspace(0, len(good) - 1, MAX_ROWS).astype(int)]
-        table, y = self.results.table.iloc[good], self.y[good]
+        table = self.results.table.iloc[good]
+        y = self.y[good]
         names = [
             n for n in self.results.factors if n not in OPTION_FACTORS and table[n].nunique() > 1
         ]
@@ -251,7 +270,9 @@ class Effects:
             for name, own in zip(names, columns, strict=True)
             if len(np.unique(own)) > MOST_LEVELS
         ]
-        most = (codes(table, drawn).max() + 1) / ROWS_PER_TERM / len(drawn) if drawn else np.inf
+        most = np.inf
+        if drawn:
+            most = (codes(table, drawn).max() + 1) / ROWS_PER_TERM / len(drawn)
         degrees = tuple(one for one in DEGREES if one[0] <= most) or DEGREES[-1:]
         found = best_fit(y, np.stack(columns, axis=1), ordered, degrees, ranked=False)
         if found is None or found.share < TOLD:
@@ -295,11 +316,15 @@ def _scaled(values: pd.Series) -> np.ndarray:
     logs = np.sign(own) * np.log(sizes / sizes.max())
     places = stats.rankdata(own)  # a sample that is even in its logarithm was drawn so
     even = np.corrcoef(places, logs)[0, 1] > np.corrcoef(places, own)[0, 1]
-    return logs if even or sizes.max() < SPANNED[1] * sizes.min() else own
+    if even or sizes.max() < SPANNED[1] * sizes.min():
+        own = logs
+    return own
 
 
 def _size(height: float, by_ratio: bool) -> float:
-    return abs(np.log(height)) if by_ratio and height > 0 else abs(height)
+    if by_ratio and height > 0:
+        height = np.log(height)
+    return abs(height)
 
 
 def _two_groups(pairs: np.ndarray, apart: float) -> bool:

@@ -39,7 +39,9 @@ class Growing:
 
     def __init__(self, study: Study, folder: StudyFolder, tell: Tell) -> None:
         assert study.config.until is not None
-        self.study, self.until, self.tell = study, study.config.until, tell
+        self.study = study
+        self.until = study.config.until
+        self.tell = tell
         self.folder = folder
         self.looks: list[dict[str, Any]] = []
 
@@ -57,20 +59,23 @@ class Growing:
             self.tell(
                 f"look {len(self.looks)}: {seen['cases']} cases, widest 95 % interval: {widest}"
             )
-            if unsure := seen.get("unsure"):
+            unsure = seen.get("unsure")
+            if unsure:
                 self.tell(
                     f"wider than wanted at {len(unsure)} of {len(self.study.drawn.points)} "
                     "design points"
                 )
             larger = doubled(self.study, unsure)
-            if why := self._why(larger, ledger):
+            why = self._why(larger, ledger)
+            if why:
                 self.tell(f"stopped: {why}")
                 return why
             self.study = larger
 
     def _why(self, larger: Study, ledger: Ledger) -> str:
         """Return why the study stops at its last look, '' if it goes on with the larger sample."""
-        seen, until = self.looks[-1], self.until
+        seen = self.looks[-1]
+        until = self.until
         widths = seen["half_width"].values()
         if seen["empty"]:
             return (
@@ -100,7 +105,9 @@ class Growing:
         requirement of `until`.
         """
         decided = self.looks[-1].get("decided", {})
-        points = len(self.study.drawn.points) if self.study.config.method.points else 0
+        points = 0
+        if self.study.config.method.points:
+            points = len(self.study.drawn.points)
         return bool(points) and all(decided.get(name, 0) == points for name in self.until.of)
 
     def record(self, why: str) -> dict[str, str]:
@@ -111,7 +118,9 @@ class Growing:
 
 def _text(seen: dict[str, Any], name: str) -> str:
     width = seen["half_width"][name]
-    return "unknown" if width is None else f"{width:.2g} ({seen['at'][name]})"
+    if width is None:
+        return "unknown"
+    return f"{width:.2g} ({seen['at'][name]})"
 
 
 def grow_study(study: Study, results: Path | str = "results", **how: Any) -> Ledger:
@@ -159,7 +168,8 @@ def next_step(study: Study, results: Path | str, tell: Tell) -> dict[str, Any]:
         that are not solved.
     """
     growing = Growing(study, study_folder(study.name, results).create(), tell)
-    if why := growing.advance():
+    why = growing.advance()
+    if why:
         return {"stopped": why, "chunks": []}
     with working_ledger(growing.study, results, tell=tell) as ledger:
         return {"stopped": "", "chunks": ledger.open}

@@ -43,13 +43,18 @@ def answer_how_sure(results: SolvedCases) -> Answer:
     order = _order(own, table)
     shown = with_ratios(own, table.iloc[order].reset_index(drop=True))
     one = shown.iloc[0]
+    names = []
+    if own.count > 1:
+        names = names_of(own, order[:1])
     told: dict[str, Any] = {
-        "names": names_of(own, order[:1]) if own.count > 1 else [],
+        "names": names,
         **leading(own, one),
     }
     if not own.drawn:
         told |= {"meets": int(one["meets"]), "of": int(one["of"])}
-    kind = "share" if own.drawn else "count"
+    kind = "count"
+    if own.drawn:
+        kind = "share"
     if not own.ranges.judged[own.own].any():
         kind = "cannot_tell"
         told |= {"why": own.why_unjudged}
@@ -77,7 +82,10 @@ def _order(own: Comparison, table: Any) -> list[int]:
     largest first.
     """
     decider = Decider(own, table)
-    share = table["share"] if own.drawn else table["meets"] / table["of"]
+    if own.drawn:
+        share = table["share"]
+    else:
+        share = table["meets"] / table["of"]
     return [int(n) for n in np.lexsort((-decider.score, -share.to_numpy(dtype=float)))]
 
 

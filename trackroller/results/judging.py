@@ -110,7 +110,8 @@ def judge(results: SolvedCases, genes: np.ndarray | None = None) -> Judged:
     genes : numpy.ndarray, shape (n, choices), optional
         Genes of the designs; by default those of the design.
     """
-    design, goals = results.design, goals_of_search(results)
+    design = results.design
+    goals = goals_of_search(results)
     table, known = _values(results)
     counted = all(judged_by(goal)[0] in ("b10", "probability") for goal in goals)
     if genes is None:
@@ -173,7 +174,10 @@ def _required_values(results: SolvedCases) -> np.ndarray:
     columns = [np.zeros((shape[0], 0))]
     for _, own in judges_of(results):
         worse = own.worse.reshape(shape)
-        worst = worse.min(axis=1) if own.rises else worse.max(axis=1)
+        if own.rises:
+            worst = worse.min(axis=1)
+        else:
+            worst = worse.max(axis=1)
         columns.append(worst[:, None])
     return np.concatenate(columns, axis=1)
 
@@ -184,8 +188,10 @@ def _values(results: SolvedCases) -> tuple[np.ndarray, np.ndarray]:
     """
     design = results.design
     shape = design.meta["design_points"], design.meta["inner_samples"]
-    valid, goals = results.held.reshape(shape), goals_of_search(results)
-    values, known = [], valid.copy()
+    valid = results.held.reshape(shape)
+    goals = goals_of_search(results)
+    values = []
+    known = valid.copy()
     for goal in goals:
         kind, output = judged_by(goal)
         if kind == "probability":
@@ -225,14 +231,18 @@ def judges_of(results: SolvedCases) -> list[tuple[Required, CaseRanges]]:
     """
     own = Comparison.of(results)
     wanted = _to_meet(results)
-    return [] if own is None else [pair for pair in own.judges if pair[0].output in wanted]
+    if own is None:
+        return []
+    return [pair for pair in own.judges if pair[0].output in wanted]
 
 
 def life_of_search(results: SolvedCases) -> CaseRanges | None:
     """Return the life that orders designs with the same goals, with its range; None in a study
     without lives.
     """
-    return None if results.life is None else CaseRanges(results, results.life, True)
+    if results.life is None:
+        return None
+    return CaseRanges(results, results.life, True)
 
 
 @dataclass(frozen=True)
@@ -272,7 +282,10 @@ def shares_of(results: SolvedCases, exact: bool = False) -> list[Shares]:
     found = []
     for one, own in judges_of(results):
         sure, may = (hits.reshape(shape).mean(axis=1) for hits in own.meets(one, exact))
-        wanted = enough if np.isnan(one.probability) else one.probability
+        if np.isnan(one.probability):
+            wanted = enough
+        else:
+            wanted = one.probability
         found.append(Shares(one, sure, may, wanted))
     return found
 
@@ -334,7 +347,10 @@ def _over_conditions(raw: np.ndarray, good: np.ndarray, kind: str, way: str) -> 
     if kind == "mean":
         out[some] = np.mean(raw[some], axis=1, where=good[some])
     else:
-        worst, end = (np.min, np.inf) if way == "max" else (np.max, -np.inf)
+        if way == "max":
+            worst, end = np.min, np.inf
+        else:
+            worst, end = np.max, -np.inf
         out[some] = worst(np.where(good, raw, end)[some], axis=1)
     return out
 
@@ -387,7 +403,8 @@ def _normalised(costs: np.ndarray) -> np.ndarray:
         finite = values[np.isfinite(values)]
         if not finite.size:
             continue
-        size, sign = np.abs(finite), np.sign(finite[0])
+        size = np.abs(finite)
+        sign = np.sign(finite[0])
         if (np.sign(finite) == sign).all() and size.max() > 10 * size.min() > 0:
             values, finite = (sign * np.log(np.abs(v)) for v in (values, finite))
         low, high = finite.min(), finite.max()
@@ -410,7 +427,10 @@ def spread(costs: np.ndarray, count: int) -> np.ndarray:
 def optimum_of(results: SolvedCases) -> dict[str, Any] | None:
     """Return what a search found, from the attribute of its results; None for another study."""
     text = results.data.attrs.get(OPTIMUM)
-    return json.loads(text) if isinstance(text, str) else None
+    if not isinstance(text, str):
+        return None
+    optimum: dict[str, Any] = json.loads(text)
+    return optimum
 
 
 def choices_of(results: SolvedCases, number: int) -> dict[str, Any]:
@@ -443,7 +463,8 @@ def ends_of_goal(results: SolvedCases, goal: str) -> tuple[np.ndarray, np.ndarra
     if not is_life(output) or kind == "probability" or f"{output}_low" not in results.data:
         return None
     shape = results.design.meta["design_points"], results.design.meta["inner_samples"]
-    raw, valid = results.quantity(output)[0].astype(float), results.held.reshape(shape)
+    raw = results.quantity(output)[0].astype(float)
+    valid = results.held.reshape(shape)
     ends = []
     for end in ("_low", "_high"):
         own = flat(results.data, f"{output}{end}", results.dims).astype(float)

@@ -80,4 +80,6 @@ def _row(results: SolvedCases, ranges: CaseRanges) -> dict[str, Any]:
 def _median_error(errors: np.ndarray) -> float:
     """Return the median of the errors that are stated; NaN without one."""
     stated = errors[~np.isnan(errors)]
-    return float(np.median(stated)) if stated.size else float("nan")
+    if stated.size:
+        return float(np.median(stated))
+    return float("nan")

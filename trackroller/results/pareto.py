@@ -32,9 +32,9 @@ def given_pareto(results: SolvedCases) -> xr.Dataset | None:
     """Return the Pareto set for the goals that a study or a search gives; None without goals of its
     own.
     """
-    return (
-        study_pareto(results) if goals_of_front(results) or results.config.method.proposes else None
-    )
+    if goals_of_front(results) or results.config.method.proposes:
+        return study_pareto(results)
+    return None
 
 
 def goals_of_front(results: SolvedCases) -> dict[str, str]:
@@ -71,7 +71,9 @@ def study_pareto(results: SolvedCases) -> xr.Dataset | None:
         return pareto_of_search(results)
     if config.method.points:
         analysis = analysis_of(results)
-        return pareto_of_points(analysis, given) if analysis is not None and given else None
+        if analysis is not None and given:
+            return pareto_of_points(analysis, given)
+        return None
     goals = results.goals
     if not goals:
         return None
@@ -83,7 +85,10 @@ def study_pareto(results: SolvedCases) -> xr.Dataset | None:
         return None
     front = pareto(results, goals, config.constraints)
     front = front.assign(_beyond(results, dict.fromkeys(goals, front["row"].values)))
-    return front.assign_attrs(kind="case" if mixed else "design")
+    kind = "design"
+    if mixed:
+        kind = "case"
+    return front.assign_attrs(kind=kind)
 
 
 def pareto_mask(objectives: np.ndarray, directions: Iterable[str]) -> np.ndarray:
@@ -110,7 +115,11 @@ def pareto_mask(objectives: np.ndarray, directions: Iterable[str]) -> np.ndarray
     for direction in directions:
         if direction not in ("min", "max"):
             raise InputError("objectives", direction, "min or max")
-        signs.append(1.0 if direction == "min" else -1.0)
+        if direction == "min":
+            sign = 1.0
+        else:
+            sign = -1.0
+        signs.append(sign)
     costs = np.asarray(objectives, dtype=float) * np.array(signs)
     rows = np.flatnonzero(~np.isnan(costs).any(axis=1))
     # in lexicographic order only an earlier row can beat a row
@@ -165,8 +174,12 @@ def pareto(
         raise InputError("pareto", dict(objectives), "at least two outputs, each with min or max")
     constraints = list(constraints)
     wanted = {name for text in constraints for name in names_in(text)}
-    keep = REGIMES[:3] if "regime" in wanted else ("rolling",)
-    ds, design, dims = results.data, results.design, results.dims
+    keep: tuple[str, ...] = ("rolling",)
+    if "regime" in wanted:
+        keep = REGIMES[:3]
+    ds = results.data
+    design = results.design
+    dims = results.dims
     regime = regimes(ds, dims)
     names = dict.fromkeys([*objectives, *sorted(wanted)])
     columns = {name: results.quantity(name) for name in names}
@@ -254,9 +267,14 @@ def _own_rows(design: Design) -> tuple[np.ndarray, str]:
     models, all rows.
     """
     column = design.columns.get("contact_model")
-    named = np.full(design.size, "") if column is None else column.astype(str)
+    if column is None:
+        named = np.full(design.size, "")
+    else:
+        named = column.astype(str)
     models = [m for m in EXACTNESS if (named == m).any()]
-    return (named == models[0], models[0]) if len(models) > 1 else (np.ones(design.size, bool), "")
+    if len(models) > 1:
+        return named == models[0], models[0]
+    return np.ones(design.size, bool), ""
 
 
 def pareto_of_points(table: xr.Dataset, objectives: Mapping[str, str]) -> xr.Dataset:
@@ -297,16 +315,15 @@ def _of_points(table: xr.Dataset, name: str) -> Column:
         known = parameter_of(name)
         return table[name].values, known.units if known else "", known.long_name if known else name
     if kind == "probability" and output in REGIMES:
-        estimates, words, units = (
-            table["probability"].sel(regime=output),
-            REGIME_LABELS[REGIMES.index(output)],
-            "1",
-        )
+        estimates = table["probability"].sel(regime=output)
+        words = REGIME_LABELS[REGIMES.index(output)]
+        units = "1"
     elif kind == "probability":
         if output not in table["target"].values:
             raise InputError("pareto", name, f"a target: {', '.join(table['target'].values)}")
         part = table.isel(target=int(np.argmax(table["target"].values == output)))
-        estimates, units = part["target_probability"], "1"
+        estimates = part["target_probability"]
+        units = "1"
         words = f"meeting the target for {part['target_name'].item()}"
     else:
         if output not in table["output"].values or kind not in table:
@@ -314,11 +331,9 @@ def _of_points(table: xr.Dataset, name: str) -> Column:
                 "pareto", name, f"an analysed output: {', '.join(map(str, table['output'].values))}"
             )
         part = table.sel(output=output)
-        estimates, words, units = (
-            part[kind],
-            str(part["output_name"].item()),
-            str(part["output_units"].item()),
-        )
+        estimates = part[kind]
+        words = str(part["output_name"].item())
+        units = str(part["output_units"].item())
     named = {"b10": "B10 of {}", "b10_safe": SAFE_B10}.get(
         kind, f"{kind} of {{}}".replace("_", " ")
     )
@@ -359,13 +374,14 @@ def pareto_of_candidates(candidates: Candidates, objectives: Mapping[str, str]) 
         for name, (values, units, words) in columns.items()
     }
     goals["valid_in"] = (held[kept].astype(float), "1", "conditions in which it is valid")
+    model = ""
+    if "contact_model" in results.factors:
+        model = str(results.held_level("contact_model"))
     attrs = {
         "constraints": "; ".join(results.config.constraints),
         "rows": len(held),
         "conditions": candidates.possible,
-        "model": str(results.held_level("contact_model"))
-        if "contact_model" in results.factors
-        else "",
+        "model": model,
         "judged": "each goal at the worst of the conditions in which the design is valid",
         "study": results.data.attrs.get("study", ""),
     }
@@ -392,9 +408,14 @@ def pareto_of_search(results: SolvedCases) -> xr.Dataset:
     The dimension `row` numbers the designs. Only the designs are compared that are valid in the
     most conditions, and that meet the target of the study if any of them does.
     """
-    judged, goals, design = judge(results), goals_of_search(results), results.design
+    judged = judge(results)
+    goals = goals_of_search(results)
+    design = results.design
     least = judged.violation.min()
-    missed = judged.missed if (judged.missed == 0).any() else judged.violation
+    if (judged.missed == 0).any():
+        missed = judged.missed
+    else:
+        missed = judged.violation
     kept = np.flatnonzero((missed == least) & (least < 1))
     tried = codes(results.table.iloc[:: design.meta["inner_samples"]], design.meta["outer"])
     # a design that was solved twice counts once

@@ -18,7 +18,9 @@ Levels = Mapping[str, tuple[Any, ...]]
 
 def plain(value: Any) -> Any:
     """Return a level as a plain number or text."""
-    return value.item() if isinstance(value, np.generic) else value
+    if isinstance(value, np.generic):
+        return value.item()
+    return value
 
 
 def levels_of(table: pd.DataFrame, names: Sequence[str], row: int) -> dict[str, Any]:
@@ -81,7 +83,9 @@ def number_text(value: float) -> str:
     with four.
     """
     text = f"{value:.6g}"
-    digits = 6 if float(text) == value else 4
+    digits = 4
+    if float(text) == value:
+        digits = 6
     return f"{value:,.{digits}g}".replace("-", "−").replace("inf", "∞")
 
 
@@ -92,7 +96,10 @@ def level_text(name: str, value: Any) -> str:
     if name == "guide_curve_radius" and np.isinf(value):
         return "straight"
     known = parameter_of(name)
-    unit = "" if known is None or known.unit == "-" else f" {known.unit}"
+    if known is None or known.unit == "-":
+        unit = ""
+    else:
+        unit = f" {known.unit}"
     return (number_text(float(value)) + unit).replace(" deg", "°")
 
 

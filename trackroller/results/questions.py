@@ -46,7 +46,9 @@ def question_of(results: SolvedCases) -> str:
         return "best"
     required = required_of(results)
     if compared_output(results, required) is None:
-        return "what matters" if method.name in SENSITIVITY else "how it behaves"
+        if method.name in SENSITIVITY:
+            return "what matters"
+        return "how it behaves"
     own = Comparison.of(results)
     if own is None:
         return "how it behaves"
@@ -91,7 +93,9 @@ def answer_of(results: SolvedCases) -> Answer | None:
     """
     question = question_of(results)
     if question == "best":
-        return None if optimum_of(results) is None else answer_of_search(results)
+        if optimum_of(results) is None:
+            return None
+        return answer_of_search(results)
     needs_output = question in ("decide", "how sure")
     if needs_output and Comparison.of(results) is None:
         return answer_how_it_behaves(results)

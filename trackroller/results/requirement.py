@@ -43,4 +43,6 @@ def _hours_of_travel(results: SolvedCases) -> float:
         return 0.0
     travel = number_or_nan(results.base.get("required_travel"))
     velocity = number_or_nan(results.base.get("velocity"))
-    return travel / (KM_PER_HOUR * velocity) if travel > 0 and velocity > 0 else 0.0
+    if travel > 0 and velocity > 0:
+        return travel / (KM_PER_HOUR * velocity)
+    return 0.0

@@ -122,8 +122,9 @@ class Results(SolvedCases):
         """
         if objectives is None and constraints is None:
             return study_pareto(self)
-        limits = self.config.constraints if constraints is None else constraints
-        return pareto(self, objectives or self.goals, limits)
+        if constraints is None:
+            constraints = self.config.constraints
+        return pareto(self, objectives or self.goals, constraints)
 
     def candidates(self, free: tuple[str, ...] = ()) -> Candidates | None:
         """Return the combinations of choices, each judged over its conditions.

@@ -64,7 +64,9 @@ def robustness(
     InputError
         If the study has another design.
     """
-    ds, design, config = results.data, results.design, results.config
+    ds = results.data
+    design = results.design
+    config = results.config
     if not design.method.points:
         allowed = "design inner_outer: lists as outer array, distributions as inner array"
         raise InputError("design", design.method.name, allowed)
@@ -92,10 +94,10 @@ def robustness(
             [np.fmin.reduce(beyond[rows]) for rows in design.points]
         )
     out = xr.Dataset(coords=_coordinates(design, columns))
-    for key in by_output[0] if by_output else ():
-        axes = (
-            ("output", "point", "percentile") if key == "percentile_value" else ("output", "point")
-        )
+    for key in dict.fromkeys(key for one in by_output for key in one):
+        axes: tuple[str, ...] = ("output", "point")
+        if key == "percentile_value":
+            axes = ("output", "point", "percentile")
         out[key] = (
             axes,
             np.stack([one[key] for one in by_output]),
@@ -117,12 +119,13 @@ def robustness(
 def _attributes(design: Design, scatter: float) -> dict[str, str | int | float]:
     treatment = (
         "percentiles and the first B10 are those of the cases that roll, the second B10 counts "
-        "every "
-        "other case as life 0; a body above its tensile strength counts as life 0, and so does a "
-        "case that exceeds a "
-        "limit in the life to the first one; "
-        "the same inner sample at every design point"
+        "every other case as life 0; a body above its tensile strength counts as life 0, and so "
+        "does a case that exceeds a limit in the life to the first one; the same inner sample at "
+        "every design point"
     )
+    scatter_words = ""
+    if scatter:
+        scatter_words = ", the material's own scatter of life in B10"
     return {
         "method": design.method.name,
         "rows": design.size,
@@ -131,7 +134,7 @@ def _attributes(design: Design, scatter: float) -> dict[str, str | int | float]:
         "outer_factors": ", ".join(design.meta["outer"]),
         "inner_factors": ", ".join(design.meta["inner"]),
         "log_life_scatter": scatter,
-        "treatment": treatment + (", the material's own scatter of life in B10" if scatter else ""),
+        "treatment": treatment + scatter_words,
     }
 
 
@@ -149,7 +152,9 @@ def material_deviations(results: SolvedCases) -> dict[str, np.ndarray]:
     -------
     body -> array [1] of shape (n,), 0 for a material without scatter. Empty if not wanted.
     """
-    ds, dims, wanted = results.data, results.dims, results.config.analysis.material_scatter
+    ds = results.data
+    dims = results.dims
+    wanted = results.config.analysis.material_scatter
     if wanted is False:
         return {}
     known = json.loads(ds.attrs.get("materials", "{}"))
@@ -202,7 +207,8 @@ def _statistics(
     out = {name: np.full(len(points), np.nan) for name in names}
     out["percentile_value"] = np.full((len(points), len(PERCENTILES)), np.nan)
     for p, rows in enumerate(points):
-        own, spread = values[rows], scatter[rows]
+        own = values[rows]
+        spread = scatter[rows]
         known = ~np.isnan(own)
         good = own[known]
         out["used_share"][p] = good.size / own.size
@@ -212,7 +218,8 @@ def _statistics(
         # as in the table of candidates
         out["percentile_value"][p, PERCENTILES.index(50.0)] = np.median(good)
         if np.isfinite(good).all():
-            out["mean"][p], out["standard_deviation"][p] = good.mean(), good.std(ddof=1)
+            out["mean"][p] = good.mean()
+            out["standard_deviation"][p] = good.std(ddof=1)
         if life:
             out["b10"][p], out["b10_low"][p], out["b10_high"][p] = b10(good, spread[known])
             # a rolling case without a life (not converged) must not count as a long life

@@ -396,8 +396,8 @@ def _without_unknown_lives(table: pd.DataFrame, results: Results) -> pd.DataFram
     ]
     text = (
         f"open: the life at {100 * chance:g} % failures is not known, because the database has no "
-        "scatter of "
-        f"{' and '.join(bare)}. Give scatter_in_cycles with the material, or leave the failures out"
+        f"scatter of {' and '.join(bare)}. Give scatter_in_cycles with the material, or leave the "
+        "failures out"
     )
     table = table.copy()
     table.loc[unknown, "verdict"] = VERDICTS[1]

@@ -25,7 +25,7 @@ from trackroller.damage.verdict import STATES
 from trackroller.parameters import BODIES, PARAMETERS, REGIME_LABELS, REGIMES
 from trackroller.parameters.carriage_fields import long_name_of
 from trackroller.parameters.example import ABSENT, drive_question
-from trackroller.results.answer import Answer, Caution, Column, Part
+from trackroller.results.answer import Answer, Caution, Column, Part, yes_or_blank
 from trackroller.results.flags import flags_of, not_judged
 from trackroller.results.lives import FIRST_LIMIT, past_data
 from trackroller.results.margins import First, Margin, is_guessed
@@ -214,7 +214,9 @@ def _by_fatigue_alone(ds: xr.Dataset, body: str) -> Margin:
     hours = float(ds[f"{body}_life_hours"])
     limit = LIMITS["fatigue"]
     beyond = _beyond(ds, body, float(ds[f"{body}_life_shifts"]))
-    state = "unknown" if math.isnan(hours) else "kept"
+    state = "kept"
+    if math.isnan(hours):
+        state = "unknown"
     margin = Margin(
         "fatigue", limit.word, limit.title, body, state=state, timed=True, beyond=beyond
     )
@@ -252,7 +254,9 @@ def _kind(own: list[Margin], first: First | None, lives: pd.DataFrame) -> str:
         return "breaks"
     if first is None:
         return "unknown"
-    return "unlimited" if math.isinf(first.low) else "lasts"
+    if math.isinf(first.low):
+        return "unlimited"
+    return "lasts"
 
 
 def _headline(
@@ -347,11 +351,22 @@ def _table(ds: xr.Dataset, own: list[Margin]) -> pd.DataFrame:
 
 def _row(ds: xr.Dataset, margin: Margin) -> dict[str, Any]:
     """Return the row of a limit."""
-    low = 0.0 if margin.breaks else margin.low
-    high = 0.0 if margin.breaks else margin.high
-    block, share = _worst_block(ds, margin)
+    low = margin.soonest
+    high = margin.latest
+    state = margin.state
+    if state == "kept" and margin.used > 1.0:
+        state = "finite"
+    model = ""
+    if margin.beside:
+        model = "second"
     shift = float(ds["duration"].sum())
-    state = "finite" if margin.state == "kept" and margin.used > 1.0 else margin.state
+    block, share = _worst_block(ds, margin)
+    block_words = ""
+    if block:
+        block_words = f"{block}, {100 * share:.0f} %"
+    contact = math.nan
+    if margin.name == "fatigue" and block:
+        contact = known_damage(ds, margin.body)[0]
     return {
         "limit": margin.word,
         "body": margin.body,
@@ -364,14 +379,12 @@ def _row(ds: xr.Dataset, margin: Margin) -> dict[str, Any]:
         "km_high": high * _km_an_hour(ds),
         "shifts_low": low / shift,
         "shifts_high": high / shift,
-        "block": f"{block}, {100 * share:.0f} %" if block else "",
+        "block": block_words,
         "share": share,
-        "contact": known_damage(ds, margin.body)[0]
-        if margin.name == "fatigue" and block
-        else math.nan,
-        "extrapolated": "yes" if margin.beyond else "",
-        "guessed": "yes" if margin.guessed else "",
-        "model": "second" if margin.beside else "",
+        "contact": contact,
+        "extrapolated": yes_or_blank(margin.beyond),
+        "guessed": yes_or_blank(margin.guessed),
+        "model": model,
         "blocks": ", ".join(_blocks_of(ds, margin)),
         "name": margin.name,
     }
@@ -418,10 +431,8 @@ def _why_unknown(ds: xr.Dataset, body: str) -> tuple[str, float]:
         return "", math.nan
     damage = known_damage(ds, body)[1]
     unknown = ds["damage"].sel(body=body).isnull().any("contact").values
-    names, regimes = (
-        ds["block"].values.astype(str)[unknown],
-        ds["regime"].values.astype(int)[unknown],
-    )
+    names = ds["block"].values.astype(str)[unknown]
+    regimes = ds["regime"].values.astype(int)[unknown]
     skids = regimes == REGIMES.index("full_slip")
     breaks = np.zeros(len(names), dtype=bool)
     if "validity_body" in ds:
@@ -438,9 +449,9 @@ def _why_unknown(ds: xr.Dataset, body: str) -> tuple[str, float]:
     if not said:
         said = ["give guide_overrollings_per_hour, or guide_overrollings of each block"]
     known = float(np.nansum(damage))
-    bound = (
-        ds.attrs["critical_damage"] / known * float(ds["duration"].sum()) if known > 0 else math.nan
-    )
+    bound = math.nan
+    if known > 0:
+        bound = ds.attrs["critical_damage"] / known * float(ds["duration"].sum())
     return "; ".join(said), bound
 
 
@@ -469,9 +480,8 @@ def _blocks(ds: xr.Dataset) -> Part:
         *(Column(n, long_name_of(n), PARAMETERS[n].units, "", "whole") for n in loads),
         Column("regime", "Regime", "", "", "text"),
     ]
-    columns[2] = (
-        Column("duration", "Share of the time", "1", "", "share") if _by_share(ds) else columns[2]
-    )
+    if _by_share(ds):
+        columns[2] = Column("duration", "Share of the time", "1", "", "share")
     table = pd.DataFrame({"block": ds["block"].values.astype(str)})
     for name in ("distance", "duration", *loads):
         table[name] = ds[name].values.astype(float)
@@ -482,7 +492,9 @@ def _blocks(ds: xr.Dataset) -> Part:
         whole = float(np.nansum(damage))
         table[f"peak_{body}"] = ds["peak_stress"].sel(body=body, contact=contact).values
         table[f"damage_{body}"] = damage
-        table[f"share_{body}"] = damage / whole if whole > 0 else np.nan
+        table[f"share_{body}"] = np.nan
+        if whole > 0:
+            table[f"share_{body}"] = damage / whole
         columns += [
             Column(
                 f"peak_{body}",
@@ -494,10 +506,14 @@ def _blocks(ds: xr.Dataset) -> Part:
             Column(f"damage_{body}", f"{body} damage", "1", "damage of the block by fatigue"),
             Column(f"share_{body}", f"{body} share", "1", "part of the known damage", "share"),
         ]
-        least = "at least " if np.isnan(damage).any() else ""
+        least = ""
+        if np.isnan(damage).any():
+            least = "at least "
         notes.append(f"{body}: contact {contact}, damage sum {least}{whole:.4g}")
     sums = f"{float(ds['distance'].sum()):,.6g} m and {float(ds['duration'].sum()):.4g} h"
-    title = "Blocks of an hour of travel" if _by_share(ds) else "Blocks of a shift"
+    title = "Blocks of a shift"
+    if _by_share(ds):
+        title = "Blocks of an hour of travel"
     note = f"Together {sums}; {'; '.join(notes)}. {strokes_words(ds)}".strip()
     return Part("blocks", title, table, tuple(columns), note)
 
@@ -529,17 +545,24 @@ def _reasons(ds: xr.Dataset) -> dict[str, list[str]]:
     return found
 
 
+def _flagged_blocks(ds: xr.Dataset) -> dict[tuple[str, str], list[str]]:
+    """Return the blocks in which a flag is set, by the code and the words of the flag."""
+    if "validity" not in ds:
+        return {}
+    flagged: dict[tuple[str, str], list[str]] = {}
+    for place, name in enumerate(ds["block"].values):
+        for flag in flags_of(ds.isel(block=place)):
+            code = CODES.get(flag.name, "flagged")
+            flagged.setdefault((code, f"{flag.sentence} {flag.remedy}"), []).append(str(name))
+    return flagged
+
+
 def _warnings(ds: xr.Dataset) -> Iterator[Caution]:
     """Yield the warnings of a spectrum, flags with their blocks."""
     total = ds.sizes["block"]
     for reason, names in _reasons(ds).items():
         yield Caution("not_judged", len(names), total, f"{reason}: {', '.join(names)}", "blocks")
-    flagged: dict[tuple[str, str], list[str]] = {}
-    for place, name in enumerate(ds["block"].values if "validity" in ds else ()):
-        for flag in flags_of(ds.isel(block=place)):
-            code = CODES.get(flag.name, "flagged")
-            flagged.setdefault((code, f"{flag.sentence} {flag.remedy}"), []).append(str(name))
-    for (code, text), names in flagged.items():
+    for (code, text), names in _flagged_blocks(ds).items():
         yield Caution(code, len(names), total, f"{', '.join(names)}: {text}", "blocks")
     yield from guess_cautions(placeholders_part(ds))
     for note in notes_of(ds):

@@ -45,7 +45,9 @@ class Turning:
         found = []
         for end in ("_low", "_high"):
             moved = self.own.ranges.hours_at(end)
-            found.append(reached_by_body(self.own.results, end) if moved is None else moved)
+            if moved is None:
+                moved = reached_by_body(self.own.results, end)
+            found.append(moved)
         return found[0], found[1]
 
     @cached_property
@@ -121,7 +123,8 @@ class Turning:
         """
         if self.hours is None:
             return None
-        best, found = LEAST, None
+        best = LEAST
+        found = None
         for one in self.placeholders:
             mine = self.worst(leader, one)
             if mine[-1] <= mine[0] * (1 + 1e-9):
@@ -132,9 +135,11 @@ class Turning:
                 )
                 if ahead.mean() >= best:
                     best = float(ahead.mean())
-                    found = self.told(
-                        one, int(np.argmin(ahead)) if ahead[0] else int(np.argmax(ahead))
-                    )
+                    if ahead[0]:
+                        first_met = int(np.argmin(ahead))
+                    else:
+                        first_met = int(np.argmax(ahead))
+                    found = self.told(one, first_met)
         return found
 
     def decides(self, number: int, least: float) -> dict[str, Any] | None:
@@ -145,15 +150,21 @@ class Turning:
         """
         if self.hours is None:
             return None
-        widest, found = 1.0, None
+        widest = 1.0
+        found = None
         for one in self.placeholders:
             mine = self.worst(number, one)
-            width = mine[-1] / mine[0] if mine[0] > 0 else np.inf
+            width = np.inf
+            if mine[0] > 0:
+                width = mine[-1] / mine[0]
             if width <= widest * (1 + 1e-9):
                 continue
             enough = mine >= least
-            turns = bool(enough[-1] and not enough[0])
-            widest, found = width, self.told(one, int(np.argmax(enough)) if turns else -1)
+            step = -1
+            if enough[-1] and not enough[0]:
+                step = int(np.argmax(enough))
+            widest = width
+            found = self.told(one, step)
         return found
 
     def told(self, one: Placeholder, step: int) -> dict[str, Any]:
@@ -248,7 +259,9 @@ class Turning:
             return self.told(known, int(np.clip(np.searchsorted(STEPS, share), 0, len(STEPS) - 1)))
         name = own.spans[0]
         values = own.results.levels(name)
-        what = "wear_coefficient" if name == COEFFICIENT else name
+        what = name
+        if name == COEFFICIENT:
+            what = "wear_coefficient"
         found = {"what": what, "of": "", "on": "", "turn": np.nan, "units": "times its value"}
         return found | {"low": values[0], "high": values[-1]}
 
@@ -270,7 +283,9 @@ class Turning:
         limit, guide = (part[row] for part in own.ranges.first)
         material = str(self.materials[BODIES[int(guide)]][row])
         known = [one for one in self.placeholders if (one.limit, one.material) == (limit, material)]
-        return known[0] if known else None
+        if known:
+            return known[0]
+        return None
 
     def _at_level(self, number: int, levels: np.ndarray) -> np.ndarray:
         """Return the life of a candidate at its worst condition at each level of the spanned

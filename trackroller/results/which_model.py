@@ -37,7 +37,10 @@ MODEL = "contact_model"
 
 def models_of(results: SolvedCases) -> list[str]:
     """Return the contact models of a study, the most exact one first."""
-    known = set(results.table[MODEL]) if MODEL in results.table else set()
+    if MODEL in results.table:
+        known = set(results.table[MODEL])
+    else:
+        known = set()
     return [model for model in EXACTNESS if model in known]
 
 
@@ -80,6 +83,12 @@ def answer_which_model(results: SolvedCases) -> Answer:
     changed = [word for word, own in (("verdict", verdicts), ("order", leaders)) if len(own) > 1]
     several = len(set(table["leader"])) > 1 or table["leader"].iloc[0] != ""
     base = models[0]
+    smallest = np.nan
+    if table["ratio_low"].notna().any():
+        smallest = float(np.nanmin(table["ratio_low"]))
+    largest = np.nan
+    if table["ratio_high"].notna().any():
+        largest = float(np.nanmax(table["ratio_high"]))
     told = {
         "changes": " and ".join(changed),
         "base": base,
@@ -87,16 +96,15 @@ def answer_which_model(results: SolvedCases) -> Answer:
             {**{k: plain(v) for k, v in parts[m].items() if k in TOLD}, "leader": parts[m]["names"]}
             for m in models
         ],
-        "smallest": float(np.nanmin(table["ratio_low"]))
-        if table["ratio_low"].notna().any()
-        else np.nan,
-        "largest": float(np.nanmax(table["ratio_high"]))
-        if table["ratio_high"].notna().any()
-        else np.nan,
+        "smallest": smallest,
+        "largest": largest,
     }
+    kind = "same"
+    if changed:
+        kind = "changes"
     return Answer(
         question="which model",
-        kind="changes" if changed else "same",
+        kind=kind,
         headline=told,
         output=ranges.output,
         table=table.drop(columns=["names", "leader_key"]),
@@ -134,6 +142,15 @@ def _of_model(results: SolvedCases, ranges: CaseRanges, model: str, base: str) -
     names = names_of(own, decided.order[:1])[0]
     ratios = _ratios(results, ranges, model, base)
     sure = own.met()[0]
+    ratio_low = np.nan
+    ratio_high = np.nan
+    if ratios.size:
+        ratio_low = float(np.min(ratios))
+        ratio_high = float(np.max(ratios))
+    if required:
+        meets = int(sure[own.own].sum())
+    else:
+        meets = int(own.ranges.held[own.own].sum())
     return {
         "model": model,
         "verdict": plain(leader["state"]) or decided.kind,
@@ -145,10 +162,10 @@ def _of_model(results: SolvedCases, ranges: CaseRanges, model: str, base: str) -
         "low": float(leader["low"]),
         "high": float(leader["high"]),
         "error": float(leader["error"]),
-        "ratio_low": float(np.min(ratios)) if ratios.size else np.nan,
-        "ratio_high": float(np.max(ratios)) if ratios.size else np.nan,
+        "ratio_low": ratio_low,
+        "ratio_high": ratio_high,
         "like": int(ratios.size),
-        "meets": int(sure[own.own].sum()) if required else int(own.ranges.held[own.own].sum()),
+        "meets": meets,
         "holds": int(own.ranges.held[own.own].sum()),
         "of": int(own.own.sum()),
         "skids": int((own.ranges.reason[own.own] == "skids").sum()),

@@ -43,7 +43,8 @@ def pareto_front(front: xr.Dataset, results: Results | None = None) -> style.Dra
     goals = goals_of(front)
     if not (front["optimal"].values == 1).any() or min(front.sizes["row"], len(goals)) < 2:
         return None
-    others, kind = goals[1:4], str(front.attrs.get("kind", "design"))
+    others = goals[1:4]
+    kind = str(front.attrs.get("kind", "design"))
     figure, panels = style.panels(f"Pareto-optimal {kind}s", 78, len(others))
     colour, entries = _colours(front, results, goals[0][0])
     for axes, goal in zip(panels, others, strict=True):
@@ -106,7 +107,9 @@ def _trade(
     finite = np.isfinite(xs) & np.isfinite(ys)
     shown = (front["optimal"].values == 1) & finite
     rest = np.random.default_rng(1).permutation(np.flatnonzero(finite & ~shown))
-    size = 6 if len(rest) > 500 else 14
+    size = 14
+    if len(rest) > 500:
+        size = 6
     axes.scatter(
         xs[rest], ys[rest], s=size, c=colour[rest].tolist(), alpha=0.6, linewidth=0, rasterized=True
     )

@@ -67,7 +67,10 @@ def _is_rounding(ds: xr.Dataset, name: str) -> bool:
 
 
 def _head(ds: xr.Dataset, name: str) -> str:
-    units = "%" if name in IN_PER_CENT else unit_text(str(ds[name].attrs["units"]))
+    if name in IN_PER_CENT:
+        units = "%"
+    else:
+        units = unit_text(str(ds[name].attrs["units"]))
     words = HEADS.get(name) or capital(str(ds[name].attrs["long_name"]))
     return with_unit(words, units)
 
@@ -101,8 +104,7 @@ def sentences(ds: xr.Dataset) -> list[str]:
     if used.notnull().any():
         best = own.isel(case=int(np.nanargmax(used.values.round(4))))  # the first of equal ones
         creepages = ", ".join(
-            f"{best[name].attrs['long_name']} {rounded(_shown(best, name))} "
-            f"{'/mm' if name == 'spin' else '%'}"
+            f"{best[name].attrs['long_name']} {rounded(_shown(best, name))} {_unit_shown(name)}"
             for name in CREEPAGES
             if float(best[name]) != 0.0
         )
@@ -126,7 +128,15 @@ def sentences(ds: xr.Dataset) -> list[str]:
 
 
 def _shown(one: xr.Dataset, name: str) -> float:
-    return float(one[name]) * (PER_CENT if name in IN_PER_CENT else 1.0)
+    if name in IN_PER_CENT:
+        return float(one[name]) * PER_CENT
+    return float(one[name])
+
+
+def _unit_shown(creepage: str) -> str:
+    if creepage == "spin":
+        return "/mm"
+    return "%"
 
 
 def write_patch(

@@ -112,17 +112,18 @@ def _used(ds: xr.Dataset, option: str) -> str:
     if option != "contact_model" or "contact_model_used" not in ds or ds["contact_model_used"].ndim:
         return ""
     used = solved_by(ds).item()
-    return f" (solved by {used})" if used != ds.attrs[option] else ""
+    if used != ds.attrs[option]:
+        return f" (solved by {used})"
+    return ""
 
 
 def body_materials(materials: Mapping[str, Mapping[str, Any]]) -> list[tuple[str, list[Row], str]]:
     """Return head, values and source of each material, once if both bodies are of the same."""
     roller, guide = (materials[f"{body}_material"] for body in BODIES)
-    by_body = (
-        [("roller and guide", roller)]
-        if roller == guide
-        else [("roller", roller), ("guide", guide)]
-    )
+    if roller == guide:
+        by_body = [("roller and guide", roller)]
+    else:
+        by_body = [("roller", roller), ("guide", guide)]
     return [
         (head, material_rows(record.as_material(values)), material_source(values))
         for head, values in by_body

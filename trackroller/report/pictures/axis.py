@@ -61,8 +61,10 @@ class Axis:
             if math.isinf(value):
                 return 100.0
             share = math.log(value / self.low) / math.log(self.high / self.low)
+        elif self.high == self.low:
+            share = 0.5
         else:
-            share = 0.5 if self.high == self.low else (value - self.low) / (self.high - self.low)
+            share = (value - self.low) / (self.high - self.low)
         return 100 * min(1.0, max(0.0, share))
 
     def ticks(self, length: float) -> list[tuple[float, str]]:
@@ -159,7 +161,9 @@ def _steps(low: float, high: float) -> list[list[float]]:
 
 def tick_text(value: float) -> str:
     """Write the number of a tick: '100,000', but '10⁶'."""
-    power = math.log10(value) if value > 0 else 0.0
+    power = 0.0
+    if value > 0:
+        power = math.log10(value)
     if (power >= 6 or power <= -4) and abs(power - round(power)) < 1e-9:
         return f"10{str(round(power)).translate(_RAISED)}"
     return grouped(value, 4)

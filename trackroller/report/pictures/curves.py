@@ -82,7 +82,8 @@ def _drawn(answer: Answer, curve: Curve, axis: Axis) -> Markup:
     parts = [upright_axis(axis, HEIGHT)]
     if numeric:
         parts += [_band(curve, axis, places), required_levels(answer, axis)]
-        parts += _dots(curve, axis, places) if len(places) <= MOST_NAMES else []
+        if len(places) <= MOST_NAMES:
+            parts += _dots(curve, axis, places)
         parts.append(_below(curve))
     else:
         parts += [
@@ -209,8 +210,8 @@ def caption(answer: Answer) -> str:
         )
         text += f" {curve.title}: {names}."
     left = [f"{curve.title} {curve.left_out:,}" for curve in answer.curves if curve.left_out]
-    return (
-        f"{text} Valid cases without a partner at some level are left out: {', '.join(left)}."
-        if left
-        else text
-    )
+    if left:
+        return (
+            f"{text} Valid cases without a partner at some level are left out: {', '.join(left)}."
+        )
+    return text

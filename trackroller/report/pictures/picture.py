@@ -40,7 +40,11 @@ def row_names(answer: Answer, count: int) -> list[str]:
     for place in range(min(count, len(answer.table))):
         row = answer.table.iloc[place]
         text = ", ".join(_level_words(column, row[column.name]) for column in columns)
-        found.append(text if text and text not in found else f"{text} ({place + 1})".strip())
+        if text and text not in found:
+            words = text
+        else:
+            words = f"{text} ({place + 1})".strip()
+        found.append(words)
     return found
 
 
