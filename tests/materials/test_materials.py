@@ -678,8 +678,8 @@ def test_wear_coefficient_by_pair_and_body():
     pom, steel = database.on("POM", "1.7225-normalised"), database.on("1.7225-normalised", "POM")
     assert pom.wear_coefficient > 10 * steel.wear_coefficient > 0
     quenched = "1.7225-quenched-tempered"
-    named, family = (database.on(quenched, other).wear_coefficient for other in (quenched, "1.7225-normalised"))
-    assert named == 1e-5 and family == 3e-5  # a pair of names goes before a pair of families
+    named, family = (database.on(body, quenched).wear_coefficient for body in ("EN AW-7075-T651", quenched))
+    assert named == 1e-4 and family == 3.1e-4  # a pair of names goes before a pair of families
     record = pom.records["wear_coefficient"]
     assert record.placeholder and record.range[0] <= record.value <= record.range[1]
     guess = pom.guesses_of_limits["wear_coefficient"]
@@ -688,6 +688,37 @@ def test_wear_coefficient_by_pair_and_body():
     assert database.on(own, quenched).wear_coefficient == 5e-7  # a material's own value goes first
     rows = {row["pair"]: row for row in friction_rows(database) if row["field"] == "wear_coefficient"}
     assert rows["POM on metal"]["value"] == "1e-06" and rows["POM on metal"]["placeholder"]
+
+
+def test_wear_of_steel_follows_its_hardness_and_holds_the_evidence_of_rolling_with_sliding(user):
+    """The rates of twin discs, 5.3 ug/(m mm2) per N/mm2 and 55 from 10.4 to 77.2 N/mm2, times their friction."""
+    database = load_database(None)
+
+    def range_of(hardness, db=database):
+        return db.on({"like": "C45", "hardness": hardness}, "C45").records["wear_coefficient"].range
+
+    density, friction = 7850.0, 0.46
+    rates = np.array([5.3, 55 / 10.4, 55 / 77.2, (61.9 * 100 - 4778.7) / 100, (61.9 * 100 - 4723.7) / 100])
+    low, high = range_of(260)
+    discs = friction * rates / density
+    assert low <= discs.min() * 1.01 and discs.max() <= high * 1.05  # the third branch is quoted with a gap
+    assert database.on("C45", "C45").wear_coefficient == pytest.approx(friction * 5.3 / density, rel=0.01)
+    assert high < 1e3 * 7e-3 / 1860  # pins on rings of mild steel are no part of it
+    assert range_of(390) == (low, high) and range_of(400)[1] < high
+    assert range_of(615)[0] <= 1e3 * 1.3e-4 / 8500 <= range_of(615)[1]  # pins of hardened tool steel
+    bare = {"like": "C45", "name": "bare", "hardness": None}
+    record = database.on(Material(**database.material("C45").as_dict() | {"hardness": None}), "C45").records
+    assert (
+        record["wear_coefficient"].range == (range_of(615)[0], high)
+        and "give hardness" in record["wear_coefficient"].note
+    )
+    assert database.on(bare, "C45").hardness == 170  # a value that is left out is inherited
+    mine = load_database(user("wear: [{pair: [metal, metal], hardness: [500, 2000], first: 2.0e-6}]"))
+    assert mine.on("100Cr6", "C45").wear_coefficient == 2e-6 and range_of(260, mine) == (low, high)
+    every = load_database(user("wear: [{pair: [metal, metal], first: 2.0e-6}]"))
+    assert {every.on(name, "C45").wear_coefficient for name in ("C45", "100Cr6", "1.7225-normalised")} == {2e-6}
+    levels = [row["level"] for row in friction_rows(database) if row["pair"] == "metal on metal"]
+    assert levels[-3:] == ["wear of metal of 400 to 2000 HB", "wear of metal of 0 to 400 HB", "wear of metal"]
 
 
 def test_wear_of_the_user_goes_first_and_bad_entries_are_refused(user):
@@ -700,6 +731,9 @@ def test_wear_of_the_user_goes_first_and_bad_entries_are_refused(user):
         ("wear: [{pair: [POM], first: 1.0e-6}]", "a list of two families"),
         ("wear: [{pair: [POM, metal], first: 2}]", "wear_coefficient = 2"),
         ("wear: [{pair: [POM, metal], first: -1.0e-6}]", "wear_coefficient"),
+        ("wear: [{pair: [metal, metal], hardness: 300, first: 1.0e-6}]", r"hardness = 300.*Write hardness: \[0, 400\]"),
+        ("wear: [{pair: [metal, metal], hardness: [400, 300], first: 1.0e-6}]", "a range that rises"),
+        ("wear: [{pair: [metal, metal], hardness: [0, hard], first: 1.0e-6}]", "hardness = 'hard'"),
     ):
         with pytest.raises(InputError, match=message):
             load_database(user(text))

@@ -5,6 +5,7 @@ coefficients.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
 from trackroller.damage.own import check_fields
@@ -36,6 +37,10 @@ STRENGTH = "tensile_strength"
 TEXTS = ("family", "description", "like", "note")
 VALUE_KEYS = ("value", "unit", "source", "placeholder", "note", "range")
 NUMBERS = PROPERTIES | ALTERNATIVES
+HARDNESS = "hardness"  # key of an entry of the wear list: the hardness for which it holds
+_HARDNESS = replace(PROPERTIES[HARDNESS], open_lower=False, open_upper=False)
+Hardness = tuple[float, float]  # lowest and highest hardness [HB], the highest one left out
+WearClass = tuple[Hardness | None, Value]
 BODIES_OF_PAIR = ("first", "second")  # keys of a wear coefficient: the body of the pair that wears
 
 
@@ -347,16 +352,35 @@ class EntryParser:
         pair, levels = self._of_pair(entry, "friction", "level", FRICTION_LEVELS, prop)
         return frozenset(pair), levels
 
-    def wear(self, entry: Any) -> dict[tuple[str, str], Value]:
+    def wear(self, entry: Any) -> dict[tuple[str, str], WearClass]:
         """Return the wear coefficients of one entry of the wear list, by the body that wears and
-        its partner.
+        its partner, each with the hardness of the body for which it holds.
         """
+        hardness = None
+        if isinstance(entry, Mapping) and HARDNESS in entry:
+            hardness = self._hardness(entry)
+            entry = {key: value for key, value in entry.items() if key != HARDNESS}
         pair, given = self._of_pair(
             entry, "wear", "body", BODIES_OF_PAIR, PROPERTIES["wear_coefficient"]
         )
         first, second = pair
         by_bodies = {"first": (first, second), "second": (second, first)}
-        return {by_bodies[body]: value for body, value in given.items()}
+        return {by_bodies[body]: (hardness, value) for body, value in given.items()}
+
+    def _hardness(self, entry: Mapping[Any, Any]) -> Hardness:
+        """Return the checked range of hardness [HB] of an entry of the wear list."""
+        given = entry[HARDNESS]
+        pair = entry.get("pair")
+        field = "wear"
+        if isinstance(pair, list):
+            field = f"wear.{'-'.join(map(str, pair))}"
+        if not isinstance(given, (list, tuple)) or len(given) != 2:
+            allowed = "[lowest, highest] hardness [HB] of the body that wears"
+            raise InputError(f"{field}.{HARDNESS}", given, allowed, "Write hardness: [0, 400].")
+        low, high = (check_number(_HARDNESS, end, field) for end in given)
+        if not low < high:
+            raise InputError(f"{field}.{HARDNESS}", given, "a range that rises", "Swap its ends.")
+        return low, high
 
     def _of_pair(
         self, entry: Any, section: str, kind: str, keys: tuple[str, ...], prop: Parameter

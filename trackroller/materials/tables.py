@@ -91,9 +91,14 @@ def friction_rows(database: MaterialDatabase) -> list[dict[str, str]]:
         for level, record in levels.items():
             head = {"pair": " - ".join(names), "level": level}
             rows.append(head | _row("friction_coefficient", "mu", record))
-    for (body, partner), record in database.wear_table.items():
-        head = {"pair": f"{body} on {partner}", "level": f"wear of {body}"}
-        rows.append(head | _row("wear_coefficient", PROPERTIES["wear_coefficient"].symbol, record))
+    symbol = PROPERTIES["wear_coefficient"].symbol
+    for (body, partner), classes in database.wear_table.items():
+        for hardness, record in classes.items():
+            level = f"wear of {body}"
+            if hardness is not None:
+                level += " of {:g} to {:g} HB".format(*hardness)
+            head = {"pair": f"{body} on {partner}", "level": level}
+            rows.append(head | _row("wear_coefficient", symbol, record))
     return rows
 
 
