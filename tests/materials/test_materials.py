@@ -166,6 +166,8 @@ def test_every_builtin_material_solves(db):
 def test_every_builtin_value_has_unit_source_and_mark():
     """Nothing in the built-in file stands without unit, source and an explicit placeholder mark."""
     data = yaml.safe_load(BUILTIN_FILE.read_text(encoding="utf-8"))
+    tables = [m.pop("energy_wear") for m in data["materials"].values() if "energy_wear" in m]
+    assert tables and all({"source", "placeholder"} <= set(table) for table in tables)
     values = [v for m in data["materials"].values() for v in m.values() if isinstance(v, dict)]
     values += [v for entry in data["friction"] for key, v in entry.items() if key != "pair"]
     published = [m for name, m in data["materials"].items() if name in PUBLISHED]
@@ -758,6 +760,18 @@ def test_the_list_counts_the_guesses_of_limits_too():
     rows = {row["name"]: row["placeholders"] for row in material_rows(load_database(None))}
     marked = [row for row in material_details(load_database(None), "POM") if row["placeholder"]]
     assert rows["POM"] == str(len(marked)) == "7"
+
+
+def test_the_energy_law_of_wear_can_be_added_listed_and_inherited(tmp_path):
+    law = {"work_rate": [0, "10 N/mm2", 50], "loss": [0, 55, 60], "source": "own discs"}
+    own = add_material(tmp_path / "m.yaml", "hub", like="C45", energy_wear=law).energy_wear
+    assert (own.work_rate, own.loss, own.source, own.placeholder) == ((0, 10, 50), (0, 55, 60), "own discs", False)
+    assert load_database(tmp_path / "m.yaml").material({"like": "hub", "hardness": 200}).energy_wear == own
+    rows = {row["field"]: row for row in material_details(load_database(None), "C45")}
+    assert rows["energy_wear"]["value"] == "0, 55, 55, 1466" and rows["energy_wear"]["placeholder"]
+    assert "Lewis" in rows["energy_wear"]["source"] and rows["energy_wear"]["unit"] == "ug/(m mm2)"
+    listed = {row["name"]: row["placeholders"] for row in material_rows(load_database(None))}
+    assert listed["C45"] == str(sum(bool(row["placeholder"]) for row in material_details(load_database(None), "C45")))
 
 
 @pytest.mark.parametrize("key", ["path", "name", "paht"])

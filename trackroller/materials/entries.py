@@ -10,6 +10,7 @@ from typing import Any
 
 from trackroller.damage.own import check_fields
 from trackroller.errors import Collector, InputError, check_names, checked_text, unknown_name
+from trackroller.materials.energy_wear import FIELD as ENERGY_WEAR
 from trackroller.materials.material import UNNAMED, Material, contradictions
 from trackroller.materials.properties import ALTERNATIVES, PROPERTIES, REQUIRED, Value, check_number
 from trackroller.materials.sn_curve import (
@@ -196,9 +197,7 @@ class EntryParser:
         # inherited, but a given value excludes it
         for key in contradictions(numbers).keys() - given.keys():
             del records[key]
-        table: Any = entry.get(FIELD)
-        if isinstance(table, Mapping) and isinstance(table.get("source"), str):
-            table = {**table, "source": self.source(table["source"])}
+        table = self._with_source(entry.get(FIELD))
         if (
             FIELD not in entry
             and base
@@ -209,12 +208,22 @@ class EntryParser:
         fields: dict[str, Any] = {key: value.value for key, value in records.items()}
         if points:
             fields[POINTS] = points
-        fields |= {"name": name, FIELD: table, "records": records, **_words(entry, base)}
+        law = self._with_source(entry.get(ENERGY_WEAR))
+        if ENERGY_WEAR not in entry and base:
+            law = base.energy_wear
+        fields |= {"name": name, FIELD: table, ENERGY_WEAR: law}
+        fields |= {"records": records, **_words(entry, base)}
         try:
             return Material(**fields)
         except InputError as error:
             field = error.field.removeprefix(f"material '{name}'")
             raise error.named(f"{where}{field}") from None
+
+    def _with_source(self, table: Any) -> Any:
+        """Return a table of an entry with the full reference of its source."""
+        if isinstance(table, Mapping) and isinstance(table.get("source"), str):
+            return {**table, "source": self.source(table["source"])}
+        return table
 
     def _with_curve(
         self,
@@ -321,7 +330,7 @@ class EntryParser:
         wrong = Collector()
         given = {}
         with wrong.part():
-            check_fields(f"{where}: field", entry, (*NUMBERS, *TEXTS, POINTS, FIELD))
+            check_fields(f"{where}: field", entry, (*NUMBERS, *TEXTS, POINTS, FIELD, ENERGY_WEAR))
         for key in TEXTS:
             if entry.get(key) is not None and not isinstance(entry[key], str):
                 wrong.errors.append(

@@ -6,6 +6,8 @@ from math import nan
 
 from trackroller.errors import InputError
 from trackroller.materials.database import MaterialDatabase
+from trackroller.materials.energy_wear import FIELD as ENERGY_WEAR
+from trackroller.materials.energy_wear import LISTS
 from trackroller.materials.properties import PROPERTIES, REQUIRED, Value
 
 
@@ -75,6 +77,15 @@ def material_details(database: MaterialDatabase, name: str) -> list[dict[str, st
             )
             row = _row(f"{key} over temperature", f"{PROPERTIES[key].symbol}(theta)", record)
             rows.append(row | {"value": ", ".join(f"{value:g}" for value in column)})
+    law = material.energy_wear
+    if law is not None:
+        over = ", ".join(f"{value:g}" for value in law.work_rate)
+        note = f"at {over} N/mm2"
+        if law.note:
+            note += f"; {law.note}"
+        record = Value(law.loss[0], LISTS["loss"].unit, law.source, law.placeholder, note)
+        row = _row(ENERGY_WEAR, "", record)
+        rows.append(row | {"value": ", ".join(f"{value:g}" for value in law.loss)})
     return [*rows, _row("fatigue_limit", "sigma_D", limit), _row("woehler_exponent", "k", exponent)]
 
 
