@@ -182,7 +182,8 @@ class MaterialDatabase:
         """Return the friction coefficient of a pair as a result records it: pair, level, value,
         source, mark and note.
 
-        Without a level it is the typical coefficient.
+        Without a level it is the typical coefficient. Where tests of the dry pair lie above the
+        typical coefficient, `dry_tests` holds their range and the levels that say more.
         """
         level = level or "typical"
         friction = self.friction(roller, guide, level)
@@ -193,7 +194,26 @@ class MaterialDatabase:
             "placeholder": friction.placeholder,
         }
         note = {"note": friction.note} if friction.note else {}
-        return {"material_pair": pair, "level": level, **values, **note}
+        tests = {}
+        if level == "typical":
+            tests = self._dry_tests(roller, guide, friction.value)
+        return {"material_pair": pair, "level": level, **values, **note, **tests}
+
+    def _dry_tests(
+        self, roller: str | Material, guide: str | Material, typical: float
+    ) -> dict[str, Any]:
+        """Return the range of the tests of a dry pair as `dry_tests`, if it lies above the typical
+        coefficient; otherwise nothing.
+        """
+        names = [self._names_of(body) for body in (roller, guide)]
+        levels: dict[str, Value] = {}
+        for pair in product(*names):
+            levels = {**self.friction_table.get(frozenset(pair), {}), **levels}
+        dry = levels.get("dry")
+        if dry is None or dry.range is None or typical >= dry.range[0]:
+            return {}
+        words = [name for name in ("dry", "lubricated") if name in levels]
+        return {"dry_tests": {"range": list(dry.range), "words": words}}
 
     def _names_of(self, body: str | Material) -> tuple[str, ...]:
         """Return the keys of a body in the friction table: its name first, then its family."""
