@@ -19,6 +19,7 @@ from trackroller.results.candidates import slip_margin
 from trackroller.results.case_ranges import CaseRanges
 from trackroller.results.columns import codes
 from trackroller.results.comparison import Comparison
+from trackroller.results.friction import friction_cautions
 from trackroller.results.lives import OF_PAIR, body_lives
 from trackroller.results.places import level_text, places_of, places_text
 from trackroller.results.solved_cases import SolvedCases
@@ -278,7 +279,7 @@ def case_cautions(results: SolvedCases, ranges: CaseRanges, rows: np.ndarray) ->
                 _listed(f"{long_name_of(n)} {v}" for n, v in words.items()),
             )
         )
-    return found
+    return [*found, *friction_cautions(results.data.attrs)]
 
 
 def _outlives_groove(results: SolvedCases, output: str) -> np.ndarray:

@@ -16,6 +16,7 @@ from trackroller.damage import LIMITS, computed, judged, verdict
 from trackroller.damage.histories import RollerTractions
 from trackroller.damage.limit import TRACTIONS, Limit, SolvedRollers, Verdict
 from trackroller.damage.wear import BEYOND_TABLE, KM_PER_HOUR
+from trackroller.damage.wear import TABLE as WEAR_TABLE
 from trackroller.halfspace.tractions import Tractions
 from trackroller.numerics.rows import distinct
 from trackroller.parameters import CONTACT_MODELS, MAPPING_FIELDS, PARAMETERS
@@ -60,7 +61,8 @@ def solved_of(
     fields = [field.name for field in dataclasses.fields(table.roller)]
     names = [name for name in fields if name not in TEXTS or name == "sn_points"]
     return SolvedRollers(
-        {name: getattr(table, name) for name in (*PARAMETERS, *MAPPING_FIELDS)},
+        {name: getattr(table, name) for name in (*PARAMETERS, *MAPPING_FIELDS)}
+        | {WEAR_TABLE.name: table.loss_tables},
         {
             name: np.array([getattr(body, name) for body in (table.roller, table.guide)]).T
             for name in names
