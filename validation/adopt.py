@@ -31,12 +31,13 @@ DATA, FIGURES = DOCS / "data", DOCS / "figures"
 ERRORS = Path(expected_errors.__file__).with_name(expected_errors.FILE)
 TABLE = Path(spline.__file__).with_name(spline.TABLE)
 COSTS = contact_models.FILE
-TARGETS = ("extremes", "tradeoff", "paper", "contact_models", "fits", "kalker_table", "benchmarks")
+TARGETS = ("extremes", "tradeoff", "paper", "contact_models", "fits", "measured", "kalker_table", "benchmarks")
 # figures that the pages show, by target: pattern of their names, and colours of the reduced palette, if it is reduced
 PICTURES = {
     "extremes": ("extremes_*.png", 0),
     "tradeoff": ("tradeoff*.png", 0),
     "paper": ("paper_*.png", 96),
+    "measured": ("measured_*.png", 0),
     "contact_models": ("models-*.png", 64),
 }
 
