@@ -28,6 +28,7 @@ FACTS: dict[str, Callable[[Mapping[str, Any]], dict[str, Any]]] = {
     "tradeoff.md": tradeoff.facts,
     "extremes.md": extremes.facts,
     "measured.md": against.facts,
+    "benchmark.md": against.benchmark_facts,
 }
 
 

@@ -1,4 +1,4 @@
-"""Write `measured.json` and `figures/` of the comparison with measurements.
+"""Write `measured.json`, `figures/` and our entry in the benchmark, `entry.csv`.
 
     python -m validation.measured FOLDER [--small]
 
@@ -11,12 +11,15 @@ from pathlib import Path
 
 from trackroller.files import write_text
 from validation.benchmarks.command import plain
+from validation.measured.benchmark.entry import write_entry
 from validation.measured.figures import draw_all
 from validation.measured.solve import results
 
 if __name__ == "__main__":
     folder = Path(sys.argv[1])
     (folder / "figures").mkdir(parents=True, exist_ok=True)
-    own = results("preview" if "--small" in sys.argv else "standard")
+    accuracy = "preview" if "--small" in sys.argv else "standard"
+    own = results(accuracy)
     draw_all(own, folder / "figures")
+    write_entry(folder / "entry.csv", accuracy)
     write_text(folder / "measured.json", json.dumps(plain(own), indent=1) + "\n")

@@ -12,6 +12,8 @@ import numpy as np
 from trackroller.damage.sn_curve import SNCurve
 from trackroller.materials import Material, builtin_database
 from trackroller.report.numbers import rounded
+from validation.measured.benchmark.table import HEADS as HEADS_OF_ERRORS
+from validation.measured.benchmark.table import QUANTITIES, all_programs, error_rows
 from validation.measured.facts import column, read
 from validation.measured.solve import FULL_SLIP, HEAT_STEEL, measured_traction
 
@@ -112,6 +114,17 @@ def facts(data: Mapping[str, Any]) -> dict[str, Any]:
         "film_rows": film_rows(own["locomotive"]),
         "exponent_rows": exponent_rows(own["lives"]),
         "loads": [f"{load:g}" for load in own["lives"]["loads"]],
+    }
+
+
+def benchmark_facts(data: Mapping[str, Any]) -> dict[str, Any]:
+    """Return what the template `benchmark.md` shows; `data` is not used, because programs stand in files."""
+    entries = all_programs()
+    return {
+        "error_heads": HEADS_OF_ERRORS,
+        "error_rows": error_rows(entries),
+        "entries": [(f"`{one.name}`", one.remark) for one in entries],
+        "quantities": [(f"`{name}`", unit) for name, unit in QUANTITIES.items()],
     }
 
 
