@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from trackroller.cli.case import case_of
 from trackroller.cli.usage import print_doubts
+from trackroller.damage import limit_word
 from trackroller.damage.bearing import FIELD as BEARING
 from trackroller.damage.catalogue import FIELD as CATALOGUE
 from trackroller.errors import InputError
@@ -91,9 +92,20 @@ def print_size(  # noqa: PLR0913 - one argument for each option of the command
     print_table(
         heads, [[_shown(value) for value in row] for row in sizing.table.itertuples(index=False)]
     )
+    if sizing.ratios is not None:
+        _print_ratios(sizing)
     for own in solved:
         print_text(f"study {own.study.name}: trackroller report {own.study.name} writes its page")
     return int(not sizing.least)
+
+
+def _print_ratios(sizing: Sizing) -> None:
+    """Print what all forces of the case may be multiplied by until each limit is reached."""
+    assert sizing.ratios is not None
+    table = sizing.ratios.table.reindex(sizing.table[ROLLER])
+    print_text("all forces may be multiplied by, until a limit is at 100 %:")
+    rows = [[name, *map(_shown, row)] for name, *row in table.itertuples()]
+    print_table([ROLLER, *(limit_word(str(name)) for name in table)], rows)
 
 
 def _first_sentence(sizing: Sizing) -> str:
@@ -117,6 +129,8 @@ def _shown(value: Any) -> str:
     if isinstance(value, float):
         if math.isnan(value):
             return "–"
+        if math.isinf(value):
+            return "any"
         return f"{value:.4g}"
     return str(value) or "–"
 

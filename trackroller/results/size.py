@@ -9,7 +9,7 @@ to hold, whatever the life.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -22,12 +22,13 @@ from trackroller.numerics.numbers import finite_number
 from trackroller.numerics.plain import mapping_of
 from trackroller.parameters import BODIES
 from trackroller.parameters.example import EXAMPLE
+from trackroller.results.load_ratio import EXACT, FORCES, LoadRatios, load_ratios
 from trackroller.results.results import Results
 from trackroller.results.solving import run
 from trackroller.roller.aliases import with_options
 from trackroller.roller.duty import OVERROLLINGS
 from trackroller.roller.requirement import DEFAULT
-from trackroller.roller.settings import LOADS, checked_case
+from trackroller.roller.settings import checked_case
 from trackroller.study.file.config import IN_STUDY, NAME
 from trackroller.study.file.load import load_study
 from trackroller.study.file.shelf import ROLLER, base_of_case, with_rows, without_overridden
@@ -51,7 +52,8 @@ class Sizing:
         One row a roller, the least one that is enough first: `roller`, `verdict` (one of
         `VERDICTS`), the columns of the shelf, `life_hours` (low end of the life to the first limit,
         worst condition), `life_ratio` (over the required life), `ends` (what ends it), `overload`
-        (held, exceeded or not judged) and `excluded_by`.
+        (held, exceeded or not judged), `load_ratio` (all forces times it reach the first limit),
+        `load_ends` (that limit) and `excluded_by`.
     least : str
         Name of the roller to take; '' if none is surely enough.
     least_of : str
@@ -62,6 +64,8 @@ class Sizing:
         The study at the loads of the case; None if no life is required.
     overload : Results, optional
         The study with all forces times the safety; None without a safety.
+    ratios : LoadRatios, optional
+        What all forces may be multiplied by until each limit is reached.
     """
 
     table: pd.DataFrame
@@ -70,6 +74,7 @@ class Sizing:
     unranked: tuple[str, ...] = ()
     results: Results | None = field(default=None, repr=False)
     overload: Results | None = field(default=None, repr=False)
+    ratios: LoadRatios | None = field(default=None, repr=False)
 
     @property
     def open_and_less(self) -> tuple[str, ...]:
@@ -86,14 +91,25 @@ class Sizing:
 
     def to_dict(self) -> dict[str, Any]:
         """Return the sizing as values of JSON; None stands for a number that is not known."""
-        rows = self.table.astype(object).where(self.table.notna(), None).to_dict("records")
+        rows = _as_json(self.table)
         head: dict[str, Any] = {
             "least": self.least,
             "least_of": self.least_of,
             "unranked": list(self.unranked),
         }
         head["open_and_less"] = list(self.open_and_less)
-        return head | {"rollers": [{str(key): value for key, value in row.items()} for row in rows]}
+        if self.ratios is not None:
+            head["load_ratios"] = _as_json(self.ratios.table.reset_index())
+        return head | {"rollers": rows}
+
+
+def _as_json(table: pd.DataFrame) -> list[dict[str, Any]]:
+    """Return the rows of a table as values of JSON; None stands for a number that is not known,
+    and for an infinite one.
+    """
+    known = table.replace([np.inf, -np.inf], np.nan).astype(object)
+    rows = known.where(known.notna(), None).to_dict("records")
+    return [{str(key): value for key, value in row.items()} for row in rows]
 
 
 def size(
@@ -157,7 +173,24 @@ def size(
     solved = {
         kind: run(study, progress=progress, results=results) for kind, study in studies.items()
     }
-    return sizing_of(solved.get("life"), solved.get(OVERLOAD), least or "")
+    return sizing_of(
+        solved.get("life"), solved.get(OVERLOAD), least or "", ratios_of(studies, safety), safety
+    )
+
+
+def ratios_of(studies: Mapping[str, Study], safety: str | float | None = None) -> LoadRatios:
+    """Return the load ratios of the rollers of a sizing at the forces of its case.
+
+    Parameters
+    ----------
+    studies : mapping of str to Study
+        The studies, as `sizing_studies` returns them.
+    safety : str or float, optional
+        The factor on the forces of the study `overload` [1].
+    """
+    if "life" in studies:
+        return load_ratios(studies["life"], ROLLER)
+    return load_ratios(studies[OVERLOAD], ROLLER).times(finite_number(safety, "-", "safety"))
 
 
 def sizing_studies(
@@ -273,14 +306,14 @@ def _overloaded(keys: Mapping[str, Any], safety: str | float) -> dict[str, Any]:
     factor = finite_number(safety, "-", "safety")
     if not factor >= 1.0:
         raise InputError("safety", safety, "a number >= 1", "For example 1.5.")
-    varied = [name for name in LOADS if name in keys["factors"]]
+    varied = [name for name in FORCES if name in keys["factors"]]
     if varied:
         remedy = "Give the forces under base, or leave the safety out."
         raise InputError(
             f"factors.{varied[0]}", None, "forces under base beside a safety", remedy, "varies"
         )
     base = dict(keys["base"])
-    for name in LOADS:
+    for name in FORCES:
         base[name] = factor * finite_number(base.get(name, EXAMPLE[name]), "N", f"base.{name}")
     left = {
         name: value
@@ -290,7 +323,13 @@ def _overloaded(keys: Mapping[str, Any], safety: str | float) -> dict[str, Any]:
     return left | {"name": f"{keys['name']}-{OVERLOAD}", "base": base}
 
 
-def sizing_of(at_loads: Results | None, overload: Results | None, least: str = "") -> Sizing:
+def sizing_of(
+    at_loads: Results | None,
+    overload: Results | None,
+    least: str = "",
+    ratios: LoadRatios | None = None,
+    safety: str | float | None = None,
+) -> Sizing:
     """Return which rollers are enough by the answers to the studies of a sizing.
 
     Parameters
@@ -301,6 +340,10 @@ def sizing_of(at_loads: Results | None, overload: Results | None, least: str = "
         The study with all forces times the safety.
     least : str
         Column of the shelf or result by which rollers rank.
+    ratios : LoadRatios, optional
+        Load ratios of the rollers at the forces of the case.
+    safety : str or float, optional
+        The required factor on all forces [1].
     """
     solved = at_loads or overload
     assert solved is not None
@@ -313,11 +356,15 @@ def sizing_of(at_loads: Results | None, overload: Results | None, least: str = "
     table["excluded_by"] = ""
     if at_loads is not None:
         table = _with_life(table, at_loads)
+    if ratios is not None:
+        table["load_ratio"] = ratios.least.reindex(table.index)
+        table["load_ends"] = ratios.first.reindex(table.index)
     if overload is not None:
-        table = _with_overload(table, overload)
+        table = _with_overload(table, overload, finite_number(safety, "-", "safety"))
+    table = table[[*(name for name in table if name != "excluded_by"), "excluded_by"]]
     if least and least not in table:
         table[least] = _by_roller(solved, solved.quantity(least)[0])
-    return _ranked(table, least, at_loads, overload)
+    return replace(_ranked(table, least, at_loads, overload), ratios=ratios)
 
 
 def _by_roller(results: Results, values: np.ndarray) -> list[Any]:
@@ -407,18 +454,23 @@ def _without_unknown_lives(table: pd.DataFrame, results: Results) -> pd.DataFram
     return table
 
 
-def _with_overload(table: pd.DataFrame, results: Results) -> pd.DataFrame:
+def _with_overload(table: pd.DataFrame, results: Results, safety: float) -> pd.DataFrame:
     """Return the table with what becomes of each roller at the forces times the safety."""
     rows = _answer_rows(results).reindex(table.index)
+    lacks = np.zeros(len(table), dtype=bool)
+    if "load_ratio" in table:
+        lacks = (table["load_ratio"] < safety * (1.0 - EXACT)).to_numpy()
     found = []
-    for holds, judged, of, exceeded in rows[["holds", "judged", "of", "exceeded"]].itertuples(
-        index=False
-    ):
-        if exceeded:  # by a second model too, such as a catalogue
-            found.append(str(exceeded))
-        elif holds == of:
+    for place, name in enumerate(table.index):
+        row = rows.loc[name]
+        if row["exceeded"]:  # by a second model too, such as a catalogue
+            found.append(str(row["exceeded"]))
+        elif lacks[place]:
+            ends, ratio = table.loc[name, ["load_ends", "load_ratio"]]
+            found.append(f"{ends} at {ratio:.3g} times the forces")
+        elif row["holds"] == row["of"]:
             found.append("held")
-        elif judged == of:
+        elif row["judged"] == row["of"]:
             found.append("does not roll")
         else:
             found.append("not judged")
