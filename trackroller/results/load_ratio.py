@@ -9,8 +9,9 @@ ASSUME: of the conditions of a roller, the one that uses most of a limit reaches
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -21,7 +22,9 @@ from trackroller.damage.limit import worst
 from trackroller.materials import MaterialDatabase
 from trackroller.parameters import BODIES, REGIMES
 from trackroller.results.margins import YIELD
+from trackroller.roller.case import Case
 from trackroller.roller.settings import LOADS
+from trackroller.roller.solver import solve
 from trackroller.study.file.study import Study
 from trackroller.study.solve_chunk import solve_cases
 from trackroller.study.store.fingerprint import StudyCases
@@ -95,9 +98,39 @@ def load_ratios(study: Study, factor: str) -> LoadRatios:
     cases = StudyCases(study)
     options, group = cases.options
     labels = study.drawn.columns[factor][cases.rows]
-    levels = list(study.parsed[factor].levels)
-    solver = _Solver(cases.design, options, group, study.materials)
-    names, used, bodies = solver.uses(np.arange(len(group)), np.ones(len(group)))
+    solver = _OfDesign(cases.design, options, group, study.materials)
+    return _ratios(solver, labels, list(study.parsed[factor].levels), factor)
+
+
+def load_ratios_of_cases(
+    cases: Sequence[Case],
+    labels: Sequence[str],
+    options: Mapping[str, Any],
+    materials: MaterialDatabase,
+) -> LoadRatios:
+    """Return the load ratios of cases that belong to no study, such as the blocks of a spectrum.
+
+    Parameters
+    ----------
+    cases : sequence of Case
+        The cases.
+    labels : sequence of str
+        Name of what each case is a condition of; the worst case of each name counts.
+    options : mapping
+        Options of the solver.
+    materials : MaterialDatabase
+        The materials.
+    """
+    solver = _OfCases(list(cases), options, materials)
+    levels = list(dict.fromkeys(labels))
+    return _ratios(solver, np.array(labels, dtype=object), levels, "roller")
+
+
+def _ratios(solver: _Solver, labels: np.ndarray, levels: list[Any], name: str) -> LoadRatios:
+    """Return the load ratios of the worst case of each level; `labels` says of which level a case
+    is, (n,).
+    """
+    names, used, bodies = solver.uses(np.arange(len(labels)), np.ones(len(labels)))
     starts = []
     pairs = []
     for place, level in enumerate(levels):
@@ -108,10 +141,10 @@ def load_ratios(study: Study, factor: str) -> LoadRatios:
                 pairs.append((place, column))
     rows = np.array(starts, dtype=int)
     columns = np.array([column for _, column in pairs], dtype=int)
-    found = solver.sought(rows, columns, names, used[rows, columns])
-    table = pd.DataFrame(np.nan, pd.Index(levels, name=factor), names)
-    of_bodies = pd.DataFrame("", pd.Index(levels, name=factor), names)
-    for (place, column), row, ratio in zip(pairs, rows, found, strict=True):
+    sought = solver.sought(rows, columns, names, used[rows, columns])
+    table = pd.DataFrame(np.nan, pd.Index(levels, name=name), names)
+    of_bodies = pd.DataFrame("", pd.Index(levels, name=name), names)
+    for (place, column), row, ratio in zip(pairs, rows, sought, strict=True):
         table.iloc[place, column] = ratio
         of_bodies.iloc[place, column] = bodies[row, column]
     known = table.notna().any()
@@ -119,20 +152,19 @@ def load_ratios(study: Study, factor: str) -> LoadRatios:
 
 
 class _Solver:
-    """Solve rows of a design with all forces times a ratio."""
+    """Solve rows with all forces times a ratio."""
 
-    def __init__(
-        self,
-        design: xr.Dataset,
-        options: list[dict[str, object]],
-        group: np.ndarray,
-        database: MaterialDatabase,
-    ) -> None:
-        bare = design.drop_vars(list(design.coords)).drop_attrs()
-        self.cases = bare.assign_coords(case=np.arange(len(group)))
-        self.options = options
-        self.group = group
-        self.database = database
+    database: MaterialDatabase
+
+    def solved(
+        self, rows: np.ndarray, ratios: np.ndarray
+    ) -> Iterator[tuple[np.ndarray, xr.Dataset]]:
+        """Yield places in `rows` with the results there, along `case`."""
+        raise NotImplementedError
+
+    def material(self, body: str, row: int) -> Any:
+        """Return the material of a body in a row, as a case has it."""
+        raise NotImplementedError
 
     def uses(
         self, rows: np.ndarray, ratios: np.ndarray
@@ -143,26 +175,12 @@ class _Solver:
         A utilisation is NaN where it is not known, and in a case that failed.
         """
         frames = []
-        for places, solved in self._solved(rows, ratios):
+        for places, solved in self.solved(rows, ratios):
             values, bodies = self._of_solved(solved, rows[places])
             index = pd.Index(places)
             frames.append((values.set_axis(index), bodies.set_axis(index)))
         used, worse = (pd.concat(parts).sort_index() for parts in zip(*frames, strict=True))
         return list(used.columns), used.to_numpy(dtype=float), worse.to_numpy()
-
-    def _solved(
-        self, rows: np.ndarray, ratios: np.ndarray
-    ) -> Iterator[tuple[np.ndarray, xr.Dataset]]:
-        """Yield places in `rows` with the results there, for each set of options."""
-        for number, settings in enumerate(self.options):
-            places = np.flatnonzero(self.group[rows] == number)
-            if not len(places):
-                continue
-            part = self.cases.isel(case=rows[places])
-            loaded = {name: part[name] * ratios[places] for name in FORCES}
-            part = part.assign(loaded).assign_coords(case=np.arange(len(places)))
-            part = part.assign_attrs(options=json.dumps(settings))
-            yield places, solve_cases(part, self.database)
 
     def _of_solved(self, solved: xr.Dataset, rows: np.ndarray) -> tuple[pd.DataFrame, pd.DataFrame]:
         """Return the utilisation by each limit of some rows, and the body that has it."""
@@ -185,8 +203,8 @@ class _Solver:
 
     def _strengths(self, body: str, rows: np.ndarray) -> np.ndarray:
         """Return the tensile strength of a body in some rows, (n,) [MPa]."""
-        names = self.cases[f"{body}_material"].values[rows]
-        return np.array([self.database.material(name).tensile_strength for name in names])
+        materials = [self.database.material(self.material(body, row)) for row in rows.tolist()]
+        return np.array([material.tensile_strength for material in materials])
 
     def sought(
         self, rows: np.ndarray, columns: np.ndarray, names: list[str], used: np.ndarray
@@ -229,3 +247,64 @@ class _Solver:
             out[own[far]] = np.inf
             is_open[own[done | far | np.isnan(new)]] = False
         return out
+
+
+class _OfDesign(_Solver):
+    """Solve rows of the design of a study."""
+
+    def __init__(
+        self,
+        design: xr.Dataset,
+        options: list[dict[str, Any]],
+        group: np.ndarray,
+        database: MaterialDatabase,
+    ) -> None:
+        bare = design.drop_vars(list(design.coords)).drop_attrs()
+        self.cases = bare.assign_coords(case=np.arange(len(group)))
+        self.options = options
+        self.group = group
+        self.database = database
+
+    def solved(
+        self, rows: np.ndarray, ratios: np.ndarray
+    ) -> Iterator[tuple[np.ndarray, xr.Dataset]]:
+        """Yield the results for each set of options."""
+        for number, settings in enumerate(self.options):
+            places = np.flatnonzero(self.group[rows] == number)
+            if not len(places):
+                continue
+            part = self.cases.isel(case=rows[places])
+            loaded = {name: part[name] * ratios[places] for name in FORCES}
+            part = part.assign(loaded).assign_coords(case=np.arange(len(places)))
+            part = part.assign_attrs(options=json.dumps(settings))
+            yield places, solve_cases(part, self.database)
+
+    def material(self, body: str, row: int) -> Any:
+        """Return the name of the material of a body in a row."""
+        return self.cases[f"{body}_material"].values[row]
+
+
+class _OfCases(_Solver):
+    """Solve cases that share their options."""
+
+    def __init__(
+        self, cases: list[Case], options: Mapping[str, Any], database: MaterialDatabase
+    ) -> None:
+        self.cases = cases
+        self.options = options
+        self.database = database
+
+    def solved(
+        self, rows: np.ndarray, ratios: np.ndarray
+    ) -> Iterator[tuple[np.ndarray, xr.Dataset]]:
+        """Yield all results at once."""
+        loaded = []
+        for row, ratio in zip(rows.tolist(), ratios.tolist(), strict=True):
+            case = self.cases[row]
+            forces = {name: ratio * float(getattr(case, name)) for name in FORCES}
+            loaded.append(replace(case, **forces))
+        yield np.arange(len(rows)), solve(loaded, database=self.database, **self.options)
+
+    def material(self, body: str, row: int) -> Any:
+        """Return the material of a body in a row."""
+        return getattr(self.cases[row], f"{body}_material")
