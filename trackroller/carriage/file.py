@@ -29,7 +29,7 @@ from trackroller.numerics.numbers import number_in, number_or_nan
 from trackroller.numerics.plain import mapping_of
 from trackroller.numerics.units import split_quantity
 from trackroller.parameters import MATERIAL_FIELDS
-from trackroller.roller.aliases import ALIASES
+from trackroller.roller.aliases import OTHER_OPTIONS, WRITTEN, with_options
 from trackroller.roller.case import Case
 from trackroller.roller.duty import (
     STROKES,
@@ -45,7 +45,7 @@ from trackroller.yaml_file import errors_by_line, parse_mapping
 
 FILE_FIELDS = (
     *("name", "description", "mass", "payloads", "drive", "rollers", "preload", "cases"),
-    *("distance", "duty"),
+    *("distance", "duty", "failure_probability"),
 )
 ROLLER_FIELDS = (
     "at",
@@ -72,6 +72,7 @@ CASE_FIELDS = (
     ),
 )
 KINDS = ("locating", "floating")
+CHANCE = "failure_probability"  # option that a carriage states for all of its rollers
 OF_LOADS = (*LOADS, "velocity")  # parameters of a roller that its carriage gives
 SQUARE = 1e-6  # largest cosine between directions that count as perpendicular
 # of the distance: rollers of a pair press against each other if they are off their line by less
@@ -287,7 +288,7 @@ def load_carriage(source: Path | str | Mapping[str, Any]) -> Carriage:
     path = Path(source)
     text = read_text(path, "carriage file")
     values = parse_mapping(text, str(path))
-    with errors_by_line(text, aliases=ALIASES), files_beside(path):
+    with errors_by_line(text, aliases=WRITTEN), files_beside(path):
         return carriage_of({"name": path.stem} | values)
 
 
@@ -314,7 +315,7 @@ def written_out(source: Path | str | Mapping[str, Any], field: str = "carriage")
     if not isinstance(values, Mapping):
         path = find_beside(str(source), field)
         text = read_text(path, "carriage file")
-        with errors_by_line(text, file=str(path), aliases=ALIASES), files_beside(path):
+        with errors_by_line(text, file=str(path), aliases=WRITTEN), files_beside(path):
             values = {"name": path.stem} | parse_mapping(text, str(path))
             return written_out(values, field)
     whole = carriage_of(values)
@@ -350,7 +351,9 @@ def carriage_of(values: Mapping[str, Any]) -> Carriage:
     wrong = Collector()
     fields: dict[str, Any] = {}
     with wrong.part():
-        check_names("carriage: key", values, FILE_FIELDS)
+        values = with_options(values)
+    with wrong.part():
+        check_names("carriage: key", values, (*FILE_FIELDS, *OTHER_OPTIONS))
     for key, read in (
         ("mass", lambda value: _mass(value, "mass")),
         (
@@ -378,6 +381,9 @@ def carriage_of(values: Mapping[str, Any]) -> Carriage:
         if values.get("preload") is not None:
             fields["preloads"] = _preloads(values["preload"], fields["rollers"])
     with wrong.part():
+        if values.get(CHANCE) is not None:
+            fields["rollers"] = _with_chance(fields["rollers"], values[CHANCE])
+    with wrong.part():
         check_curves(fields["cases"], fields["rollers"])
     with wrong.part():
         if is_of_strokes(fields.get("duty")):
@@ -390,6 +396,29 @@ def carriage_of(values: Mapping[str, Any]) -> Carriage:
         fields["description"] = text_of(values.get("description"), "description", lines=True)
     wrong.check()
     return Carriage(**fields)
+
+
+def _with_chance(rollers: Sequence[MountedRoller], value: Any) -> tuple[MountedRoller, ...]:
+    """Return the rollers with the failure probability of their carriage; refuse a file of a roller
+    that states another one.
+    """
+    chance = number_in(value, CHANCE, "a share between 0 and 1, such as 5%", 1e-9, 1.0 - 1e-9, "-")
+    wrong = Collector()
+    out = []
+    for roller in rollers:
+        own = roller.options.get(CHANCE)
+        if own is not None and number_or_nan(own) != chance:
+            where = f"rollers.{roller.name}.roller.{CHANCE}"
+            remedy = f"Remove it there: the carriage states {chance:g} for all rollers."
+            wrong.errors.append(
+                InputError(where, own, "one failure probability", remedy, "is another one")
+            )
+        stated = {CHANCE: chance}
+        out.append(
+            replace(roller, options={**roller.options, **stated}, given={**roller.given, **stated})
+        )
+    wrong.check()
+    return tuple(out)
 
 
 def _by_strokes(
@@ -642,7 +671,7 @@ def _read_roller(value: Any, where: str) -> dict[str, Any]:
     path = find_beside(value, where)
     text = read_text(path, "roller file")
     given = parse_mapping(text, str(path))
-    with errors_by_line(text, file=str(path), aliases=ALIASES):
+    with errors_by_line(text, file=str(path), aliases=WRITTEN):
         case, options, beside = checked_case(given)
     return {"case": case, "options": options, "given": given, "required": _required(beside)}
 

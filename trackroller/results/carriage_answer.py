@@ -207,6 +207,7 @@ def answer_of_carriage(ds: xr.Dataset) -> Answer:
             counted="load cases",
             models=[],
             accuracy="",
+            probability=float(ds.attrs.get("failure_probability", math.nan)),
         ),
     )
 
