@@ -42,20 +42,38 @@ class RollerTractions(Tractions):
 
         Contact 2 of a mirrored case repeats the values of contact 1.
         """
+        own = [values(case, contact) for case, contact in zip(*self.solved_patches, strict=True)]
+        return self.of_all_patches(np.array(own, dtype=float).reshape(-1, *shape))
+
+    @property
+    def solved_patches(self) -> tuple[np.ndarray, np.ndarray]:
+        """Return case and contact of each patch that is no mirror image of another, (m,) each."""
         has_patch = np.isfinite(self.x[:, :, 0])
         has_patch[:, 1] &= ~self.mirrored
-        out = np.full((*has_patch.shape, *shape), np.nan)
-        for case, contact in np.argwhere(has_patch).tolist():
-            out[case, contact] = values(case, contact)
+        case, contact = np.nonzero(has_patch)
+        return case, contact
+
+    def of_all_patches(self, values: np.ndarray) -> np.ndarray:
+        """Return values of the `solved_patches`, (m, ...), for each case and contact, (n, contact,
+        ...), as `by_patch`.
+        """
+        out = np.full((*self.x.shape[:2], *values.shape[1:]), np.nan)
+        out[self.solved_patches] = values
         out[self.mirrored, 1] = out[self.mirrored, 0]
         return out
+
+    @property
+    def steps(self) -> tuple[np.ndarray, np.ndarray]:
+        """Return the spacings of the nodes along x and y, (n, contact) each [mm]."""
+        step_x, step_y = (
+            (axis[..., -1] - axis[..., 0]) / (axis.shape[-1] - 1) for axis in (self.x, self.y)
+        )
+        return step_x, step_y
 
     def loads(self, case: int, contact: int) -> PatchLoads:
         """Return the loads of one patch."""
         at = case, contact
-        step_x, step_y = (
-            (axis[-1] - axis[0]) / (axis.size - 1) for axis in (self.x[at], self.y[at])
-        )
+        step_x, step_y = (float(step[at]) for step in self.steps)
         return PatchLoads(
             np.stack([self.shear_lateral[at], self.shear_rolling[at], self.pressure[at]]),
             step_x,
