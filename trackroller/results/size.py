@@ -183,10 +183,10 @@ def sizing_studies(
         if OVERROLLINGS not in keys["base"] and OVERROLLINGS not in keys["factors"]:
             name = "roller_life_hours"  # nobody knows the hours of the guide
         required = {**(keys.get("requirement") or {}), name: {"min": life}}
-        more: dict[str, Any] = {"requirement": required}
+        added: dict[str, Any] = {"requirement": required}
         if least:
-            more["pareto"] = {least: "min"}
-        studies["life"] = keys | more
+            added["pareto"] = {least: "min"}
+        studies["life"] = keys | added
     if safety is not None:
         studies[OVERLOAD] = _overloaded(keys, safety)
     checked = {kind: _checked(own, shelf) for kind, own in studies.items()}
@@ -410,24 +410,24 @@ def _without_unknown_lives(table: pd.DataFrame, results: Results) -> pd.DataFram
 def _with_overload(table: pd.DataFrame, results: Results) -> pd.DataFrame:
     """Return the table with what becomes of each roller at the forces times the safety."""
     rows = _answer_rows(results).reindex(table.index)
-    found = []
+    texts = []
     for holds, judged, of, exceeded in rows[["holds", "judged", "of", "exceeded"]].itertuples(
         index=False
     ):
         if exceeded:  # by a second model too, such as a catalogue
-            found.append(str(exceeded))
+            texts.append(str(exceeded))
         elif holds == of:
-            found.append("held")
+            texts.append("held")
         elif judged == of:
-            found.append("does not roll")
+            texts.append("does not roll")
         else:
-            found.append("not judged")
-    table = table.assign(overload=found)
-    held = table["overload"] == "held"
+            texts.append("not judged")
+    table = table.assign(overload=texts)
+    is_held = table["overload"] == "held"
     unknown = table["overload"] == "not judged"
-    verdict = np.where(held, table["verdict"], np.where(unknown, VERDICTS[1], VERDICTS[2]))
+    verdict = np.where(is_held, table["verdict"], np.where(unknown, VERDICTS[1], VERDICTS[2]))
     table["verdict"] = np.where(table["verdict"] == VERDICTS[2], VERDICTS[2], verdict)
-    added = [f"overload: {text}" if text not in ("held", "not judged") else "" for text in found]
+    added = [f"overload: {text}" if text not in ("held", "not judged") else "" for text in texts]
     both = zip(table["excluded_by"], added, strict=True)
     return table.assign(excluded_by=["; ".join(filter(None, pair)) for pair in both])
 
@@ -439,15 +439,15 @@ def _ranked(
     longer life.
     """
     place = [VERDICTS.index(word) for word in table["verdict"]]
-    wanted = np.zeros(len(table))
+    priority = np.zeros(len(table))
     unranked: tuple[str, ...] = ()
     if least:
-        wanted = table[least].to_numpy(dtype=float)
-        unranked = tuple(str(name) for name in table.index[np.isnan(wanted)])
+        priority = table[least].to_numpy(dtype=float)
+        unranked = tuple(str(name) for name in table.index[np.isnan(priority)])
     life = np.zeros(len(table))
     if "life_hours" in table:
         life = np.nan_to_num(table["life_hours"].to_numpy(dtype=float), nan=-1.0)
-    keys = (-life, np.where(np.isnan(wanted), np.inf, wanted), np.array(place))
+    keys = (-life, np.where(np.isnan(priority), np.inf, priority), np.array(place))
     order = np.lexsort(keys)
     table = table.iloc[order].reset_index()
     enough = table[(table["verdict"] == VERDICTS[0]) & ~table[ROLLER].isin(unranked)]
