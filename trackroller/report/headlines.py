@@ -108,12 +108,12 @@ class Headline:
     """A headline: the answer itself, and what follows it."""
 
     lead: str
-    rest: str = ""
+    ending: str = ""
 
     @property
     def text(self) -> str:
         """Return the whole headline."""
-        return self.lead + self.rest
+        return self.lead + self.ending
 
 
 def headline_of(answer: Answer) -> Headline:
@@ -173,10 +173,10 @@ def _either(answer: Answer) -> str:
 
 
 def _none(answer: Answer) -> str:
-    wanted = _wanted(answer.required)
+    verb = _verb_of_requirement(answer.required)
     lead = "None holds every condition"
-    if wanted:
-        lead = f"None {wanted}"
+    if verb:
+        lead = f"None {verb}"
     nearest = answer.headline.get("nearest")
     if nearest:
         return f"{lead}; nearest {_name(answer, nearest['name'])}"
@@ -184,16 +184,16 @@ def _none(answer: Answer) -> str:
 
 
 def _measure(answer: Answer) -> str:
-    asked = answer.headline.get("measure")
-    if not asked:
+    measure = answer.headline.get("measure")
+    if not measure:
         return f"Open whether {_leader(answer)} meets it"
     of = ""
-    if asked.get("of"):
-        of = f" of {asked['of']}"
+    if measure.get("of"):
+        of = f" of {measure['of']}"
     on = ""
-    if asked.get("on"):
-        on = f" on {asked['on']}"
-    return f"Measure the {plain(asked['what'])}{of}{on}"
+    if measure.get("on"):
+        on = f" on {measure['on']}"
+    return f"Measure the {plain(measure['what'])}{of}{on}"
 
 
 def _give(answer: Answer) -> str:
@@ -294,13 +294,13 @@ def _tenth(answer: Answer) -> str:
 def _shares(answer: Answer) -> list[str]:
     """Return the share of the drawn conditions that meets the requirement."""
     head = answer.headline
-    said = (
+    share = (
         f"{_share(head)} of {head['n']:,} drawn conditions {_reach(answer.required)}{_beyond(head)}"
     )
-    wanted = []
+    notes = []
     if _known(head, "wanted"):
-        wanted = [f"{percent(head['wanted'])} are wanted"]
-    return [said, *wanted, *_other_rules(head)]
+        notes = [f"{percent(head['wanted'])} are wanted"]
+    return [share, *notes, *_other_rules(head)]
 
 
 def _up_to(answer: Answer) -> list[str]:
@@ -343,13 +343,13 @@ def _reached(near: Mapping[str, Any]) -> list[str]:
 
 def _turn(head: Mapping[str, Any]) -> list[str]:
     """Return where a placeholder turns the answer."""
-    asked = head.get("measure")
-    if not asked or not _known(asked, "turn"):
+    measure = head.get("measure")
+    if not measure or not _known(measure, "turn"):
         return []
     units = ""
-    if asked.get("units") not in (None, "", "1", "-"):
-        units = f" {unit_text(asked['units'])}"
-    return [f"the answer turns at {grouped(asked['turn'], 2)}{units}"]
+    if measure.get("units") not in (None, "", "1", "-"):
+        units = f" {unit_text(measure['units'])}"
+    return [f"the answer turns at {grouped(measure['turn'], 2)}{units}"]
 
 
 def how_sure(answer: Answer) -> Headline:
@@ -359,10 +359,10 @@ def how_sure(answer: Answer) -> Headline:
         return Headline(_cannot_tell(answer), ".")
     if _known(head, "share"):
         lead = f"{_share(head)} of the {head['n']:,} drawn conditions {_reach(answer.required)}"
-        wanted = []
+        notes = []
         if _known(head, "wanted"):
-            wanted = [f"{percent(head['wanted'])} are wanted"]
-        clauses = [*wanted, *_worst(answer), *_other_rules(head)]
+            notes = [f"{percent(head['wanted'])} are wanted"]
+        clauses = [*notes, *_worst(answer), *_other_rules(head)]
         end = "."
         if clauses:
             end = f"; {'; '.join(clauses)}."
@@ -515,18 +515,18 @@ def _without_design(answer: Answer) -> Headline:
 
 def _front(answer: Answer, designs: Sequence[Mapping[str, Any]]) -> Headline:
     count = {1: "one design", 2: "two designs"}.get(len(designs), "three designs")
-    said = []
+    texts = []
     for design in designs[:3]:
         knee = ""
         if design.get("at") == "knee":
             knee = " (knee)"
         goals = ", ".join(_goal(one, units_only=True) for one in design["goals"])
-        said.append(f"{goals}{knee}")
+        texts.append(f"{goals}{knee}")
     stopped = [design for design in designs if design.get("stopped")]
     tail = {0: "", 1: "; the search stopped before one corner"}.get(
         len(stopped), "; the search stopped before both corners"
     )
-    return Headline(f"No requirement, {count}", f": {'; '.join(said)}{tail}.")
+    return Headline(f"No requirement, {count}", f": {'; '.join(texts)}{tail}.")
 
 
 def _goal(goal: Mapping[str, Any], units_only: bool = False) -> str:
@@ -564,8 +564,8 @@ def _ends(head: Mapping[str, Any]) -> list[str]:
         if of > 1:
             whole = "every case"
         return [f"{_end(ends[0])} ends {whole}"]
-    said = [f"{_end(one)} ends {one['count']:,}" for one in ends[:3]]
-    return [f"{', '.join(said)} of {of:,} cases"]
+    texts = [f"{_end(one)} ends {one['count']:,}" for one in ends[:3]]
+    return [f"{', '.join(texts)} of {of:,} cases"]
 
 
 def _end(end: Mapping[str, Any]) -> str:
@@ -643,10 +643,10 @@ def _open_limits(head: Mapping[str, Any]) -> list[str]:
     if not listed:
         return []
     named = ", ".join(_limit_of(one) for one in listed[:2])
-    more = ""
+    further = ""
     if len(listed) > 2:
-        more = f" and {len(listed) - 2} more"
-    return [f"open by placeholders: {named}{more}"]
+        further = f" and {len(listed) - 2} more"
+    return [f"open by placeholders: {named}{further}"]
 
 
 def _unknown_hours(answer: Answer) -> list[str]:
@@ -708,17 +708,17 @@ def _breaks(answer: Answer) -> Headline:
 def _skids(answer: Answer) -> Headline:
     """Say between which motor forces the roller rolls."""
     head = answer.headline
-    rest = [
+    others = [
         f"friction transmits {grouped(head['motor_low'], 3)} to {grouped(head['motor_high'], 3)} N"
     ]
     if not math.isfinite(head["motor_low"] + head["motor_high"]):
-        rest = ["the motor force exceeds what friction transmits"]
+        others = ["the motor force exceeds what friction transmits"]
     if answer.kind == "skids" and math.isfinite(head["low"]):
-        rest.append(f"{_roller_life(answer)}{_first_limits(head)}")
+        others.append(f"{_roller_life(answer)}{_first_limits(head)}")
     if head["exceeded"]:
         worst = head["exceeded"][0]
-        rest.append(f"{_limit_of(worst)} exceeded ({percent(worst['use'])})")
-    return Headline("The roller skids", f": {'; '.join(rest)}.")
+        others.append(f"{_limit_of(worst)} exceeded ({percent(worst['use'])})")
+    return Headline("The roller skids", f": {'; '.join(others)}.")
 
 
 def spectrum(answer: Answer) -> Headline:
@@ -887,12 +887,11 @@ def _exceeded_in_blocks(listed: Sequence[Mapping[str, Any]]) -> list[str]:
     use = ""
     if worst["use"] is not None and math.isfinite(worst["use"]):
         use = f" ({percent(worst['use'])})"
-    more = ""
+    further = ""
     if len(listed) > 1:
-        more = f" and {len(listed) - 1} more"
-    return [
-        f"{_limit_of(worst)} exceeded{use} in {listing(list(worst['blocks'])[:MOST_NAMES])}{more}"
-    ]
+        further = f" and {len(listed) - 1} more"
+    blocks = listing(list(worst["blocks"])[:MOST_NAMES])
+    return [f"{_limit_of(worst)} exceeded{use} in {blocks}{further}"]
 
 
 STOPS: dict[str, Callable[[Answer], Headline]] = {  # kinds of one roller without a usual life
@@ -1177,7 +1176,7 @@ def _reach(required: Sequence[Required]) -> str:
     return f"reach {_amount(one, one.least)}"
 
 
-def _wanted(required: Sequence[Required]) -> str:
+def _verb_of_requirement(required: Sequence[Required]) -> str:
     """Return the verb of one candidate that meets a requirement: 'reaches 5,000 h'; '' without a
     requirement.
     """

@@ -257,9 +257,9 @@ class Life(float):
 
     def __new__(cls, value: float, beyond: bool = False) -> Life:
         """Return the life, marked if it lies beyond the S-N data."""
-        made = super().__new__(cls, value)
-        made.beyond = bool(beyond)
-        return made
+        life = super().__new__(cls, value)
+        life.beyond = bool(beyond)
+        return life
 
 
 def count(cases: int) -> str:

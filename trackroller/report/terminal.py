@@ -20,9 +20,9 @@ def room() -> int:
     """Return the letters of a line: COLUMNS, else those of the terminal; a file or a pipe has no
     limit.
     """
-    asked = os.environ.get("COLUMNS", "").lstrip("0")
+    columns = os.environ.get("COLUMNS", "").lstrip("0")
     # not `Console.is_terminal`: that is true for a file, too, where FORCE_COLOR asks for colours
-    if asked.isdigit() or sys.stdout.isatty():
+    if columns.isdigit() or sys.stdout.isatty():
         return Console().width
     return WIDE
 
@@ -70,9 +70,9 @@ def print_table(
         table = Table(title=heading, title_justify="left")
         spare = width - 1 - sum(least[i] + FRAME for i in own)
         for i in own:
-            more = max(0, min(spare, max(map(len, columns[i])) - least[i]))
-            spare -= more
-            table.add_column(heads[i], width=least[i] + more, overflow="fold")
+            extra = max(0, min(spare, max(map(len, columns[i])) - least[i]))
+            spare -= extra
+            table.add_column(heads[i], width=least[i] + extra, overflow="fold")
             table.columns[-1].justify = "left"
             if i in right:
                 table.columns[-1].justify = "right"

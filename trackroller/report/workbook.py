@@ -143,17 +143,17 @@ def _rows_sheet(answer: Answer) -> Table:
 def _sheet_of(name: str, title: str, table: pd.DataFrame, columns: Sequence[Column]) -> Table:
     """Return the rows of a table of a record as a sheet."""
     names = [one for column in columns for one in (column.name, column.until) if one]
-    kept = [one for one in dict.fromkeys(names) if one in table]
-    values = [table[one].astype(object).tolist() for one in kept]
-    return Table(name, title, kept, [list(row) for row in zip(*values, strict=True)])
+    names_kept = [one for one in dict.fromkeys(names) if one in table]
+    values = [table[one].astype(object).tolist() for one in names_kept]
+    return Table(name, title, names_kept, [list(row) for row in zip(*values, strict=True)])
 
 
 def _further_sheets(answer: Answer) -> list[Table]:
     """Return definitions of the columns, effects, ends and warnings."""
     heads = ["column", "title", "unit", "kind", "until", "definition"]
     every = [*answer.columns, *(one for part in answer.parts for one in part.columns)]
-    told = [[one.name, one.title, one.units, one.kind, one.until, one.meaning] for one in every]
-    sheets = [Table("columns", "Columns", heads, told)]
+    meanings = [[one.name, one.title, one.units, one.kind, one.until, one.meaning] for one in every]
+    sheets = [Table("columns", "Columns", heads, meanings)]
     sheets += [_sheet_of(part.name, part.title, part.table, part.columns) for part in answer.parts]
     effects = [
         [
@@ -274,17 +274,17 @@ def write_roller(ds: xr.Dataset, path: Path) -> Path:
     known = parts_in(
         ds, (str(name) for name, v in ds.data_vars.items() if v.dtype.kind in "fiu"), ()
     )
-    found = [
+    numbers = [
         (name, part.words, part.values(ds).item())
         for name, part in known.items()
         if "limit" not in part.at
     ]
-    told = [
+    meanings = [
         [name, words, in_words(name, [value])[0], unit_of(name)]
-        for name, words, value in found
+        for name, words, value in numbers
         if value == value
     ]
-    sheets.append(Table("results", "Results", ["result", "meaning", "value", "unit"], told))
+    sheets.append(Table("results", "Results", ["result", "meaning", "value", "unit"], meanings))
     answer = answer_of_roller(ds)
     limits = _rows_sheet(answer)
     sheets.append(Table("limits", "Limits", limits.heads, limits.rows))

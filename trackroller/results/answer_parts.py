@@ -80,7 +80,7 @@ def checks_left_out(results: SolvedCases) -> dict[str, tuple[str, ...]]:
     A limit is checked for a body if its life, or of a limit without lives its use, is known in
     every valid row. A limit that is known in some of the rows is listed with their number.
     """
-    found: dict[str, list[str]] = {body: [] for body in BODIES}
+    checks: dict[str, list[str]] = {body: [] for body in BODIES}
     rows = results.of_one_model(results.inside)
     if not rows.any():
         rows = results.of_one_model()
@@ -93,10 +93,10 @@ def checks_left_out(results: SolvedCases) -> dict[str, tuple[str, ...]]:
                 continue
             hit = known.get(name, np.zeros((len(rows), len(BODIES)), dtype=bool))[rows, place]
             if not hit.any():
-                found[body].append(limit.word)
+                checks[body].append(limit.word)
             elif not hit.all():
-                found[body].append(f"{limit.word} ({int((~hit).sum()):,} of {len(hit):,} cases)")
-    return {body: tuple(names) for body, names in found.items()}
+                checks[body].append(f"{limit.word} ({int((~hit).sum()):,} of {len(hit):,} cases)")
+    return {body: tuple(names) for body, names in checks.items()}
 
 
 def _known(results: SolvedCases) -> dict[str, np.ndarray]:
@@ -147,14 +147,14 @@ def given_for_nothing(results: SolvedCases) -> dict[str, str]:
 
 def not_given_words(results: SolvedCases) -> dict[str, str]:
     """Return the values that nobody gave, with their units."""
-    found = {}
+    words = {}
     for name in names_not_given(results.data.attrs):
         if name in results.factors or name in results.derived or name in ABSENT:
             continue
         value = results.base.get(name)
         if value is not None and not (isinstance(value, float) and np.isnan(value)):
-            found[name] = level_text(name, value)
-    return found
+            words[name] = level_text(name, value)
+    return words
 
 
 def lost_by_missing_input(own: Comparison) -> str:
@@ -174,10 +174,10 @@ def lost_by_missing_input(own: Comparison) -> str:
             # more axial force is no remedy for a drive that friction cannot transmit
             lost &= ~skids
         hopeless = lost & own.unreachable
-        if not own.ranges.held.any():
+        if not own.ranges.holds.any():
             hopeless = lost
-        wanted = bool(own.required) and hopeless.any()
-        if wanted or lost.sum() >= MANY * own.own.sum():
+        is_open = bool(own.required) and hopeless.any()
+        if is_open or lost.sum() >= MANY * own.own.sum():
             return name
     return ""
 
@@ -199,20 +199,20 @@ def cautions(own: Comparison, shown: pd.DataFrame, named: int = 1) -> tuple[Caut
     shown : table of the answer, the leader first
     named : number of the first rows that the headline names; 0 for none
     """
-    found = [*case_cautions(own.results, own.ranges, own.own)]
+    listed = [*case_cautions(own.results, own.ranges, own.own)]
     if "second_state" in shown and own.required:
         turned = (shown["second_state"] != "") & (shown["second_state"] != shown["state"])
         if turned.iloc[1:].any():
             words = ", ".join(dict.fromkeys(shown["second"][turned]))
-            found.append(
+            listed.append(
                 Caution("second_model", int(turned.sum()), len(shown), words, "candidates")
             )
     edges = [edge for edge in shown["edge"].iloc[:named] if edge]
     if edges:
-        found.append(
+        listed.append(
             Caution("at_end", len(edges), named, _edge_text(own, shown, edges[0]), "candidates")
         )
-    return (*found, *_unlike(own, shown))
+    return (*listed, *_unlike(own, shown))
 
 
 def _edge_text(own: Comparison, shown: pd.DataFrame, edge: str) -> str:
@@ -239,9 +239,9 @@ def case_cautions(results: SolvedCases, ranges: CaseRanges, rows: np.ndarray) ->
     ranges : the output that the answer is about
     rows : the cases of the answer, shape (n,) bool
     """
-    found = []
+    listed = []
     total = int(rows.sum())
-    lost = rows & ~ranges.held & ranges.judged
+    lost = rows & ~ranges.holds & ranges.judged
     unknown = rows & ~ranges.judged
     for code, hit in (("not_held", lost), ("not_judged", unknown)):
         if hit.any():
@@ -254,24 +254,24 @@ def case_cautions(results: SolvedCases, ranges: CaseRanges, rows: np.ndarray) ->
             where = where_text(results, hit, rows)
             if where:
                 counts = f"{counts}: {where}"
-            found.append(Caution(code, int(hit.sum()), total, counts))
+            listed.append(Caution(code, int(hit.sum()), total, counts))
     beyond = ranges.beyond & rows
     if is_life(ranges.output[0]) and beyond.any():
-        found.append(
+        listed.append(
             Caution(
                 "extrapolated", int(beyond.sum()), total, "life beyond the data of its S-N line"
             )
         )
-    beyond_table = results.flagged("wear_extrapolated") & rows & ranges.held
+    beyond_table = results.flagged("wear_extrapolated") & rows & ranges.holds
     if beyond_table.any():
         where = "wear beyond the table of its energy law"
-        found.append(Caution("extrapolated", int(beyond_table.sum()), total, where))
-    worn = _outlives_groove(results, ranges.output[0]) & rows & ranges.held
+        listed.append(Caution("extrapolated", int(beyond_table.sum()), total, where))
+    worn = _outlives_groove(results, ranges.output[0]) & rows & ranges.holds
     if worn.any():
-        found.append(Caution("worn", int(worn.sum()), total, "the groove changes within the life"))
+        listed.append(Caution("worn", int(worn.sum()), total, "the groove changes within the life"))
     words = not_given_words(results)
     if words:
-        found.append(
+        listed.append(
             Caution(
                 "not_given",
                 total,
@@ -279,7 +279,7 @@ def case_cautions(results: SolvedCases, ranges: CaseRanges, rows: np.ndarray) ->
                 _listed(f"{long_name_of(n)} {v}" for n, v in words.items()),
             )
         )
-    return [*found, *friction_cautions(results.data.attrs)]
+    return [*listed, *friction_cautions(results.data.attrs)]
 
 
 def _outlives_groove(results: SolvedCases, output: str) -> np.ndarray:
@@ -305,10 +305,10 @@ def _listed(texts: Iterable[str]) -> str:
 
 def _unlike(own: Comparison, shown: pd.DataFrame) -> list[Caution]:
     """Return the warnings that candidates differ in their loads, their samples or their scatter."""
-    found = []
+    listed = []
     if own.drawn and shown["n"].nunique() > 1:
         sizes = ", ".join(str(size) for size in shown["n"].head(NAMED_LEVELS))
-        found.append(
+        listed.append(
             Caution(
                 "unlike", len(shown), len(shown), f"sample sizes: {sizes} conditions", "candidates"
             )
@@ -318,7 +318,7 @@ def _unlike(own: Comparison, shown: pd.DataFrame) -> list[Caution]:
         words = _listed(
             f"{long_name_of(name)} by up to {100 * share:.2g} %" for name, share in loads.items()
         )
-        found.append(
+        listed.append(
             Caution(
                 "unlike",
                 own.count,
@@ -328,21 +328,21 @@ def _unlike(own: Comparison, shown: pd.DataFrame) -> list[Caution]:
             )
         )
     if own.count > 1 and not own.matched and not own.drawn and own.conditions:
-        found.append(
+        listed.append(
             Caution(
                 "unlike", own.count, own.count, "candidates have other conditions", "candidates"
             )
         )
-    return found
+    return listed
 
 
 def _unequal_loads(own: Comparison) -> Mapping[str, float]:
     """Return the loads that differ between candidates in the same condition by more than a
     hundredth.
     """
-    found: dict[str, float] = {}
+    ratios: dict[str, float] = {}
     if not own.matched or own.count < 2:
-        return found
+        return ratios
     for name in LOADS:
         if name in own.results.factors or name not in own.results.table:
             continue
@@ -356,5 +356,5 @@ def _unequal_loads(own: Comparison) -> Mapping[str, float]:
         known = (most > 0) & np.isfinite(least)
         apart = float((1.0 - least[known] / most[known]).max(initial=0.0))
         if apart > UNEQUAL:
-            found[name] = apart
-    return found
+            ratios[name] = apart
+    return ratios

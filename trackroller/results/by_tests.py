@@ -59,8 +59,8 @@ def materials_fitted(results: SolvedCases) -> dict[str, StoredFit]:
 
 def options_of(results: SolvedCases) -> dict[str, Any]:
     """Return the options by which the compared cases of a study were solved."""
-    held = {name: results.held_level(name) for name in results.factors if name in OPTION_FACTORS}
-    return {key: value for key, value in results.data.attrs.items() if key in DEFAULTS} | held
+    levels = {name: results.held_level(name) for name in results.factors if name in OPTION_FACTORS}
+    return {key: value for key, value in results.data.attrs.items() if key in DEFAULTS} | levels
 
 
 def not_held(results: SolvedCases) -> dict[str, str]:
@@ -68,7 +68,7 @@ def not_held(results: SolvedCases) -> dict[str, str]:
     with these options.
     """
     used = options_of(results)
-    found = {}
+    reasons = {}
     for name, fit in materials_fitted(results).items():
         other = [
             f"{k} {fit.given[k]}"
@@ -76,8 +76,8 @@ def not_held(results: SolvedCases) -> dict[str, str]:
             if str(used.get(k, DEFAULTS[k])) != fit.given.get(k, used.get(k))
         ]
         if other:
-            found[name] = listing(other)
-    return found
+            reasons[name] = listing(other)
+    return reasons
 
 
 @made_once
@@ -147,17 +147,17 @@ def required(results: SolvedCases) -> ByTests:
     InputError
         If no material of the study was fitted, or the study has other options than a fit.
     """
-    found = materials_fitted(results)
-    if not found:
+    fits = materials_fitted(results)
+    if not fits:
         stored = list(json.loads(str(results.data.attrs.get("materials", "{}"))))
         allowed = "a study with a material that `trackroller fit` wrote"
         remedy = (
             f"Fit {listing(stored, 'or')} to tests, or set material_scatter to true or a number."
         )
         raise InputError("analysis.material_scatter", WANTED, allowed, remedy)
-    for fit in found.values():
+    for fit in fits.values():
         check_same(fit.given, options_of(results), fit.name)
-    return ByTests(results, found)
+    return ByTests(results, fits)
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -348,11 +348,11 @@ class ByTests:
             )
         elif of_first_limit(name):
             if body:
-                kept = [BODIES.index(body)]
+                places = [BODIES.index(body)]
             else:
-                kept = list(range(len(BODIES)))
-            before = self._reached[end][:, :, kept].min(axis=(1, 2))
-            after = self.reached(shift, end)[:, :, kept].min(axis=(1, 2))
+                places = list(range(len(BODIES)))
+            before = self._reached[end][:, :, places].min(axis=(1, 2))
+            after = self.reached(shift, end)[:, :, places].min(axis=(1, 2))
         else:
             return values
         known = np.isfinite(before) & (before > 0) & np.isfinite(values)
@@ -442,33 +442,33 @@ def bands(results: SolvedCases, deviations: Mapping[str, np.ndarray]) -> xr.Data
         `materials` say how many tests the bands rest on, and of which materials.
     """
     own = required(results)
-    wanted = results.config.requirement
+    requirement = results.config.requirement
     words = {
         "tests": str(sum(fit.rows for fit in own.fits.values())),
         "materials": listing(list(own.fits)),
     }
-    columns = _columns(results, list(wanted))
-    found = []
+    columns = _columns(results, list(requirement))
+    parts = []
     for column in columns:
         judged = results.judged_targets.get(column.name)
         sooner = judged is not None and bool(
             (results.valid & (judged < column.values * (1 - SAME_ENDS))).any()
         )
         if not is_life(column.name) or sooner:
-            found.append((math.nan, math.nan))
+            parts.append((math.nan, math.nan))
             continue
         lives, scatter = _drawn_lives(own, column, deviations.get(scattering_body(column.name)))
-        goal = wanted[column.name]
+        goal = requirement[column.name]
         shares = [
             float(
                 hits_of(dataclasses.replace(column, values=lives[:, i]), goal, scatter[:, i]).mean()
             )
             for i in range(DRAWS)
         ]
-        found.append(tuple(np.quantile(shares, BAND)))
+        parts.append(tuple(np.quantile(shares, BAND)))
     out = xr.Dataset()
     if columns:
-        low, high = np.array(found, float).T
+        low, high = np.array(parts, float).T
         attrs = {"units": "1", "long_name": "probability over all cases, 90 % by the tests"} | words
         ends = {"tests_low": ("target", low, attrs), "tests_high": ("target", high, attrs)}
         out = xr.Dataset(ends, {"target": [column.name for column in columns]})
@@ -515,12 +515,12 @@ def _b10_bands(
         else:
             best = given
         for p, rows in enumerate(points):
-            kept = np.arange(design.size)[rows]
-            kept = kept[~np.isnan(known[kept])]
-            if kept.size < 2:
+            counted = np.arange(design.size)[rows]
+            counted = counted[~np.isnan(known[counted])]
+            if counted.size < 2:
                 continue
-            values[0, i, p] = b10(known[kept], best[kept])[0]
-            values[1:, i, p] = np.quantile(b10_of_draws(moved[kept], scatter[kept]), BAND)
+            values[0, i, p] = b10(known[counted], best[counted])[0]
+            values[1:, i, p] = np.quantile(b10_of_draws(moved[counted], scatter[counted]), BAND)
     names = {
         "b10_tests": "life that 90 % reach, with the scatter of the material",
         "b10_tests_low": "its low end, 90 % by the tests",

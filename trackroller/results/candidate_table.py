@@ -318,7 +318,7 @@ def _ends(own: Comparison) -> dict[str, Any]:
         low, high = worse, better
     else:
         low, high = better, worse
-    best = -own.ranges.sign * _least(own, -own.ranges.sign * ranges.better, rows & ranges.held)
+    best = -own.ranges.sign * _least(own, -own.ranges.sign * ranges.better, rows & ranges.holds)
     with np.errstate(invalid="ignore", over="ignore"):
         middle = np.where((low > 0) & (high > 0), np.sqrt(low) * np.sqrt(high), 0.5 * (low + high))
     names = [name for name in own.conditions if own.results.table[name].nunique() > 1]
@@ -334,7 +334,7 @@ def _ends(own: Comparison) -> dict[str, Any]:
         "low": low,
         "high": high,
         "middle": np.where(low == high, low, middle),
-        "median": own.median(ranges.middle, rows & ranges.held),
+        "median": own.median(ranges.middle, rows & ranges.holds),
         "best": best,
         "worst": worst,
         "ends": ends,
@@ -420,7 +420,7 @@ def _counts(own: Comparison) -> dict[str, Any]:
     every = np.ones(len(own.pairs[0]), dtype=bool)
     sure, may = own.met()
     return {
-        "holds": own.counted(own.all_in_pair(own.ranges.held)),
+        "holds": own.counted(own.all_in_pair(own.ranges.holds)),
         "judged": own.counted(own.all_in_pair(own.ranges.judged)),
         "meets": own.counted(own.all_in_pair(sure)),
         "perhaps": own.counted(own.all_in_pair(may)),
@@ -434,9 +434,9 @@ def states_of(own: Comparison, table: pd.DataFrame, exact: bool = False) -> list
 
     Conditions that no candidate holds do not count. `exact` leaves the errors of the solution out.
     """
-    held = table["holds"].to_numpy()
+    holds = table["holds"].to_numpy()
     unjudged = (table["of"] - table["judged"]).to_numpy()
-    never = (held == 0) & (unjudged == 0)
+    never = (holds == 0) & (unjudged == 0)
     if not own.required or (own.drawn and not np.isfinite(own.wanted_share)):
         return ["none" if gone else "" for gone in never]
     if own.drawn:
@@ -496,7 +496,7 @@ def _fails(own: Comparison, table: pd.DataFrame) -> list[str]:
     if own.required:
         good = own.met()[0]
     else:
-        good = own.ranges.held
+        good = own.ranges.holds
     names = [name for name in own.conditions if own.results.table[name].nunique() > 1]
     if own.required:
         good_count = table["meets"]
@@ -523,10 +523,10 @@ def _where(own: Comparison, names: list[str], number: int, good: np.ndarray) -> 
     """
     rows = own.rows[number]
     part = own.results.table.iloc[rows]
-    found = places_of(part, names, ~good[rows], np.ones(len(rows), dtype=bool))
-    few = [place for place in found if len(place) <= MOST_FACTORS]
-    if found and len(few) == len(found):
-        return places_text(found, part)
+    places = places_of(part, names, ~good[rows], np.ones(len(rows), dtype=bool))
+    few = [place for place in places if len(place) <= MOST_FACTORS]
+    if places and len(few) == len(places):
+        return places_text(places, part)
     miss = "too much"
     if own.ranges.rises:
         miss = "too short"
@@ -552,7 +552,7 @@ def _second_models(own: Comparison) -> dict[str, Any]:
     names = [str(name) for name in own.results.data["limit"].values]
     rows = own.own & own.reachable
     if own.drawn:
-        rows = own.own & own.ranges.held
+        rows = own.own & own.ranges.holds
     shortest = np.full(own.count, np.inf)
     longest = np.full(own.count, np.inf)
     which = np.full(own.count, "", dtype=object)
@@ -595,14 +595,14 @@ def _ends_by(own: Comparison, limits: list[str], name: str) -> np.ndarray | None
     if np.isnan(middle[own.own]).all():
         return None
     lacks = lacks_a_body(hours[0], limits, name)
-    found = []
+    ends = []
     for end in hours[1:]:
         if end is None:
             values = middle
         else:
             values = np.where(np.isnan(end[:, place]), middle, end[:, place])
-        found.append(np.where(lacks, np.nan, np.fmin.reduce(values, axis=1)))
-    return np.stack(found)
+        ends.append(np.where(lacks, np.nan, np.fmin.reduce(values, axis=1)))
+    return np.stack(ends)
 
 
 def _second_states(own: Comparison, lives: np.ndarray) -> np.ndarray:
@@ -704,7 +704,7 @@ def names_of(own: Comparison, numbers: list[int]) -> list[dict[str, Any]]:
     Values that all candidates share are left out.
     """
     table = own.members.iloc[numbers]
-    told = [n for n in own.choices if own.members[n].nunique() > 1]
+    varying = [n for n in own.choices if own.members[n].nunique() > 1]
     if len(numbers) > 1:
-        told = [n for n in told if table[n].nunique() > 1] or told
-    return [{name: plain(table[name].iloc[i]) for name in told} for i in range(len(numbers))]
+        varying = [n for n in varying if table[n].nunique() > 1] or varying
+    return [{name: plain(table[name].iloc[i]) for name in varying} for i in range(len(numbers))]

@@ -100,10 +100,10 @@ def _shared(place: np.ndarray, use: np.ndarray) -> np.ndarray:
     pairs = pd.DataFrame({"place": place[rows], "use": use[rows]})
     tried = pairs.drop_duplicates().groupby("use").size()
     shared = tried.index[tried == place.max() + 1].to_numpy()
-    kept = np.isin(use, shared) & (place >= 0)
-    each_once = not pairs[kept[rows]].duplicated().any()
+    in_common = np.isin(use, shared) & (place >= 0)
+    each_once = not pairs[in_common[rows]].duplicated().any()
     if len(shared) >= SHARED and each_once:
-        return kept
+        return in_common
     return np.zeros(len(use), dtype=bool)
 
 
@@ -202,11 +202,11 @@ class Candidates:
             untried = own & ~shared
         design = place
         place = np.where(untried, -1, place)
-        kept = place >= 0
+        counted = place >= 0
         several = place.max() + 1
-        many = len(np.unique(use[kept]))
-        pairs = len(np.unique(place[kept] * (use.max() + 1) + use[kept]))
-        matched = bool(pairs == kept.sum() == several * many)
+        many = len(np.unique(use[counted]))
+        pairs = len(np.unique(place[counted] * (use.max() + 1) + use[counted]))
+        matched = bool(pairs == counted.sum() == several * many)
         return cls(results, choices, conditions, goal, place, matched, untried, design)
 
     @cached_property
@@ -259,7 +259,7 @@ class Candidates:
         have a value.
         """
         rows: np.ndarray = (
-            self.results.held & (self.place >= 0) & ~np.isnan(self.results.column(self.goal[0]))
+            self.results.holds & (self.place >= 0) & ~np.isnan(self.results.column(self.goal[0]))
         )
         return rows
 
@@ -345,13 +345,13 @@ class Candidates:
         if self.goal == FIRST_LIMIT:
             case = self._least(results.sure_life, self.usable)
             key = pd.Series(np.where(case < 0, np.nan, results.sure_life[case]), table.index)
-        held = table["valid"] / table["cases"]
+        share = table["valid"] / table["cases"]
         if self.drawn and self.rising:
             table = table.assign(**self._quantile())
             sure = table["b10"] > 0
             key = table["b10"].where(sure, key)
-            held = held.where(~sure, 2.0)
-        return table, held, key, sign * table["median"]
+            share = share.where(~sure, 2.0)
+        return table, share, key, sign * table["median"]
 
     def cases_of(self, design: int) -> np.ndarray:
         """Return the cases of a row of `table` by its index, shape (n,) bool."""
@@ -442,13 +442,13 @@ class Candidates:
 
 
 def _ranked(
-    table: pd.DataFrame, held: pd.Series, key: pd.Series, middle: pd.Series
+    table: pd.DataFrame, share: pd.Series, key: pd.Series, middle: pd.Series
 ) -> pd.DataFrame:
     """Sort designs by the share of cases that they hold, then by the key, and rank them; equal ones
     tie.
     """
-    order = np.lexsort((-middle.fillna(-np.inf), -key.fillna(-np.inf), -held))
-    shares = held.to_numpy()[order]
+    order = np.lexsort((-middle.fillna(-np.inf), -key.fillna(-np.inf), -share))
+    shares = share.to_numpy()[order]
     keys = key.to_numpy()[order]
     same = np.isclose(shares[1:], shares[:-1], TIED, 0) & np.isclose(
         keys[1:], keys[:-1], TIED, 0, equal_nan=True

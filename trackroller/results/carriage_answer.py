@@ -423,8 +423,8 @@ def _not_given(ds: xr.Dataset) -> Iterator[Caution]:
     """Yield the values of the rollers that nobody gave."""
     words = not_given_values(ds)
     if words:
-        told = ", ".join(f"{long_name_of(name)} {value}" for name, value in words.items())
-        yield Caution("not_given", 1, 1, told, "")
+        text = ", ".join(f"{long_name_of(name)} {value}" for name, value in words.items())
+        yield Caution("not_given", 1, 1, text, "")
 
 
 def _table(ds: xr.Dataset) -> pd.DataFrame:
@@ -515,13 +515,13 @@ def _beside_rolling(own: xr.Dataset) -> str:
     """Return the load cases in which a roller does not roll on both contacts, with the regime."""
     if "roller_regime" not in own:
         return ""
-    found: dict[str, list[str]] = {}
+    names: dict[str, list[str]] = {}
     for code, case in zip(
         own["roller_regime"].values.tolist(), own["load_case"].values, strict=True
     ):
         if code not in (-1, ROLLING):
-            found.setdefault(REGIME_LABELS[code], []).append(str(case))
-    return "; ".join(f"{', '.join(cases)} ({regime})" for regime, cases in found.items())
+            names.setdefault(REGIME_LABELS[code], []).append(str(case))
+    return "; ".join(f"{', '.join(cases)} ({regime})" for regime, cases in names.items())
 
 
 def _parts(ds: xr.Dataset) -> Iterator[Part]:
@@ -607,10 +607,10 @@ def _margins_of(own: xr.Dataset, part: str) -> dict[str, float]:
     """Return the multipliers of a part of the loads in one load case."""
     if f"{part}_to_lift_off" not in own:
         return {f"{part}_{end}": math.nan for end in ENDS}
-    found = {end: float(own[f"{part}_to_{end}"]) for end in ENDS}
-    if found["one_contact"] < found["lift_off"]:
-        found |= {"lift_off": math.nan, "tipping": math.nan}
-    return {f"{part}_{end}": value for end, value in found.items()}
+    margins = {end: float(own[f"{part}_to_{end}"]) for end in ENDS}
+    if margins["one_contact"] < margins["lift_off"]:
+        margins |= {"lift_off": math.nan, "tipping": math.nan}
+    return {f"{part}_{end}": value for end, value in margins.items()}
 
 
 def _warnings(ds: xr.Dataset) -> Iterator[Caution]:
@@ -669,10 +669,10 @@ def _unloaded(ds: xr.Dataset) -> Iterator[Caution]:
         up = (ds["radial_force"].sel(roller=roller) == 0).values
         gap = max(0.0, -float(ds["approach"].sel(roller=roller).max()))
         if up.any() and up[settled].all():
-            told = roller
+            words = roller
             if roller in play:
-                told = f"{roller} ({gap:.3g} mm away from its rail at least)"
-            never.setdefault(roller in play, []).append(told)
+                words = f"{roller} ({gap:.3g} mm away from its rail at least)"
+            never.setdefault(roller in play, []).append(words)
         elif up.any():
             share = 100 * float(ds["share"].values[up].sum())
             lifted.append(
@@ -710,7 +710,7 @@ def _one_contact(ds: xr.Dataset) -> Iterator[Caution]:
 
 def _second_models(ds: xr.Dataset) -> Iterator[Caution]:
     """Yield the second models that rollers exceed, or that end them before their first limit."""
-    told: dict[str, list[str]] = {}
+    lives: dict[str, list[str]] = {}
     for roller in map(str, ds["roller"].values):
         own = ds.sel(roller=roller)
         life = {
@@ -724,12 +724,12 @@ def _second_models(ds: xr.Dataset) -> Iterator[Caution]:
                 and not math.isnan(hours)
             ):
                 text = f"{roller} {100 * used:.3g} % used, {rounded_text(hours)} h"
-                told.setdefault(f"{limit_word(name)} of the {body}", []).append(text)
+                lives.setdefault(f"{limit_word(name)} of the {body}", []).append(text)
         factor, km = _by_catalogue(own)
         if factor > 1 or km < life["life_km"]:
             text = f"{roller} {100 * factor:.3g} % used, {rounded_text(km)} km"
-            told.setdefault(f"{limit_word(catalogue.LIMIT.name)} of the roller", []).append(text)
-    for words, rollers in told.items():
+            lives.setdefault(f"{limit_word(catalogue.LIMIT.name)} of the roller", []).append(text)
+    for words, rollers in lives.items():
         yield Caution(
             "second_model",
             len(rollers),

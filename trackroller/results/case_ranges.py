@@ -150,7 +150,7 @@ class CaseRanges:
         return self.results.without_chance and of_first_limit(self.output[0])
 
     @cached_property
-    def held(self) -> np.ndarray:
+    def holds(self) -> np.ndarray:
         """Return the cases that are held and judged, shape (n,)."""
         return np.asarray(self.reason == "")
 
@@ -164,7 +164,7 @@ class CaseRanges:
         """Return the held cases in which a limit is exceeded at one end of a placeholder only,
         shape (n,) by limit.
         """
-        return {name: rows & self.held for name, rows in self.results.limits_in("open").items()}
+        return {name: rows & self.holds for name, rows in self.results.limits_in("open").items()}
 
     @cached_property
     def open(self) -> np.ndarray:
@@ -201,7 +201,7 @@ class CaseRanges:
             stated = self._by_fatigue & ("life_error_estimate" in results.data)
         elif f"error_estimate_{body_of(name)}" not in results.table:
             stated = np.zeros(len(stated), dtype=bool)
-        return np.asarray(np.where(self.held & stated, self.error, np.nan))
+        return np.asarray(np.where(self.holds & stated, self.error, np.nan))
 
     @cached_property
     def _by_fatigue(self) -> np.ndarray:
@@ -270,18 +270,18 @@ class CaseRanges:
         tests = by_tests_of(self.results)
         if tests is None or not is_life(self.output[0]):
             return {}
-        found = {name: np.zeros(len(self.value), dtype=bool) for name in tests.fits}
+        ended = {name: np.zeros(len(self.value), dtype=bool) for name in tests.fits}
         for end in ("_low", "_high"):
             names, guide = self.first_at(end)
             material = np.where(guide, tests.named["guide"], tests.named["roller"])
-            for name in found:
-                found[name] |= (names == "fatigue") & (material == name) & self.held
-        return found
+            for name in ended:
+                ended[name] |= (names == "fatigue") & (material == name) & self.holds
+        return ended
 
     @cached_property
     def beyond(self) -> np.ndarray:
         """Return the cases whose life lies beyond the data of its rule, shape (n,)."""
-        return np.asarray(beyond_sn_data(self.results, self.output[0]) & self.held)
+        return np.asarray(beyond_sn_data(self.results, self.output[0]) & self.holds)
 
     def judges(self, required: Required) -> bool:
         """Return whether this output judges a requirement: it names it, or a life that comes to the
@@ -308,8 +308,8 @@ class CaseRanges:
         highest = _grown(self.high, error)
         surely = (lowest >= required.least) & (highest <= required.most)
         perhaps = (highest >= required.least) & (lowest <= required.most)
-        sure = self.held & surely & ~self.open
-        may = np.where(self.judged, self.held & perhaps, True)
+        sure = self.holds & surely & ~self.open
+        may = np.where(self.judged, self.holds & perhaps, True)
         return np.asarray(sure), np.asarray(may)
 
     @cached_property
@@ -335,8 +335,8 @@ class CaseRanges:
         else:
             value = results.quantity(name)[0].astype(float)
         if end and f"{name}{end}" in results.data:
-            found = flat(results.data, f"{name}{end}", results.dims).astype(float)
-            value = np.where(np.isnan(found), value, found)
+            stored = flat(results.data, f"{name}{end}", results.dims).astype(float)
+            value = np.where(np.isnan(stored), value, stored)
         return value
 
     def _end(self, side: int) -> np.ndarray:
@@ -351,7 +351,7 @@ class CaseRanges:
         else:
             unknown = self.worst_value
         missing = np.where(self.judged, self.worst_value, unknown)
-        return np.where(self.held, stored, missing)
+        return np.where(self.holds, stored, missing)
 
 
 def _shrunk(values: np.ndarray, error: np.ndarray) -> np.ndarray:

@@ -47,13 +47,13 @@ def compared_output(
     there is none; otherwise the first output that is required; without both the peak stress. None
     if the study has none of them.
     """
-    wanted = list(required)
+    outputs = list(required)
     life = results.life or next(
         (one for one in (FIRST_LIMIT, *results.fatigue_lives) if one[0] in results.table), None
     )
-    if any(one.output in OF_PAIR for one in wanted) and life is not None:
+    if any(one.output in OF_PAIR for one in outputs) and life is not None:
         return life, True
-    for one in wanted:
+    for one in outputs:
         rises = is_life(one.output) or not np.isfinite(one.most)
         return (one.output, one.words, one.units), rises
     if life is not None:
@@ -125,10 +125,10 @@ class Comparison:
     def of(cls, results: SolvedCases) -> Comparison | None:
         """Return the comparison of a study; None without a life, a stress and a requirement."""
         required = required_of(results)
-        found = compared_output(results, required)
-        if found is None or not len(results.table):
+        compared = compared_output(results, required)
+        if compared is None or not len(results.table):
             return None
-        output, rises = found
+        output, rises = compared
         return cls(
             results,
             CaseRanges(results, output, rises),
@@ -141,27 +141,27 @@ class Comparison:
     @cached_property
     def judges(self) -> tuple[tuple[Required, CaseRanges], ...]:
         """Return each requirement with the output that judges it."""
-        found = []
+        judges = []
         for one in self.required:
             own = self.ranges
             if not own.judges(one):
                 rises = is_life(one.output) or not np.isfinite(one.most)
                 own = CaseRanges(self.results, (one.output, one.words, one.units), rises)
-            found.append((one, own))
-        return tuple(found)
+            judges.append((one, own))
+        return tuple(judges)
 
     @cached_property
     def idle(self) -> dict[str, str]:
         """Return the choices that change nothing which a decision rests on: `no effect`, or `none
         on the NAME`.
         """
-        if not self.ranges.held.any():
+        if not self.ranges.holds.any():
             return {}  # equal failures do not tell whether a choice has an effect
         judged = [self.ranges, *(own for _, own in self.judges)]
         deciding = [
             values for own in judged for values in (own.low, own.high, own.reason.astype(str))
         ]
-        found = {}
+        idle = {}
         for name in self.groups.choices:
             if not unchanged_by(self.results, name, deciding):
                 continue
@@ -173,10 +173,10 @@ class Comparison:
             else:
                 word = self.ranges.output[1]
             if unchanged_by(self.results, name, columns):
-                found[name] = "no effect"
+                idle[name] = "no effect"
             else:
-                found[name] = f"none on the {word}"
-        return found
+                idle[name] = f"none on the {word}"
+        return idle
 
     @cached_property
     def choices(self) -> tuple[str, ...]:
@@ -246,12 +246,12 @@ class Comparison:
         The pair of a case that is not compared is -1.
         """
         width = int(self.use.max()) + 1
-        found, inverse = np.unique(
+        pair, inverse = np.unique(
             self.place[self.own] * width + self.use[self.own], return_inverse=True
         )
         of_case = np.full(len(self.place), -1)
         of_case[self.own] = inverse
-        return found // width, found % width, of_case
+        return pair // width, pair % width, of_case
 
     def all_in_pair(self, rows: np.ndarray) -> np.ndarray:
         """Return the pairs of which all cases are among some rows, shape (p,)."""
@@ -293,8 +293,8 @@ class Comparison:
         """
         if self.drawn or not self.conditions or not self.matched:
             return self.own
-        held = self.all_in_pair(self.ranges.held)
-        uses = np.unique(self.pairs[1][held])
+        possible = self.all_in_pair(self.ranges.holds)
+        uses = np.unique(self.pairs[1][possible])
         rows = self.own & np.isin(self.use, uses)
         if rows.any():
             return rows
@@ -312,7 +312,7 @@ class Comparison:
         """Return the cases in conditions that no candidate holds, drawn ones included, shape
         (n,).
         """
-        uses = np.unique(self.pairs[1][self.all_in_pair(self.ranges.held)])
+        uses = np.unique(self.pairs[1][self.all_in_pair(self.ranges.holds)])
         return np.asarray(self.own & ~np.isin(self.use, uses))
 
     @property
@@ -337,8 +337,8 @@ class Comparison:
         lives : lives of a second model that take the place of those of the pair, at both ends,
             shape (2, n) [h]
         """
-        sure = self.ranges.held & ~self.ranges.open
-        may = np.where(self.ranges.judged, self.ranges.held, True)
+        sure = self.ranges.holds & ~self.ranges.open
+        may = np.where(self.ranges.judged, self.ranges.holds, True)
         for one, own in self.judges:
             certain, possible = own.meets(one, exact)
             if lives is not None and one.output in OF_PAIR:
@@ -354,7 +354,7 @@ class Comparison:
         The scatter of a material makes a life a probability. Without a requirement a case that is
         held is a hit.
         """
-        hits = self.ranges.held.astype(float)
+        hits = self.ranges.holds.astype(float)
         for one, own in self.judges:
             hits = hits * self._chance(one, own)
         return hits
@@ -478,7 +478,7 @@ class Comparison:
         The interval is NaN below the number of rows at which an order statistic reaches 95 %.
         """
         rows = self.rows[number]
-        lives = np.where(self.ranges.held[rows], self.ranges.middle[rows], 0.0)
+        lives = np.where(self.ranges.holds[rows], self.ranges.middle[rows], 0.0)
         value, low, high = b10(lives, self.scatter[rows])
         if len(rows) >= ENOUGH:
             return value, low, high
@@ -490,7 +490,7 @@ class Comparison:
         """
         rows = self.rows[number]
         ranked = np.sort(
-            np.where(self.ranges.held[rows], self.ranges.middle[rows], self.ranges.worst_value)
+            np.where(self.ranges.holds[rows], self.ranges.middle[rows], self.ranges.worst_value)
         )
         below = int(np.floor(0.5 * len(ranked) - 0.98 * np.sqrt(len(ranked))))
         if below < 1:
@@ -520,17 +520,17 @@ class Comparison:
         theirs = values[other[1][np.searchsorted(other[0], both)]]
         with np.errstate(divide="ignore", invalid="ignore"):
             if self.ranges.rises:
-                found = mine / theirs
+                ratio = mine / theirs
             else:
-                found = theirs / mine
-        return np.where(mine == theirs, 1.0, found)
+                ratio = theirs / mine
+        return np.where(mine == theirs, 1.0, ratio)
 
     def _of_condition(self, number: int) -> tuple[np.ndarray, np.ndarray]:
         """Return the conditions and places of placeholders that a candidate holds, and the case of
         each.
         """
         rows = self.rows[number]
-        rows = rows[self.ranges.held[rows] & self.reachable[rows]]
+        rows = rows[self.ranges.holds[rows] & self.reachable[rows]]
         width = int(self.level.max()) + 1
         key, first = np.unique(self.use[rows] * width + self.level[rows], return_index=True)
         return key, rows[first]

@@ -158,8 +158,8 @@ class Decider:
         """Return the candidate with the largest share; the shares are not judged."""
         keys = self.score, self.table["share"].to_numpy()
         order = [int(one) for one in np.lexsort(tuple(-key for key in keys))]
-        held = self.table["holds"].to_numpy() > 0
-        if not held.any():
+        holds = self.table["holds"].to_numpy() > 0
+        if not holds.any():
             return Decision("none", order, [])
         return Decision("build", order, order[:1])
 
@@ -167,8 +167,8 @@ class Decider:
         state = self.table["state"].to_numpy()
         every = np.arange(self.own.count)
         groups = [self.best_first(every[state == word]) for word in ("met", "open")]
-        rest = self.nearest_first(every[(state != "met") & (state != "open")])
-        order = [*groups[0], *groups[1], *rest]
+        others = self.nearest_first(every[(state != "met") & (state != "open")])
+        order = [*groups[0], *groups[1], *others]
         if groups[0]:
             tied = [one for one in groups[0][1:RIVALS] if self._tied(groups[0][0], one)]
             named = [groups[0][0], *tied]
@@ -197,8 +197,8 @@ class Decider:
         least = max(
             (one.least for one in self.own.required if one.output in OF_PAIR), default=np.nan
         )
-        found = self.turning.of_open_limit(leader) or self.turning.decides(leader, least)
-        return Decision("measure", order, [leader], measure=found or {})
+        placeholder = self.turning.of_open_limit(leader) or self.turning.decides(leader, least)
+        return Decision("measure", order, [leader], measure=placeholder or {})
 
     def _by_rank(self) -> Decision:
         own = self.own
@@ -228,9 +228,9 @@ class Decider:
             *(n for n in ranked if n not in named),
             *(n for n in order if n not in ranked),
         ]
-        found = self.turning.of_span(leader, rivals) or self.turning.leads(leader, rivals)
-        if found:
-            return Decision("measure", order, [leader], measure=found)
+        placeholder = self.turning.of_span(leader, rivals) or self.turning.leads(leader, rivals)
+        if placeholder:
+            return Decision("measure", order, [leader], measure=placeholder)
         if len(named) > 1:
             return Decision("a_or_b", order, named)
         return Decision("build", order, named)
@@ -275,19 +275,19 @@ def answer_decide(results: SolvedCases) -> Answer:
     assert own is not None
     table = candidate_table(own)
     decider = Decider(own, table)
-    found = decider.decided()
-    turns = _missing_input(own, found)
+    decision = decider.decided()
+    turns = _missing_input(own, decision)
     if turns:
-        found.kind = "give"
-    shown = with_ratios(own, table.iloc[found.order].reset_index(drop=True))
-    if found.kind == "none":
+        decision.kind = "give"
+    shown = with_ratios(own, table.iloc[decision.order].reset_index(drop=True))
+    if decision.kind == "none":
         number_named = 1
     else:
-        number_named = len(found.named)
+        number_named = len(decision.named)
     return Answer(
         question="decide",
-        kind=found.kind,
-        headline=_headline(own, table, found) | turns,
+        kind=decision.kind,
+        headline=_headline(own, table, decision) | turns,
         output=own.ranges.output,
         table=shown,
         columns=candidate_columns(own, shown),
@@ -302,16 +302,16 @@ def answer_decide(results: SolvedCases) -> Answer:
     )
 
 
-def _missing_input(own: Comparison, found: Decision) -> dict[str, Any]:
+def _missing_input(own: Comparison, decision: Decision) -> dict[str, Any]:
     """Return the load to give that was not given and by which conditions are lost; {} without one.
 
     None is asked for where no candidate meets the requirement in the conditions that are held.
     """
     name = lost_by_missing_input(own)
-    if not name or found.kind == "cannot_tell":
+    if not name or decision.kind == "cannot_tell":
         return {}
     lost = own.never_held
-    missed = found.kind == "none" and own.ranges.held.any() and bool(own.required)
+    missed = decision.kind == "none" and own.ranges.holds.any() and bool(own.required)
     if missed and not _meets_without(own, lost):
         return {}
     return {"give": {"what": long_name_of(name)}, **lost_conditions(own, lost)}
@@ -343,50 +343,50 @@ def with_ratios(own: Comparison, shown: pd.DataFrame) -> pd.DataFrame:
     return shown.assign(ratio_low=ends[:, 0], ratio_high=ends[:, 1], longer=better)
 
 
-def _headline(own: Comparison, table: pd.DataFrame, found: Decision) -> dict[str, Any]:
+def _headline(own: Comparison, table: pd.DataFrame, decision: Decision) -> dict[str, Any]:
     """Return the numbers and names of the headline: the named candidates, and what a reader must
     know of them.
     """
-    one = table.iloc[found.order[0]]
+    one = table.iloc[decision.order[0]]
     names = []
-    if found.named:
-        names = names_of(own, found.named)
-    told: dict[str, Any] = {
+    if decision.named:
+        names = names_of(own, decision.named)
+    head: dict[str, Any] = {
         "names": names,
-        "why": found.why,
+        "why": decision.why,
         **leading(own, one),
-        "measure": found.measure,
+        "measure": decision.measure,
     }
-    told |= not_held_by_any(own)
-    if found.kind in ("none", "cannot_tell"):
-        told["nearest"] = {
-            "name": names_of(own, [found.order[0]])[0],
+    head |= not_held_by_any(own)
+    if decision.kind in ("none", "cannot_tell"):
+        head["nearest"] = {
+            "name": names_of(own, [decision.order[0]])[0],
             **{key: plain(one[key]) for key in ("holds", "of", "meets", "low", "fails")},
         }
-    return told | _level_reached(own, table)
+    return head | _level_reached(own, table)
 
 
 def leading(own: Comparison, one: pd.Series) -> dict[str, Any]:
     """Return what a headline says of one candidate, a row of `candidate_table`."""
-    told: dict[str, Any] = {
+    head: dict[str, Any] = {
         key: plain(one[key])
         for key in ("low", "high", "worst", "ends", "ends_high", "body", "body_high", "error")
     }
-    told["extrapolated"] = bool(one["extrapolated"])
-    told["elsewhere"] = bool(one["holds"] < one["of"])
+    head["extrapolated"] = bool(one["extrapolated"])
+    head["elsewhere"] = bool(one["holds"] < one["of"])
     if one["exceeded_by"]:
-        told["exceeded"] = {
+        head["exceeded"] = {
             "limit": plain(one["exceeded_by"]),
             "body": plain(one["exceeded_body"]),
             "use": float(one["use"]),
             "hours": float(one["use_hours"]),
         }
     if one["second_state"] not in ("", one["state"]):
-        told["second"] = {"limit": plain(one["second"]), "verdict": plain(one["second_state"])}
+        head["second"] = {"limit": plain(one["second"]), "verdict": plain(one["second_state"])}
     if own.drawn:
-        told |= {key: float(one[key]) for key in ("share", "share_low", "share_high")}
-        told |= {"wanted": own.wanted_share, "n": int(one["n"])}
-    return told
+        head |= {key: float(one[key]) for key in ("share", "share_low", "share_high")}
+        head |= {"wanted": own.wanted_share, "n": int(one["n"])}
+    return head
 
 
 def not_held_by_any(own: Comparison) -> dict[str, Any]:
@@ -405,11 +405,11 @@ def lost_conditions(own: Comparison, rows: np.ndarray) -> dict[str, Any]:
     place = places_of(table.iloc[first], names, lost, np.ones(len(first), dtype=bool))
     judged = own.ranges.judged[rows]
     where = places_text(place, table.iloc[first]) or causes_text(own, rows)
-    told = {"count": int(lost.sum()), "of": len(first), "where": where}
+    conditions = {"count": int(lost.sum()), "of": len(first), "where": where}
     cause = "not_judged"
     if judged.any():
         cause = "not_held"
-    return {cause: told}
+    return {cause: conditions}
 
 
 def causes_text(own: Comparison, rows: np.ndarray) -> str:
@@ -433,9 +433,9 @@ def _level_reached(own: Comparison, table: pd.DataFrame) -> dict[str, Any]:
     contiguous = len(hits) > 1 and hits[-1] - hits[0] + 1 == len(hits)
     if not contiguous or len(hits) == len(levels):
         return {}
-    told = {}
+    head = {}
     if hits[0] > 0:
-        told["from_on"] = float(levels[order][hits[0]])
+        head["from_on"] = float(levels[order][hits[0]])
     if hits[-1] < len(levels) - 1:
-        told["up_to"] = float(levels[order][hits[-1]])
-    return told
+        head["up_to"] = float(levels[order][hits[-1]])
+    return head

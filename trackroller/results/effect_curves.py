@@ -60,7 +60,7 @@ class Effects:
     def of(cls, ranges: CaseRanges) -> Effects:
         """Return the effects on an output over the cases that are held and have a finite value."""
         results = ranges.results
-        rows = results.of_one_model(ranges.held) & np.isfinite(ranges.value)
+        rows = results.of_one_model(ranges.holds) & np.isfinite(ranges.value)
         return cls(results, ranges, np.asarray(rows))
 
     @cached_property
@@ -88,14 +88,14 @@ class Effects:
 
     def curves(self) -> tuple[Curve, ...]:
         """Return the curve of each factor with two levels that count, the highest one first."""
-        found = []
+        curves = []
         for name in self.results.factors:
             if name in OPTION_FACTORS or name in self.results.labels:
                 continue
             curve = self._by_pairs(name) or self._by_fit(name) or self._by_classes(name)
             if curve is not None:
-                found.append(curve)
-        return tuple(sorted(found, key=lambda curve: -_size(curve.height, self.by_ratio)))
+                curves.append(curve)
+        return tuple(sorted(curves, key=lambda curve: -_size(curve.height, self.by_ratio)))
 
     def _by_pairs(self, name: str) -> Curve | None:
         """Return the median of like cases at each level; None without enough of them.
@@ -112,22 +112,22 @@ class Effects:
         place = pd.Index(levels).get_indexer(table[name])
         matrix = np.full((int(key.max(initial=-1)) + 1, len(levels)), np.nan)
         matrix[key, place] = self.y[rows]
-        seen = ~np.isnan(matrix).all(axis=0)
-        whole = ~np.isnan(matrix[:, seen]).any(axis=1)
+        known = ~np.isnan(matrix).all(axis=0)
+        whole = ~np.isnan(matrix[:, known]).any(axis=1)
         if (
-            seen.sum() < 2
+            known.sum() < 2
             or whole.sum() < min(FEWEST_PAIRS, max(len(matrix), 1))
-            or whole.sum() * seen.sum() < 2
+            or whole.sum() * known.sum() < 2
         ):
             return None
-        if len(rows) > 3 * seen.sum() and whole.sum() < 0.05 * len(matrix):
+        if len(rows) > 3 * known.sum() and whole.sum() < 0.05 * len(matrix):
             return None
-        full = matrix[whole][:, seen]
-        kept = [level for level, here in zip(levels, seen, strict=True) if here]
+        full = matrix[whole][:, known]
+        counted = [level for level, here in zip(levels, known, strict=True) if here]
         ends = np.quantile(full, BAND, axis=0)
         shape = self._shape(name, np.median(full, axis=0), full)
-        left = len(rows) - int(whole.sum() * seen.sum())
-        return self._curve(name, kept, np.median(full, axis=0), ends, shape, full.size, left)
+        left = len(rows) - int(whole.sum() * known.sum())
+        return self._curve(name, counted, np.median(full, axis=0), ends, shape, full.size, left)
 
     def _by_fit(self, name: str) -> Curve | None:
         """Return the curve of a factor by the fit of the sample; None where the fit predicts too
@@ -160,13 +160,13 @@ class Effects:
             return None
         parts = groups(self.results.table, name, self.rows, BINS)
         inside = [self.y[self.rows][parts.index == k] for k in range(len(parts))]
-        kept = [k for k, own in enumerate(inside) if len(own)]
-        if len(kept) < 2 or np.median([len(inside[k]) for k in kept]) < FEWEST_PAIRS:
+        counted = [k for k, own in enumerate(inside) if len(own)]
+        if len(counted) < 2 or np.median([len(inside[k]) for k in counted]) < FEWEST_PAIRS:
             return None
-        middle = np.array([np.median(inside[k]) for k in kept])
-        ends = np.array([np.quantile(inside[k], BAND) for k in kept]).T
+        middle = np.array([np.median(inside[k]) for k in counted])
+        ends = np.array([np.quantile(inside[k], BAND) for k in counted]).T
         levels = [
-            parts.low[k] if parts.low[k] == parts.high[k] else float(parts.at[k]) for k in kept
+            parts.low[k] if parts.low[k] == parts.high[k] else float(parts.at[k]) for k in counted
         ]
         return self._curve(
             name, levels, middle, ends, self._shape(name, middle, None), int(self.rows.sum()), 0
@@ -274,16 +274,15 @@ class Effects:
         if drawn:
             most = (codes(table, drawn).max() + 1) / ROWS_PER_TERM / len(drawn)
         degrees = tuple(one for one in DEGREES if one[0] <= most) or DEGREES[-1:]
-        found = best_fit(y, np.stack(columns, axis=1), ordered, degrees, ranked=False)
-        if found is None or found.share < TOLD:
+        fit = best_fit(y, np.stack(columns, axis=1), ordered, degrees, ranked=False)
+        if fit is None or fit.share < TOLD:
             return None
-        weights = np.linalg.lstsq(found.table, y, rcond=None)[0]
+        weights = np.linalg.lstsq(fit.table, y, rcond=None)[0]
         parts = {
-            name: np.where(found.term == j, found.table, 0.0) @ weights
-            for j, name in enumerate(names)
+            name: np.where(fit.term == j, fit.table, 0.0) @ weights for j, name in enumerate(names)
         }
         values = {name: table[name].to_numpy() for name in names}
-        return _Fitted(found.share, found.table @ weights, parts, values)
+        return _Fitted(fit.share, fit.table @ weights, parts, values)
 
 
 @dataclass(frozen=True, eq=False)

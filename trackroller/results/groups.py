@@ -204,8 +204,8 @@ def confined(
             rank = (inside, len(blocks))
             for rows, columns in blocks:
                 at = np.ix_(rows, columns)
-                held = {one: _in_order(firsts[rows]), other: _in_order(others[columns])}
-                best.append(Product(held, int(hits[at].sum()), int(of[at].sum())))
+                levels_of_pair = {one: _in_order(firsts[rows]), other: _in_order(others[columns])}
+                best.append(Product(levels_of_pair, int(hits[at].sum()), int(of[at].sum())))
     return sorted(best, key=lambda product: -product.count / product.of)
 
 

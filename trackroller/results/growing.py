@@ -53,13 +53,12 @@ class Growing:
             ledger = Ledger(StudyCases(self.study), self.folder)
             if (ledger.state_number < 0).any():
                 return ""
-            seen = look(solved_results(ledger))
-            self.looks.append(seen)
-            widest = ", ".join(f"{name} ± {_text(seen, name)}" for name in self.until.of)
-            self.tell(
-                f"look {len(self.looks)}: {seen['cases']} cases, widest 95 % interval: {widest}"
-            )
-            unsure = seen.get("unsure")
+            last_look = look(solved_results(ledger))
+            self.looks.append(last_look)
+            widest = ", ".join(f"{name} ± {_text(last_look, name)}" for name in self.until.of)
+            cases = f"{last_look['cases']} cases"
+            self.tell(f"look {len(self.looks)}: {cases}, widest 95 % interval: {widest}")
+            unsure = last_look.get("unsure")
             if unsure:
                 self.tell(
                     f"wider than wanted at {len(unsure)} of {len(self.study.drawn.points)} "
@@ -74,19 +73,18 @@ class Growing:
 
     def _why(self, larger: Study, ledger: Ledger) -> str:
         """Return why the study stops at its last look, '' if it goes on with the larger sample."""
-        seen = self.looks[-1]
+        last_look = self.looks[-1]
         until = self.until
-        widths = seen["half_width"].values()
-        if seen["empty"]:
-            return (
-                f"no case gives a valid {' or '.join(seen['empty'])}, so nothing is left to decide"
-            )
+        widths = last_look["half_width"].values()
+        if last_look["empty"]:
+            names = " or ".join(last_look["empty"])
+            return f"no case gives a valid {names}, so nothing is left to decide"
         if self._is_decided():
             return "every share is clear of the share that the requirement wants"
         if all(width is not None and width <= until.half_width for width in widths):
             return f"the intervals asked for are narrower than ± {until.half_width:g}"
-        if seen["constant"]:
-            return f"{' and '.join(seen['constant'])} does not vary, so it has no index"
+        if last_look["constant"]:
+            return f"{' and '.join(last_look['constant'])} does not vary, so it has no index"
         many = larger.drawn.size
         if many > until.at_most:
             return f"the next step has {many} cases, and at_most is {until.at_most}"
@@ -112,15 +110,15 @@ class Growing:
 
     def record(self, why: str) -> dict[str, str]:
         """Return the attribute of `study.nc` with the looks."""
-        asked = {"half_width": self.until.half_width, "replicates": self.until.replicates}
-        return {UNTIL: json.dumps(asked | {"stopped": why, "looks": self.looks})}
+        settings = {"half_width": self.until.half_width, "replicates": self.until.replicates}
+        return {UNTIL: json.dumps(settings | {"stopped": why, "looks": self.looks})}
 
 
-def _text(seen: dict[str, Any], name: str) -> str:
-    width = seen["half_width"][name]
+def _text(look: dict[str, Any], name: str) -> str:
+    width = look["half_width"][name]
     if width is None:
         return "unknown"
-    return f"{width:.2g} ({seen['at'][name]})"
+    return f"{width:.2g} ({look['at'][name]})"
 
 
 def grow_study(study: Study, results: Path | str = "results", **how: Any) -> Ledger:

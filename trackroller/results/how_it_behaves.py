@@ -36,7 +36,7 @@ def answer_how_it_behaves(results: SolvedCases) -> Answer:
     if ranges is None:
         nothing = CaseRanges(results, ("regime", "regime", ""), False)
         return _answer(results, nothing, pd.DataFrame([{"output": "regime"}]), {})
-    rows = results.of_one_model(ranges.held)
+    rows = results.of_one_model(ranges.holds)
     table = output_ranges(results, ranges)
     first = table.iloc[0]
     ends = pd.Series(end_of_case(ranges)[rows]).value_counts()

@@ -46,22 +46,22 @@ def answer_how_sure(results: SolvedCases) -> Answer:
     names = []
     if own.count > 1:
         names = names_of(own, order[:1])
-    told: dict[str, Any] = {
+    head: dict[str, Any] = {
         "names": names,
         **leading(own, one),
     }
     if not own.drawn:
-        told |= {"meets": int(one["meets"]), "of": int(one["of"])}
+        head |= {"meets": int(one["meets"]), "of": int(one["of"])}
     kind = "count"
     if own.drawn:
         kind = "share"
     if not own.ranges.judged[own.own].any():
         kind = "cannot_tell"
-        told |= {"why": own.why_unjudged}
+        head |= {"why": own.why_unjudged}
     return Answer(
         question="how sure",
         kind=kind,
-        headline=told | not_held_by_any(own),
+        headline=head | not_held_by_any(own),
         output=own.ranges.output,
         table=shown,
         columns=candidate_columns(own, shown),
@@ -92,6 +92,6 @@ def _order(own: Comparison, table: Any) -> list[int]:
 def _values(own: Comparison, order: list[int]) -> list[np.ndarray]:
     """Return the output of the conditions of each candidate, in rising order."""
     return [
-        np.sort(np.where(own.ranges.held, own.ranges.middle, own.ranges.worst_value)[own.rows[n]])
+        np.sort(np.where(own.ranges.holds, own.ranges.middle, own.ranges.worst_value)[own.rows[n]])
         for n in order
     ]

@@ -140,10 +140,10 @@ def _beyond_spare(results: SolvedCases, lost: np.ndarray) -> np.ndarray:
     """Return shares of conditions in which designs are not valid; 0 where the requirement allows so
     many to fail.
     """
-    wanted = _to_meet(results).values()
-    if not wanted or not all(own.in_shares for own in wanted):
+    required = _to_meet(results).values()
+    if not required or not all(own.in_shares for own in required):
         return lost
-    spare = 1.0 - max(own.probability for own in wanted)
+    spare = 1.0 - max(own.probability for own in required)
     return np.where(lost <= spare + SHARE_ROUNDING, 0.0, lost)
 
 
@@ -188,7 +188,7 @@ def _values(results: SolvedCases) -> tuple[np.ndarray, np.ndarray]:
     """
     design = results.design
     shape = design.meta["design_points"], design.meta["inner_samples"]
-    valid = results.held.reshape(shape)
+    valid = results.holds.reshape(shape)
     goals = goals_of_search(results)
     values = []
     known = valid.copy()
@@ -220,8 +220,8 @@ def _to_meet(results: SolvedCases) -> dict[str, Requirement]:
         for goal in goals_of_search(results)
         if judged_by(goal)[0] == "probability"
     }
-    wanted = requirements_of(results)
-    return {name: own for name, own in wanted.items() if own.in_shares or name not in chances}
+    required = requirements_of(results)
+    return {name: own for name, own in required.items() if own.in_shares or name not in chances}
 
 
 @made_once
@@ -230,10 +230,10 @@ def judges_of(results: SolvedCases) -> list[tuple[Required, CaseRanges]]:
     judges it.
     """
     own = Comparison.of(results)
-    wanted = _to_meet(results)
+    required = _to_meet(results)
     if own is None:
         return []
-    return [pair for pair in own.judges if pair[0].output in wanted]
+    return [pair for pair in own.judges if pair[0].output in required]
 
 
 def life_of_search(results: SolvedCases) -> CaseRanges | None:
@@ -254,17 +254,17 @@ class Shares:
     required : the requirement
     sure, may : shares of the conditions that surely meet it, and that may meet it [1], shape
         (designs,)
-    wanted : share that is enough [1]
+    least : share that is enough [1]
     """
 
     required: Required
     sure: np.ndarray
     may: np.ndarray
-    wanted: float
+    least: float
 
     def enough(self, shares: np.ndarray) -> np.ndarray:
         """Return which shares are enough."""
-        return np.asarray(shares >= self.wanted - SHARE_ROUNDING)
+        return np.asarray(shares >= self.least - SHARE_ROUNDING)
 
 
 @made_once
@@ -279,15 +279,15 @@ def shares_of(results: SolvedCases, exact: bool = False) -> list[Shares]:
     enough = 1.0
     if any(judged_by(goal)[0] == "b10" for goal in goals_of_search(results)):
         enough = min(1.0, float(np.floor(0.9 * shape[1] + 1.0)) / shape[1])
-    found = []
+    shares = []
     for one, own in judges_of(results):
         sure, may = (hits.reshape(shape).mean(axis=1) for hits in own.meets(one, exact))
         if np.isnan(one.probability):
-            wanted = enough
+            share = enough
         else:
-            wanted = one.probability
-        found.append(Shares(one, sure, may, wanted))
-    return found
+            share = one.probability
+        shares.append(Shares(one, sure, may, share))
+    return shares
 
 
 def shortfall(results: SolvedCases, exact: bool = False) -> np.ndarray:
@@ -311,7 +311,7 @@ def shortfall(results: SolvedCases, exact: bool = False) -> np.ndarray:
         return np.zeros(count)
     met = np.all([own.enough(own.sure) for own in shares], axis=0)
     may = np.all([own.enough(own.may) for own in shares], axis=0)
-    lack = np.max([np.clip(own.wanted - own.sure, 0.0, 1.0) for own in shares], axis=0)
+    lack = np.max([np.clip(own.least - own.sure, 0.0, 1.0) for own in shares], axis=0)
     missing = 0.9 * lack + 0.09 * _life_gap(results) * (0.5 / results.design.meta["inner_samples"])
     return np.asarray(np.where(met, 0.0, np.where(may, 1.0, 2.0) + missing))
 
@@ -333,7 +333,7 @@ def _met(results: SolvedCases, output: str) -> np.ndarray:
     """
     if output in REGIMES:
         return np.asarray(results.regime == REGIMES.index(output))
-    return np.asarray(results.held & results.meets(output))
+    return np.asarray(results.holds & results.meets(output))
 
 
 def _over_conditions(raw: np.ndarray, good: np.ndarray, kind: str, way: str) -> np.ndarray:
@@ -369,7 +369,7 @@ def _reasons(results: SolvedCases, known: np.ndarray) -> dict[str, int]:
         name: int((results.valid & rows).sum())
         for name, rows in results.limits_in("exceeded").items()
     }
-    counts["no value of a goal"] = int((results.held & ~known).sum())
+    counts["no value of a goal"] = int((results.holds & ~known).sum())
     return {word: n for word, n in counts.items() if n}
 
 
@@ -464,7 +464,7 @@ def ends_of_goal(results: SolvedCases, goal: str) -> tuple[np.ndarray, np.ndarra
         return None
     shape = results.design.meta["design_points"], results.design.meta["inner_samples"]
     raw = results.quantity(output)[0].astype(float)
-    valid = results.held.reshape(shape)
+    valid = results.holds.reshape(shape)
     ends = []
     for end in ("_low", "_high"):
         own = flat(results.data, f"{output}{end}", results.dims).astype(float)
@@ -484,7 +484,7 @@ def beyond_data(results: SolvedCases, goal: str) -> np.ndarray:
     if not is_life(output) or kind == "probability":
         return np.zeros(shape[0], dtype=bool)
     lives = results.quantity(output)[0].astype(float).reshape(shape)
-    counted = results.held.reshape(shape) & (
+    counted = results.holds.reshape(shape) & (
         (kind == "mean") | (lives <= goal_column(results, goal)[0][:, None])
     )
     return np.asarray((counted & beyond_sn_data(results, output).reshape(shape)).any(axis=1))

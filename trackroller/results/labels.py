@@ -150,11 +150,11 @@ def treatment(regime: np.ndarray, keep: Iterable[str], allowed: np.ndarray | Non
         text += "how often these occur is a separate output, whose indices use all rows"
     else:
         text += "; no row left out for its regime"
-    kept = np.isin(regime, [REGIMES.index(name) for name in keep])
+    counted = np.isin(regime, [REGIMES.index(name) for name in keep])
     if allowed is None:
         missed = 0
     else:
-        missed = int((kept & ~allowed).sum())
+        missed = int((counted & ~allowed).sum())
     if missed:
         text += f"; {missed:,} further rows miss a constraint and are left out of the same indices"
     return text

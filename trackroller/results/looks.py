@@ -54,7 +54,7 @@ def look(results: SolvedCases) -> dict[str, Any]:
     design = results.design
     until = results.config.until
     assert until is not None
-    seen: dict[str, Any] = {
+    record: dict[str, Any] = {
         "cases": design.size,
         "half_width": {},
         "at": {},
@@ -71,24 +71,24 @@ def look(results: SolvedCases) -> dict[str, Any]:
         else:
             values, widths = _of_indices(results, name)
         if np.isnan(values).all() or not (inside or statistic(name)[1] in REGIMES):
-            seen["empty"].append(name)
+            record["empty"].append(name)
             widths[:] = np.inf
         elif not design.method.points and constant(values):
-            seen["constant"].append(name)
+            record["constant"].append(name)
         widths = np.where(np.isnan(widths), np.inf, widths).reshape(-1, len(names)).max(axis=0)
         if design.method.points:
             decided = _decided(results, name, widths)
-            seen["decided"][name] = int(decided.sum())
+            record["decided"][name] = int(decided.sum())
             widths = np.where(decided, 0.0, widths)
         widest = int(widths.argmax())
         unsure = unsure | (widths > until.half_width)
-        seen["half_width"][name] = None
+        record["half_width"][name] = None
         if np.isfinite(widths[widest]):
-            seen["half_width"][name] = float(widths[widest])
-        seen["at"][name] = names[widest]
+            record["half_width"][name] = float(widths[widest])
+        record["at"][name] = names[widest]
     if design.method.points:
-        seen["unsure"] = np.flatnonzero(unsure).tolist()
-    return seen
+        record["unsure"] = np.flatnonzero(unsure).tolist()
+    return record
 
 
 def _of_indices(results: SolvedCases, name: str) -> tuple[np.ndarray, np.ndarray]:
@@ -152,10 +152,10 @@ def _shares(results: SolvedCases, hits: np.ndarray) -> tuple[np.ndarray, np.ndar
     """
     copies = int(results.design.meta["replicates"])
     points = results.design.points
-    found = [
+    ends = [
         share(hits[rows], np.arange(rows.stop - rows.start) % copies, copies) for rows in points
     ]
-    shares, widths = np.array(found, dtype=float).T
+    shares, widths = np.array(ends, dtype=float).T
     return shares, widths
 
 

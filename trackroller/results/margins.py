@@ -176,19 +176,19 @@ def lifeless_bodies(ds: xr.Dataset, materials: Mapping[str, Material]) -> dict[s
     one.
     """
     regime = REGIMES[int(ds["regime"])]
-    found = {}
+    reasons = {}
     for body, material in materials.items():
         marked = False
         if "validity_body" in ds:
             marked = bool(int(ds["validity_body"].sel(body=body)) & validity_bit("static"))
         breaks = marked or overload_of(ds, body, material) > 1
         if breaks:
-            found[body] = BROKEN
+            reasons[body] = BROKEN
         elif regime == "full_slip":
-            found[body] = SKIDS
+            reasons[body] = SKIDS
         else:
-            found[body] = ""
-    return found
+            reasons[body] = ""
+    return reasons
 
 
 def margins(

@@ -345,32 +345,32 @@ def _top(factor: Factor) -> float:
 
 def _ends(choices: Mapping[str, Factor], middle: np.ndarray) -> list[np.ndarray]:
     """Return the designs that one choice takes to an end of its range, or to another category."""
-    found = []
+    ends = []
     for j, factor in enumerate(choices.values()):
         places = [0.0, _top(factor)]
         if not factor.ordered:
             places = []
             if len(factor.levels) <= MOST_CATEGORIES:
                 places = list(np.arange(len(factor.levels), dtype=float))
-        found += [_moved(middle, j, place) for place in places]
-    return found
+        ends += [_moved(middle, j, place) for place in places]
+    return ends
 
 
 def _steps(choices: Mapping[str, Factor], middle: np.ndarray, step: float) -> list[np.ndarray]:
     """Return the designs a step beside one in each ordered choice; a listed choice moves to its
     next level.
     """
-    found = []
+    steps = []
     for j, factor in enumerate(choices.values()):
         size = step
         if factor.discrete:
             size = 1.0
         if factor.ordered:
-            found += [
+            steps += [
                 _moved(middle, j, float(np.clip(middle[j] + way, 0, _top(factor))))
                 for way in (-size, size)
             ]
-    return found
+    return steps
 
 
 def _moved(genes: np.ndarray, place: int, value: float) -> np.ndarray:

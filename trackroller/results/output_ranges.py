@@ -37,17 +37,17 @@ def output_ranges(results: SolvedCases, ranges: CaseRanges) -> pd.DataFrame:
     results : the solved study
     ranges : the output that comes first; the other usual ones follow
     """
-    found = [ranges]
+    ranges_of_all = [ranges]
     for name in default_names(results.data, results.design.factors, results.dims):
-        if name != ranges.output[0] and len(found) < MOST_OUTPUTS:
+        if name != ranges.output[0] and len(ranges_of_all) < MOST_OUTPUTS:
             _, units, words = results.quantity(name)
-            found.append(CaseRanges(results, (name, words, units), is_life(name)))
-    return pd.DataFrame([_row(results, own) for own in found])
+            ranges_of_all.append(CaseRanges(results, (name, words, units), is_life(name)))
+    return pd.DataFrame([_row(results, own) for own in ranges_of_all])
 
 
 def _row(results: SolvedCases, ranges: CaseRanges) -> dict[str, Any]:
     """Return the range of one output with its cases."""
-    rows = np.flatnonzero(results.of_one_model(ranges.held) & ~np.isnan(ranges.value))
+    rows = np.flatnonzero(results.of_one_model(ranges.holds) & ~np.isnan(ranges.value))
     _, words, units = ranges.output
     row: dict[str, Any] = {
         "output": words,

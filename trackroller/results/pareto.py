@@ -125,12 +125,12 @@ def pareto_mask(objectives: np.ndarray, directions: Iterable[str]) -> np.ndarray
     # in lexicographic order only an earlier row can beat a row
     rows = rows[np.lexsort(costs[rows].T[::-1])]
     front: list[int] = []
-    held = np.empty((0, costs.shape[1]))
+    front_costs = np.empty((0, costs.shape[1]))
     for row in rows:
-        worse = (held <= costs[row]).all(axis=1) & (held < costs[row]).any(axis=1)
+        worse = (front_costs <= costs[row]).all(axis=1) & (front_costs < costs[row]).any(axis=1)
         if not worse.any():
             front.append(int(row))
-            held = costs[front]
+            front_costs = costs[front]
     mask = np.zeros(len(costs), dtype=bool)
     mask[front] = True
     return mask
@@ -173,23 +173,23 @@ def pareto(
     if len(objectives) < 2:
         raise InputError("pareto", dict(objectives), "at least two outputs, each with min or max")
     constraints = list(constraints)
-    wanted = {name for text in constraints for name in names_in(text)}
+    limited_names = {name for text in constraints for name in names_in(text)}
     keep: tuple[str, ...] = ("rolling",)
-    if "regime" in wanted:
+    if "regime" in limited_names:
         keep = REGIMES[:3]
     ds = results.data
     design = results.design
     dims = results.dims
     regime = regimes(ds, dims)
-    names = dict.fromkeys([*objectives, *sorted(wanted)])
+    names = dict.fromkeys([*objectives, *sorted(limited_names)])
     columns = {name: results.quantity(name) for name in names}
-    limited = {name: results.constrained(name) for name in wanted}
+    limited = {name: results.constrained(name) for name in limited_names}
     own, model = _own_rows(design)
-    kept = np.isin(regime, [REGIMES.index(name) for name in keep])
+    counted = np.isin(regime, [REGIMES.index(name) for name in keep])
     undefined = np.isnan(np.stack([columns[name][0].astype(float) for name in objectives])).any(
         axis=0
     )
-    allowed, excluded = _allowed(undefined, limited, constraints, own, kept)
+    allowed, excluded = _allowed(undefined, limited, constraints, own, counted)
     shown = {
         n: readable(c)[allowed]
         for n, c in design.columns.items()
@@ -230,12 +230,12 @@ def front_of(
     further : columns that a design must also be beaten in to be left out, each `min` or `max`
     attrs : further attributes of the result
     """
-    wanted = {**objectives, **(further or {})}
-    goals = np.stack([np.asarray(columns[name][0], dtype=float) for name in wanted], axis=1)
+    directions = {**objectives, **(further or {})}
+    goals = np.stack([np.asarray(columns[name][0], dtype=float) for name in directions], axis=1)
     data: dict[str, Any] = {name: ("row", values) for name, values in factors.items()}
     for name, (values, units, long_name) in columns.items():
         data[name] = ("row", values, {"units": units, "long_name": long_name})
-    optimal = pareto_mask(goals, wanted.values()).astype(np.int8)
+    optimal = pareto_mask(goals, directions.values()).astype(np.int8)
     data["optimal"] = ("row", optimal, {"long_name": "in the Pareto set"})
     described = {"objectives": ", ".join(f"{name} {way}" for name, way in objectives.items())}
     described |= {"factors": ", ".join(factors), "constraints": "", "model": ""}
@@ -247,13 +247,13 @@ def _allowed(
     values: Mapping[str, Any],
     constraints: list[str],
     own: np.ndarray,
-    kept: np.ndarray,
+    counted: np.ndarray,
 ) -> tuple[np.ndarray, dict[str, int]]:
     """Return the mask of allowed rows and the number of rows that each reason excluded."""
     allowed = own.copy()
     excluded = {}
     # constraints come first, so that a row without a value counts for them
-    checks = {"regime": kept}
+    checks = {"regime": counted}
     checks |= meeting(constraints, values, own.size)
     checks["an undefined goal"] = ~undefined
     for reason, good in checks.items():
@@ -303,9 +303,11 @@ def pareto_of_points(table: xr.Dataset, objectives: Mapping[str, str]) -> xr.Dat
         "kind": "design point",
         "study": table.attrs.get("study", ""),
     }
-    kept = {name: (values[known], units, words) for name, (values, units, words) in columns.items()}
+    known_columns = {
+        name: (values[known], units, words) for name, (values, units, words) in columns.items()
+    }
     factors = {name: readable(table[name].values)[known] for name in outer}
-    return front_of(factors, kept, objectives, np.flatnonzero(known), **attrs)
+    return front_of(factors, known_columns, objectives, np.flatnonzero(known), **attrs)
 
 
 def _of_points(table: xr.Dataset, name: str) -> Column:
@@ -365,28 +367,28 @@ def pareto_of_candidates(candidates: Candidates, objectives: Mapping[str, str]) 
         name: candidates.worst_cases(columns[name][0].astype(float), way)
         for name, way in objectives.items()
     }
-    held = candidates.valid_in
-    kept = np.flatnonzero(np.all([cases >= 0 for cases in worst.values()], axis=0) & (held > 0))
-    row = next(iter(worst.values()))[kept]
+    valid = candidates.valid_in
+    judged = np.flatnonzero(np.all([cases >= 0 for cases in worst.values()], axis=0) & (valid > 0))
+    row = next(iter(worst.values()))[judged]
     factors = {name: results.table[name].to_numpy()[row] for name in candidates.choices}
     goals = {
-        name: (values[worst[name][kept]], units, words)
+        name: (values[worst[name][judged]], units, words)
         for name, (values, units, words) in columns.items()
     }
-    goals["valid_in"] = (held[kept].astype(float), "1", "conditions in which it is valid")
+    goals["valid_in"] = (valid[judged].astype(float), "1", "conditions in which it is valid")
     model = ""
     if "contact_model" in results.factors:
         model = str(results.held_level("contact_model"))
     attrs = {
         "constraints": "; ".join(results.config.constraints),
-        "rows": len(held),
+        "rows": len(valid),
         "conditions": candidates.possible,
         "model": model,
         "judged": "each goal at the worst of the conditions in which the design is valid",
         "study": results.data.attrs.get("study", ""),
     }
     front = front_of(factors, goals, objectives, row, further={"valid_in": "max"}, **attrs)
-    return front.assign(_beyond(results, {name: cases[kept] for name, cases in worst.items()}))
+    return front.assign(_beyond(results, {name: cases[judged] for name, cases in worst.items()}))
 
 
 def _beyond(
@@ -416,14 +418,14 @@ def pareto_of_search(results: SolvedCases) -> xr.Dataset:
         missed = judged.missed
     else:
         missed = judged.violation
-    kept = np.flatnonzero((missed == least) & (least < 1))
+    nearest = np.flatnonzero((missed == least) & (least < 1))
     tried = codes(results.table.iloc[:: design.meta["inner_samples"]], design.meta["outer"])
     # a design that was solved twice counts once
-    kept = kept[np.unique(tried[kept], return_index=True)[1]]
-    first = kept * design.meta["inner_samples"]
+    nearest = nearest[np.unique(tried[nearest], return_index=True)[1]]
+    first = nearest * design.meta["inner_samples"]
     factors = {name: readable(design.columns[name][first]) for name in design.meta["outer"]}
     columns = {
-        n: (values[kept], units, words)
+        n: (values[nearest], units, words)
         for n in goals
         for values, units, words in [goal_column(results, n)]
     }
@@ -439,10 +441,10 @@ def pareto_of_search(results: SolvedCases) -> xr.Dataset:
         if is_life(judged_by(name)[1]) and judged_by(name)[0] != "probability"
     ]
     beyond = {
-        f"beyond_{name}": ("row", beyond_data(results, name)[kept].astype(np.int8))
+        f"beyond_{name}": ("row", beyond_data(results, name)[nearest].astype(np.int8))
         for name in lives
     }
-    return front_of(factors, columns, goals, kept, **attrs).assign(beyond)
+    return front_of(factors, columns, goals, nearest, **attrs).assign(beyond)
 
 
 def goals_of(front: xr.Dataset) -> list[tuple[str, str]]:

@@ -67,15 +67,15 @@ def _without_needless(
     table: pd.DataFrame, restricted: Levels, hit: np.ndarray, among: np.ndarray
 ) -> Levels:
     """Return the levels without those of factors that the other ones restrict already."""
-    kept = dict(restricted)
+    needed = dict(restricted)
     for name in list(restricted):
-        others = {other: own for other, own in kept.items() if other != name}
+        others = {other: own for other, own in needed.items() if other != name}
         inside = among.copy()
         for other, own in others.items():
             inside &= table[other].isin(own).to_numpy()
         if others and inside.sum() == hit.sum():
-            kept = others
-    return kept
+            needed = others
+    return needed
 
 
 def number_text(value: float) -> str:

@@ -71,13 +71,13 @@ def robustness(
         allowed = "design inner_outer: lists as outer array, distributions as inner array"
         raise InputError("design", design.method.name, allowed)
     regime = regimes(ds, results.dims)
-    wanted = list(config.analysis.outputs or default_names(ds, design.factors, results.dims))
+    names = list(config.analysis.outputs or default_names(ds, design.factors, results.dims))
     goals = [statistic(goal) for goal in config.pareto]
-    wanted += [
-        output for kind, output in goals if kind not in ("", "probability") and output not in wanted
+    names += [
+        output for kind, output in goals if kind not in ("", "probability") and output not in names
     ]
     columns = outputs(
-        ds, design.factors, wanted, scale="natural", unlimited=True, allowed=results.allowed
+        ds, design.factors, names, scale="natural", unlimited=True, allowed=results.allowed
     )
     by_output = []
     for column in columns:
@@ -154,16 +154,16 @@ def material_deviations(results: SolvedCases) -> dict[str, np.ndarray]:
     """
     ds = results.data
     dims = results.dims
-    wanted = results.config.analysis.material_scatter
-    if wanted is False:
+    scatter_by_body = results.config.analysis.material_scatter
+    if scatter_by_body is False:
         return {}
     known = json.loads(ds.attrs.get("materials", "{}"))
     out = {}
     for field, body in zip(MATERIAL_FIELDS, BODIES, strict=True):
-        if wanted not in (True, "fitted"):
+        if scatter_by_body not in (True, "fitted"):
             out[body] = np.full(
                 int(np.prod([ds.sizes[d] for d in dims])),
-                math.log10(float(wanted)) / DEVIATES_10_TO_90,
+                math.log10(float(scatter_by_body)) / DEVIATES_10_TO_90,
             )
         elif field in ds.variables:
             names = flat(ds, field, dims)

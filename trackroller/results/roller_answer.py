@@ -367,18 +367,20 @@ def _required(ds: xr.Dataset, inputs: Mapping[str, Any]) -> tuple[Required, ...]
     """Return what is required of the roller: the key `requirement`, and the travel that wear has to
     allow.
     """
-    found = []
+    required = []
     for name, own in requirement_of(ds).items():
         if name in OF_PAIR:
             words, units = FIRST_LIMIT[1], "h"
         else:
             words, units = (PARTS[name].words, PARTS[name].variable.units)
-        found.append(Required(name, words, units, own.least, own.most, own.probability, own.years))
+        required.append(
+            Required(name, words, units, own.least, own.most, own.probability, own.years)
+        )
     travel = inputs.get("required_travel")
     if travel is not None and not math.isnan(float(travel)):
         hours = float(travel) / (KM_PER_HOUR * float(inputs["velocity"]))
-        found.append(Required(*FIRST_LIMIT, least=hours))
-    return tuple(found)
+        required.append(Required(*FIRST_LIMIT, least=hours))
+    return tuple(required)
 
 
 def _columns(ds: xr.Dataset, own: Sequence[Margin]) -> tuple[Column, ...]:
@@ -388,15 +390,15 @@ def _columns(ds: xr.Dataset, own: Sequence[Margin]) -> tuple[Column, ...]:
     ranges.
     """
     apart = any(margin.low < margin.high for margin in own)
-    found = []
+    columns = []
     for one in COLUMNS:
         until, role = RANGES.get(one.name, (one.until, one.role))
         if one.name == "hours" and not apart:
             role = "file"
-        found.append(Column(one.name, one.title, one.units, one.meaning, one.kind, until, role))
+        columns.append(Column(one.name, one.title, one.units, one.meaning, one.kind, until, role))
     if duty_of(ds):
-        found.append(YEARS)
-    return tuple(found)
+        columns.append(YEARS)
+    return tuple(columns)
 
 
 def _table(ds: xr.Dataset, own: Sequence[Margin], required: Sequence[Required]) -> pd.DataFrame:
@@ -574,11 +576,13 @@ def _contacts(ds: xr.Dataset) -> pd.DataFrame:
 
 def quantities(ds: xr.Dataset, names: Iterable[str]) -> pd.DataFrame:
     """Return one row for each finite one of some results, with its value and unit."""
-    found = [
+    entries = [
         (n, _without_rounding(ds.variables[n].values), VARIABLES[n].units) for n in names if n in ds
     ]
     rows = [
-        [quantity_words(name), value, units] for name, value, units in found if math.isfinite(value)
+        [quantity_words(name), value, units]
+        for name, value, units in entries
+        if math.isfinite(value)
     ]
     return pd.DataFrame(rows, columns=["quantity", "value", "units"])
 
@@ -606,7 +610,7 @@ def checks_left_out(ds: xr.Dataset, known: Collection[str] = ()) -> dict[str, tu
     """
     if ds["regime"].ndim == 0 and REGIMES[int(ds["regime"])] == "failed":
         return {}
-    found: dict[str, list[str]] = {body: [] for body in BODIES}
+    checks: dict[str, list[str]] = {body: [] for body in BODIES}
     for limit in (one for one in judged() if one.name not in known):
         for body in limit.bodies:
             why = ", ".join(_missing(ds, limit.name, body))
@@ -615,10 +619,10 @@ def checks_left_out(ds: xr.Dataset, known: Collection[str] = ()) -> dict[str, tu
                     words = f"{limit.word} ({why})"
                 else:
                     words = limit.word
-                found[body].append(words)
+                checks[body].append(words)
             elif why and _lacks_hours(ds, limit.name, body):
-                found[body].append(f"hours of {limit.word} ({why})")
-    return {body: tuple(words) for body, words in found.items()}
+                checks[body].append(f"hours of {limit.word} ({why})")
+    return {body: tuple(words) for body, words in checks.items()}
 
 
 def _is_known(ds: xr.Dataset, name: str, body: str) -> bool:
@@ -649,14 +653,14 @@ def _lacks_hours(ds: xr.Dataset, name: str, body: str) -> bool:
 
 def _missing(ds: xr.Dataset, name: str, body: str) -> list[str]:
     """Return what a limit lacks for a body."""
-    asked = str(ds.attrs.get("limits", "")).split()
-    if "limit_state" in ds and asked and name not in asked:
+    limits = str(ds.attrs.get("limits", "")).split()
+    if "limit_state" in ds and limits and name not in limits:
         return ["left out"]
     material = material_name(ds, body)
     regime = ""
     if ds["regime"].ndim == 0:
         regime = REGIMES[int(ds["regime"])]
-    found = []
+    words_of_lacks = []
     for lack in (lack for lack in lacks_of(ds) if lack.limit == name):
         of_guide = not lack.material and lack.name in OF_GUIDE
         if of_guide and (body != "guide" or regime in STOPPED):
@@ -667,10 +671,10 @@ def _missing(ds: xr.Dataset, name: str, body: str) -> list[str]:
             words = lack.words
         else:
             words = f"give {lack.name}"
-        found.append(words)
-    if not found and regime in STOPPED:
+        words_of_lacks.append(words)
+    if not words_of_lacks and regime in STOPPED:
         return [STOPPED[regime]]
-    return found
+    return words_of_lacks
 
 
 def material_name(ds: xr.Dataset, body: str) -> str:
@@ -766,12 +770,12 @@ def beyond_tests(ds: xr.Dataset) -> list[str]:
     """Return what tests do not tell of the lives by fatigue of a solved case; [] for materials that
     were not fitted.
     """
-    found, others = fits_of_case(ds)
-    said = [
+    fits, others = fits_of_case(ds)
+    texts = [
         f"The values of {name} hold for {options} alone: solve with it, or fit the tests anew."
         for name, options in others.items()
     ]
-    return [*said, *filter(None, (_beyond(ds, body, fit) for body, fit in found.items()))]
+    return [*texts, *filter(None, (_beyond(ds, body, fit) for body, fit in fits.items()))]
 
 
 def _beyond(ds: xr.Dataset, body: str, fit: StoredFit) -> str:

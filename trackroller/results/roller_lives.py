@@ -146,13 +146,13 @@ def _of_body(
     for probability, cycles in lives.items():
         hours = cycles / overrollings(inputs, body)
         beyond = yes_or_blank(bool(past_data(cycles, material.cycles_at_fatigue_limit)))
-        told = {
+        row = {
             "probability": probability,
             "contact": contact,
             "basis": basis,
             "extrapolated": beyond,
         }
-        yield _row(body, inputs, hours, hours, **told)
+        yield _row(body, inputs, hours, hours, **row)
 
 
 def _by_tests(
@@ -167,8 +167,8 @@ def _by_tests(
     basis = f"90 % by the {fit.rows} tests of {fit.name}"
     for probability in TESTED:
         low, high = fit.cycles(stress, probability)
-        told = {"probability": probability, "basis": basis, "extrapolated": beyond}
-        row = _row(body, inputs, low / rate, high / rate, **told)
+        entry = {"probability": probability, "basis": basis, "extrapolated": beyond}
+        row = _row(body, inputs, low / rate, high / rate, **entry)
         # known without the overrollings of the guide
         yield row | {"cycles_low": low, "cycles_high": high}
 
@@ -188,7 +188,7 @@ def _of_pair(
     body = "roller"
     if first == "guide":
         body = "guide"
-    told = {
+    row = {
         "body": "pair",
         "probability": MEDIAN,
         "cycles_low": math.nan,
@@ -196,12 +196,12 @@ def _of_pair(
         "rate": math.nan,
     }
     if why:
-        return _row(body, inputs, math.nan, math.nan) | told | {"why": WHY[why]}
+        return _row(body, inputs, math.nan, math.nan) | row | {"why": WHY[why]}
     cycles = float(ds["life_cycles"].sel(body=body).min())
     beyond = yes_or_blank(bool(past_data(cycles, materials[body].cycles_at_fatigue_limit)))
-    said = ENDS_PAIR[first]
+    ending = ENDS_PAIR[first]
     return (
         _row(body, inputs, hours, hours)
-        | told
-        | {"basis": "S-N line", "extrapolated": beyond, "why": said}
+        | row
+        | {"basis": "S-N line", "extrapolated": beyond, "why": ending}
     )

@@ -41,7 +41,7 @@ from trackroller.study.outputs import Output, outputs, regimes
 log = logging.getLogger("trackroller")
 
 
-def _of_replicates(found: Estimated, y: np.ndarray, design: Design) -> Estimated:
+def _of_replicates(estimates: Estimated, y: np.ndarray, design: Design) -> Estimated:
     """Replace the intervals and the course of the headline indices by those of the replicates of a
     grown sample.
     """
@@ -52,7 +52,7 @@ def _of_replicates(found: Estimated, y: np.ndarray, design: Design) -> Estimated
     course = convergence.course(
         lambda samples: method.replicated(y, design, samples), at, out, method.narrowed
     )
-    return found._replace(estimates=found.estimates | out | course, sizes=at)
+    return estimates._replace(estimates=estimates.estimates | out | course, sizes=at)
 
 
 @made_once
@@ -73,12 +73,12 @@ def indices_of(results: SolvedCases) -> xr.Dataset:
 def analysis_of(results: SolvedCases) -> xr.Dataset | None:
     """Return the sensitivity indices of a study; None for a study that has none."""
     try:
-        found = indices_of(results)
+        indices = indices_of(results)
     except InputError as error:
         log.info("no sensitivity analysis: %s", error)
         return None
-    if found.data_vars:
-        return found
+    if indices.data_vars:
+        return indices
     return None
 
 
@@ -122,9 +122,9 @@ def analyse(results: SolvedCases) -> xr.Dataset:
     judged = results.judged_targets
     scatter = {n: np.where(results.ended_by_fatigue(), own.get("roller", 0.0), 0.0) for n in judged}
     aims = xr.Dataset()
-    wanted = results.config.requirement
-    if wanted and design.method.weighted:
-        aims = targets(ds, design, wanted, own | scatter, results.held, judged)
+    requirement = results.config.requirement
+    if requirement and design.method.weighted:
+        aims = targets(ds, design, requirement, own | scatter, results.holds, judged)
     if given.material_scatter == "fitted":
         aims = aims.merge(bands(results, own), join="left", combine_attrs="override")
     if design.method.points:
@@ -170,7 +170,9 @@ def analyse(results: SolvedCases) -> xr.Dataset:
     return result.merge(aims, combine_attrs="override")
 
 
-def _of_groups_and_levels(design: Design, columns: Sequence[Output], asked: Analysis) -> xr.Dataset:
+def _of_groups_and_levels(
+    design: Design, columns: Sequence[Output], settings: Analysis
+) -> xr.Dataset:
     """Compute the indices of groups and within the levels of a category that a study file asks for.
 
     Parameters
@@ -187,8 +189,8 @@ def _of_groups_and_levels(design: Design, columns: Sequence[Output], asked: Anal
     """
     variables: dict[str, Any] = {}
     coords: dict[str, Any] = {}
-    if asked.groups:
-        groups = all_groups(asked.groups, design.factors)
+    if settings.groups:
+        groups = all_groups(settings.groups, design.factors)
         coords["group"] = np.array(list(groups), dtype=object)
         words = [
             factor_name(name) if name in design.factors else name.replace("_", " ")
@@ -201,7 +203,7 @@ def _of_groups_and_levels(design: Design, columns: Sequence[Output], asked: Anal
             design.method.group_indices(column.values, design, groups) for column in columns
         ]
         variables |= stacked(design.method, estimates, ("output", "group"))
-    category = asked.conditional_on
+    category = settings.conditional_on
     if category:
         levels = design.factors[category].levels
         coords["level"] = (

@@ -248,10 +248,10 @@ def sizing_studies(
     studies = {}
     if life is not None:
         required = {**(keys.get("requirement") or {}), _life_of(keys): {"min": life}}
-        more: dict[str, Any] = {"requirement": required}
+        added: dict[str, Any] = {"requirement": required}
         if least:
-            more["pareto"] = {least: "min"}
-        studies["life"] = keys | more
+            added["pareto"] = {least: "min"}
+        studies["life"] = keys | added
     elif on_carriage:
         studies["life"] = keys
     if safety is not None:
@@ -599,26 +599,26 @@ def _with_overload(table: pd.DataFrame, results: Results, safety: float) -> pd.D
     lacks = np.zeros(len(table), dtype=bool)
     if "load_ratio" in table:
         lacks = (table["load_ratio"] < safety * (1.0 - EXACT)).to_numpy()
-    found = []
+    texts = []
     for place, name in enumerate(table.index):
         row = rows.loc[name]
         if row["exceeded"]:  # by a second model too, such as a catalogue
-            found.append(str(row["exceeded"]))
+            texts.append(str(row["exceeded"]))
         elif lacks[place]:
             ends, ratio = table.loc[name, ["load_ends", "load_ratio"]]
-            found.append(f"{ends} at {ratio:.3g} times the forces")
+            texts.append(f"{ends} at {ratio:.3g} times the forces")
         elif row["holds"] == row["of"]:
-            found.append("held")
+            texts.append("held")
         elif row["judged"] == row["of"]:
-            found.append("does not roll")
+            texts.append("does not roll")
         else:
-            found.append("not judged")
-    table = table.assign(overload=found)
-    held = table["overload"] == "held"
+            texts.append("not judged")
+    table = table.assign(overload=texts)
+    is_held = table["overload"] == "held"
     unknown = table["overload"] == "not judged"
-    verdict = np.where(held, table["verdict"], np.where(unknown, VERDICTS[1], VERDICTS[2]))
+    verdict = np.where(is_held, table["verdict"], np.where(unknown, VERDICTS[1], VERDICTS[2]))
     table["verdict"] = np.where(table["verdict"] == VERDICTS[2], VERDICTS[2], verdict)
-    added = [f"overload: {text}" if text not in ("held", "not judged") else "" for text in found]
+    added = [f"overload: {text}" if text not in ("held", "not judged") else "" for text in texts]
     both = zip(table["excluded_by"], added, strict=True)
     return table.assign(excluded_by=["; ".join(filter(None, pair)) for pair in both])
 
@@ -630,15 +630,15 @@ def _ranked(
     longer life.
     """
     place = [VERDICTS.index(word) for word in table["verdict"]]
-    wanted = np.zeros(len(table))
+    priority = np.zeros(len(table))
     unranked: tuple[str, ...] = ()
     if least:
-        wanted = table[least].to_numpy(dtype=float)
-        unranked = tuple(str(name) for name in table.index[np.isnan(wanted)])
+        priority = table[least].to_numpy(dtype=float)
+        unranked = tuple(str(name) for name in table.index[np.isnan(priority)])
     life = np.zeros(len(table))
     if "life_hours" in table:
         life = np.nan_to_num(table["life_hours"].to_numpy(dtype=float), nan=-1.0)
-    keys = (-life, np.where(np.isnan(wanted), np.inf, wanted), np.array(place))
+    keys = (-life, np.where(np.isnan(priority), np.inf, priority), np.array(place))
     order = np.lexsort(keys)
     table = table.iloc[order].reset_index()
     enough = table[(table["verdict"] == VERDICTS[0]) & ~table[ROLLER].isin(unranked)]

@@ -87,7 +87,7 @@ class SolvedCases:
         return "missing_cases" in self.data.attrs
 
     @cached_property
-    def made(self) -> dict[Any, Any]:
+    def by_function(self) -> dict[Any, Any]:
         """Return what functions with `made_once` made of these cases, by the function and its
         further arguments.
         """
@@ -276,12 +276,12 @@ class SolvedCases:
         shape (n,) bool.
         """
         if rows is None:
-            kept = np.ones(len(self.table), dtype=bool)
+            counted = np.ones(len(self.table), dtype=bool)
         else:
-            kept = rows.copy()
+            counted = rows.copy()
         for option in (n for n in self.factors if n in OPTION_FACTORS):
-            kept &= (self.table[option] == self.held_level(option)).to_numpy()
-        return kept
+            counted &= (self.table[option] == self.held_level(option)).to_numpy()
+        return counted
 
     def held_level(self, name: str) -> Any:
         """Return the level at which a factor is held.
@@ -309,11 +309,11 @@ class SolvedCases:
         names = self.factors
         if not self.grid:
             names = tuple(f for f in self.factors if f in OPTION_FACTORS)
-        held = {f: self.held_level(f) for f in names if f not in shown}
+        levels = {f: self.held_level(f) for f in names if f not in shown}
         rows = self.table
-        for name, level in held.items():
+        for name, level in levels.items():
             rows = rows[rows[name] == level]
-        return rows, held
+        return rows, levels
 
     @cached_property
     def life(self) -> tuple[str, str, str] | None:
@@ -337,8 +337,8 @@ class SolvedCases:
 
         The lives by the S-N curve hold at 50 % and do not take its place.
         """
-        asked = float(self.data.attrs.get("failure_probability", 0.5)) != 0.5
-        return asked and FIRST_LIMIT[0] in self.table and not self.knows(FIRST_LIMIT[0])
+        differs = float(self.data.attrs.get("failure_probability", 0.5)) != 0.5
+        return differs and FIRST_LIMIT[0] in self.table and not self.knows(FIRST_LIMIT[0])
 
     @property
     def fatigue_lives(self) -> tuple[tuple[str, str, str], ...]:
@@ -496,7 +496,7 @@ class SolvedCases:
         )
 
     @cached_property
-    def held(self) -> np.ndarray:
+    def holds(self) -> np.ndarray:
         """Return the valid cases that exceed no limit on values that were given, shape (n,)."""
         return np.asarray(self.valid & ~self.any_limit_in("exceeded"))
 
@@ -581,7 +581,7 @@ class SolvedCases:
         that fail at once.
         """
         if of_first_limit(column.name):
-            return np.where(self.valid & ~self.held, 0.0, column.values)
+            return np.where(self.valid & ~self.holds, 0.0, column.values)
         if not of_fatigue(column.name):
             return column.values
         body = ""
@@ -611,10 +611,10 @@ def made_once(function: Callable[..., Made]) -> Callable[..., Made]:
     @functools.wraps(function)
     def once(results: SolvedCases, *arguments: Any) -> Made:
         key = (function, *arguments)
-        if key not in results.made:
-            results.made[key] = function(results, *arguments)
-        made: Made = results.made[key]
-        return made
+        if key not in results.by_function:
+            results.by_function[key] = function(results, *arguments)
+        result: Made = results.by_function[key]
+        return result
 
     return once
 

@@ -156,9 +156,9 @@ def _margins(ds: xr.Dataset) -> list[Margin]:
     """Return the limits of both bodies in the order in which they are reached; without limits
     fatigue alone.
     """
-    found = [*_of_limits(ds), *_of_pressure(ds)]
+    listed = [*_of_limits(ds), *_of_pressure(ds)]
     return sorted(
-        found,
+        listed,
         key=lambda one: (
             one.state != "exceeded",
             one.reached,
@@ -411,14 +411,14 @@ def _lives(ds: xr.Dataset) -> pd.DataFrame:
                 }
         for probability, shifts in lives.items():
             lengths = {"hours": shifts * shift, "km": shifts * km, "shifts": shifts}
-            told = {
+            row = {
                 "body": body,
                 "probability": probability,
                 "at_most": at_most,
                 "contact": contact,
                 "why": why,
             }
-            rows.append(told | lengths)
+            rows.append(row | lengths)
     return pd.DataFrame(rows, columns=[one.name for one in OF_LIVES])
 
 
@@ -441,19 +441,19 @@ def _why_unknown(ds: xr.Dataset, body: str) -> tuple[str, float]:
     unsolved = np.isnan(
         ds["peak_stress"].sel(body=body).transpose("block", "contact").values[unknown]
     ).any(axis=1)
-    said = [
+    reasons = [
         f"no stress in {n} ({REGIME_LABELS[r]})"
         for n, r in zip(names[unsolved], regimes[unsolved], strict=True)
     ]
-    said += [f"its peak stress exceeds its tensile strength in {n}" for n in names[breaks]]
-    said += [f"the roller skids in {n}" for n in names[skids & ~breaks]]
-    if not said:
-        said = ["give guide_overrollings_per_hour, or guide_overrollings of each block"]
+    reasons += [f"its peak stress exceeds its tensile strength in {n}" for n in names[breaks]]
+    reasons += [f"the roller skids in {n}" for n in names[skids & ~breaks]]
+    if not reasons:
+        reasons = ["give guide_overrollings_per_hour, or guide_overrollings of each block"]
     known = float(np.nansum(damage))
     bound = math.nan
     if known > 0:
         bound = ds.attrs["critical_damage"] / known * float(ds["duration"].sum())
-    return "; ".join(said), bound
+    return "; ".join(reasons), bound
 
 
 def _parts(ds: xr.Dataset, lives: pd.DataFrame) -> Iterable[Part]:
@@ -538,12 +538,12 @@ def not_given_values(ds: xr.Dataset) -> dict[str, str]:
 
 def _reasons(ds: xr.Dataset) -> dict[str, list[str]]:
     """Return why the model does not judge blocks with travel, and these blocks."""
-    found: dict[str, list[str]] = {}
+    reasons: dict[str, list[str]] = {}
     for place, name in enumerate(ds["block"].values):
         if float(ds["distance"][place]) > 0:
             for reason in not_judged(ds.isel(block=place)):
-                found.setdefault(reason, []).append(str(name))
-    return found
+                reasons.setdefault(reason, []).append(str(name))
+    return reasons
 
 
 def _flagged_blocks(ds: xr.Dataset) -> dict[tuple[str, str], list[str]]:
@@ -578,5 +578,5 @@ def _warnings(ds: xr.Dataset) -> Iterator[Caution]:
         yield Caution("not_given", 1, 1, question, "")
     words = not_given_values(ds)
     if words:
-        told = ", ".join(f"{long_name_of(name)} {value}" for name, value in words.items())
-        yield Caution("not_given", 1, 1, told, "")
+        values_given = ", ".join(f"{long_name_of(name)} {value}" for name, value in words.items())
+        yield Caution("not_given", 1, 1, values_given, "")

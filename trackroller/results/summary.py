@@ -64,23 +64,23 @@ def _factors(results: SolvedCases) -> str:
 def _regimes(results: SolvedCases) -> str:
     """Return how many cases roll, skid, lift off or failed."""
     counts = np.bincount(results.regime.astype(int), minlength=len(REGIMES))
-    found = [
+    parts = [
         f"{count:,} {name.replace('_', ' ')}"
         for name, count in zip(REGIMES, counts, strict=True)
         if count
     ]
-    return ", ".join(found)
+    return ", ".join(parts)
 
 
 def _outputs(results: SolvedCases) -> list[str]:
     """Return the outputs of the summary: the life that counts, and the outputs that the study asks
     for.
     """
-    found = []
+    names = []
     if results.life is not None:
-        found = [results.life[0]]
-    found += [name for name in results.config.requirement if name not in found]
-    return found[:MOST_NAMED]
+        names = [results.life[0]]
+    names += [name for name in results.config.requirement if name not in names]
+    return names[:MOST_NAMED]
 
 
 def _range(results: SolvedCases, name: str) -> str:

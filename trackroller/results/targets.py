@@ -51,7 +51,7 @@ class Level(NamedTuple):
 def targets(
     ds: xr.Dataset,
     design: Design,
-    wanted: Mapping[str, Requirement],
+    requirement: Mapping[str, Requirement],
     deviations: Mapping[str, np.ndarray],
     allowed: np.ndarray | None = None,
     judged: Mapping[str, np.ndarray] = MappingProxyType({}),
@@ -83,13 +83,15 @@ def targets(
     their bounds.
     """
     columns = outputs(
-        ds, design.factors, list(wanted), scale="natural", unlimited=True, allowed=allowed
+        ds, design.factors, list(requirement), scale="natural", unlimited=True, allowed=allowed
     )
     columns = [_judged(c, judged[c.name], allowed) if c.name in judged else c for c in columns]
     hits = np.stack(
         [
             hits_of(
-                c, wanted[c.name], deviations.get(c.name, deviations.get(scattering_body(c.name)))
+                c,
+                requirement[c.name],
+                deviations.get(c.name, deviations.get(scattering_body(c.name))),
             )
             for c in columns
         ],
@@ -107,7 +109,7 @@ def targets(
     else:
         dims = ("target",)
         levels, estimates = _of_rows(hits, design)
-    out = xr.Dataset(coords=_coordinates(names, columns, wanted, levels))
+    out = xr.Dataset(coords=_coordinates(names, columns, requirement, levels))
     for end, whole in zip(ENDS, estimates[0], strict=True):
         out[f"target_probability{end}"] = (dims, whole, {"units": "1"})
     for end, part in zip(ENDS, zip(*estimates[1:], strict=True), strict=False):
@@ -296,14 +298,17 @@ def _finite(limits: list[float]) -> np.ndarray:
 
 
 def _coordinates(
-    names: list[str], columns: list[Output], wanted: Mapping[str, Requirement], levels: list[Level]
+    names: list[str],
+    columns: list[Output],
+    requirement: Mapping[str, Requirement],
+    levels: list[Level],
 ) -> dict[str, Any]:
     words = [c.long_name for c in columns]
     units = [c.units for c in columns]
     if len(names) > len(columns):
         words.append("all targets")
         units.append("1")
-    limits = [wanted.get(name, Requirement()) for name in names]
+    limits = [requirement.get(name, Requirement()) for name in names]
     return {
         "target": np.array(names, dtype=str),
         "target_name": ("target", np.array(words, dtype=str)),

@@ -42,13 +42,13 @@ class Turning:
         data = self.own.results.data
         if self.own.ranges.output != FIRST_LIMIT or "life_hours_by_limit_low" not in data:
             return None
-        found = []
+        ends = []
         for end in ("_low", "_high"):
             moved = self.own.ranges.hours_at(end)
             if moved is None:
                 moved = reached_by_body(self.own.results, end)
-            found.append(moved)
-        return found[0], found[1]
+            ends.append(moved)
+        return ends[0], ends[1]
 
     @cached_property
     def _worst(self) -> dict[tuple[int, int], np.ndarray]:
@@ -57,9 +57,11 @@ class Turning:
     @cached_property
     def placeholders(self) -> list[Placeholder]:
         """Return the placeholders of limits that end lives, and the tests of fitted materials."""
-        found = [one for one in placeholders_of(self.own.results.data) if one.limit not in BESIDE]
+        placeholders = [
+            one for one in placeholders_of(self.own.results.data) if one.limit not in BESIDE
+        ]
         tests = [Placeholder("fatigue", name, "tests") for name in self.own.ranges.tested]
-        return found + tests
+        return placeholders + tests
 
     def moves(self, one: Placeholder, rows: np.ndarray) -> np.ndarray:
         """Return which limits and bodies of some cases rest on a placeholder, (rows, limit, 2)
@@ -92,7 +94,7 @@ class Turning:
     def _worst_of(self, number: int, one: Placeholder) -> np.ndarray:
         assert self.hours is not None
         rows = self.own.rows[number]
-        rows = rows[self.own.reachable[rows] & self.own.ranges.held[rows]]
+        rows = rows[self.own.reachable[rows] & self.own.ranges.holds[rows]]
         if not len(rows):
             return np.zeros(len(STEPS))
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -124,7 +126,7 @@ class Turning:
         if self.hours is None:
             return None
         best = LEAST
-        found = None
+        placeholder = None
         for one in self.placeholders:
             mine = self.worst(leader, one)
             if mine[-1] <= mine[0] * (1 + 1e-9):
@@ -139,8 +141,8 @@ class Turning:
                         first_met = int(np.argmin(ahead))
                     else:
                         first_met = int(np.argmax(ahead))
-                    found = self.told(one, first_met)
-        return found
+                    placeholder = self.record_of(one, first_met)
+        return placeholder
 
     def decides(self, number: int, least: float) -> dict[str, Any] | None:
         """Return the placeholder whose place decides whether a candidate reaches a life; None
@@ -151,7 +153,7 @@ class Turning:
         if self.hours is None:
             return None
         widest = 1.0
-        found = None
+        placeholder = None
         for one in self.placeholders:
             mine = self.worst(number, one)
             width = np.inf
@@ -164,10 +166,10 @@ class Turning:
             if enough[-1] and not enough[0]:
                 step = int(np.argmax(enough))
             widest = width
-            found = self.told(one, step)
-        return found
+            placeholder = self.record_of(one, step)
+        return placeholder
 
-    def told(self, one: Placeholder, step: int) -> dict[str, Any]:
+    def record_of(self, one: Placeholder, step: int) -> dict[str, Any]:
         """Return a placeholder with the value at one of `STEPS`, -1 for none; only a wear
         coefficient has one.
         """
@@ -216,15 +218,17 @@ class Turning:
                     "turn": np.nan,
                     "units": "",
                 }
-            found = self.told(known[0], -1)
+            placeholder = self.record_of(known[0], -1)
             if len(known) > 1:
-                found["what"] = " or ".join(dict.fromkeys(one.name for one in known))
+                placeholder["what"] = " or ".join(dict.fromkeys(one.name for one in known))
             if known[0].name == "yield_strength":
                 stored = json.loads(str(results.data.attrs.get("materials", "{}"))).get(
                     material, {}
                 )
-                found["turn"] = float(stored.get("yield_strength", np.nan)) * float(np.nanmax(use))
-            return found
+                placeholder["turn"] = float(stored.get("yield_strength", np.nan)) * float(
+                    np.nanmax(use)
+                )
+            return placeholder
         return None
 
     def of_span(self, leader: int, rivals: list[int]) -> dict[str, Any] | None:
@@ -256,14 +260,16 @@ class Turning:
         if own.spans[0] != COEFFICIENT and known is not None and 0 < mine.min() < mine.max():
             target = max(self._middle(rival, levels) for rival in overtaking)
             share = np.log(target / mine.min()) / np.log(mine.max() / mine.min())
-            return self.told(known, int(np.clip(np.searchsorted(STEPS, share), 0, len(STEPS) - 1)))
+            return self.record_of(
+                known, int(np.clip(np.searchsorted(STEPS, share), 0, len(STEPS) - 1))
+            )
         name = own.spans[0]
         values = own.results.levels(name)
         what = name
         if name == COEFFICIENT:
             what = "wear_coefficient"
-        found = {"what": what, "of": "", "on": "", "turn": np.nan, "units": "times its value"}
-        return found | {"low": values[0], "high": values[-1]}
+        quantity = {"what": what, "of": "", "on": "", "turn": np.nan, "units": "times its value"}
+        return quantity | {"low": values[0], "high": values[-1]}
 
     def _middle(self, number: int, levels: np.ndarray) -> float:
         """Return the geometric middle of the range of a candidate over the places of the
@@ -294,8 +300,8 @@ class Turning:
         own = self.own
         rows = own.rows[number]
         rows = rows[own.reachable[rows]]
-        found = [
+        at_level = [
             own.ranges.middle[rows[own.level[rows] == level]].min(initial=np.inf)
             for level in levels
         ]
-        return np.array(found)
+        return np.array(at_level)

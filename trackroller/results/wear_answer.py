@@ -273,5 +273,5 @@ def _warnings(ds: xr.Dataset, guesses: Part) -> Iterator[Caution]:
     yield from friction_cautions(ds.attrs)
     words = _not_given(ds)
     if words:
-        told = ", ".join(f"{long_name_of(name)} {value}" for name, value in words.items())
-        yield Caution("not_given", 1, 1, told, "")
+        text = ", ".join(f"{long_name_of(name)} {value}" for name, value in words.items())
+        yield Caution("not_given", 1, 1, text, "")

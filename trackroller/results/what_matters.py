@@ -49,9 +49,9 @@ def shown_ranges(results: SolvedCases) -> CaseRanges | None:
         if life is not None and named[0] == life[0]:
             return CaseRanges(results, life, True)
         return CaseRanges(results, (named[0], words, units), is_life(named[0]))
-    found = compared_output(results, required)
-    if found is not None:
-        return CaseRanges(results, *found)
+    compared = compared_output(results, required)
+    if compared is not None:
+        return CaseRanges(results, *compared)
     for name in default_names(results.data, results.design.factors, results.dims):
         _, units, words = results.quantity(name)
         return CaseRanges(results, (name, words, units), False)
@@ -119,7 +119,7 @@ def _table(results: SolvedCases, ranges: CaseRanges, curves: tuple[Curve, ...]) 
     sens = _indices(results, ranges)
     known = {curve.factor: curve for curve in curves}
     lost = _lost(results, ranges)
-    found = []
+    rows = []
     for name in (n for n in results.factors if n not in OPTION_FACTORS):
         row: dict[str, Any] = {
             "factor": long_name_of(name),
@@ -140,8 +140,8 @@ def _table(results: SolvedCases, ranges: CaseRanges, curves: tuple[Curve, ...]) 
             row["at_high"] = float(curve.middle[-1])
         if sens is not None:
             row |= _index(sens, ranges.output[0], name)
-        found.append(row)
-    table = pd.DataFrame(found)
+        rows.append(row)
+    table = pd.DataFrame(rows)
     by_index = sens is not None and not index_words(sens, headline(sens)).sized
     if by_index and "index" in table:
         keys = ["index", "height"]
@@ -215,7 +215,7 @@ def _lost(results: SolvedCases, ranges: CaseRanges) -> dict[str, int]:
     most less least.
     """
     rows = results.of_one_model()
-    bad = (~ranges.held)[rows]
+    bad = (~ranges.holds)[rows]
     out = {}
     for name in results.factors:
         own = results.table[name].to_numpy()[rows]
@@ -239,24 +239,24 @@ def _named(table: pd.DataFrame, curves: tuple[Curve, ...], place: int) -> dict[s
     """Return what a headline says of a factor."""
     row = table.iloc[place]
     curve = next((one for one in curves if one.factor == row["name"]), None)
-    told: dict[str, Any] = {
+    head: dict[str, Any] = {
         "title": row["factor"],
         "name": row["name"],
         "height": float(row["height"]),
     }
-    told |= {key: float(row.get(key, np.nan)) for key in ("index", "index_low", "index_high")}
+    head |= {key: float(row.get(key, np.nan)) for key in ("index", "index_low", "index_high")}
     if curve is not None:
         low, high = (0, len(curve.levels) - 1)
         if not curve.ordered or curve.shape in ("hump", "dip"):
             low, high = int(curve.middle.argmin()), int(curve.middle.argmax())
-        told |= {
+        head |= {
             "units": curve.units,
             "from": curve.levels[low],
             "to": curve.levels[high],
             "at_from": float(curve.middle[low]),
             "at_to": float(curve.middle[high]),
         }
-    return told
+    return head
 
 
 def _in_order(curves: tuple[Curve, ...], table: pd.DataFrame) -> tuple[Curve, ...]:

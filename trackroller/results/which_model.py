@@ -73,9 +73,9 @@ def answer_which_model(results: SolvedCases) -> Answer:
     """
     models = models_of(results)
     required = required_of(results)
-    found = compared_output(results, required)
-    assert found is not None
-    ranges = CaseRanges(results, *found)
+    compared = compared_output(results, required)
+    assert compared is not None
+    ranges = CaseRanges(results, *compared)
     parts = {model: _of_model(results, ranges, model, models[0]) for model in models}
     table = pd.DataFrame([parts[model] for model in models])
     verdicts = {str(row["verdict"]) for row in parts.values()}
@@ -89,7 +89,7 @@ def answer_which_model(results: SolvedCases) -> Answer:
     largest = np.nan
     if table["ratio_high"].notna().any():
         largest = float(np.nanmax(table["ratio_high"]))
-    told = {
+    head = {
         "changes": " and ".join(changed),
         "base": base,
         "models": [
@@ -105,7 +105,7 @@ def answer_which_model(results: SolvedCases) -> Answer:
     return Answer(
         question="which model",
         kind=kind,
-        headline=told,
+        headline=head,
         output=ranges.output,
         table=table.drop(columns=["names", "leader_key"]),
         columns=_columns(ranges, bool(required), several),
@@ -150,7 +150,7 @@ def _of_model(results: SolvedCases, ranges: CaseRanges, model: str, base: str) -
     if required:
         meets = int(sure[own.own].sum())
     else:
-        meets = int(own.ranges.held[own.own].sum())
+        meets = int(own.ranges.holds[own.own].sum())
     return {
         "model": model,
         "verdict": plain(leader["state"]) or decided.kind,
@@ -166,7 +166,7 @@ def _of_model(results: SolvedCases, ranges: CaseRanges, model: str, base: str) -
         "ratio_high": ratio_high,
         "like": int(ratios.size),
         "meets": meets,
-        "holds": int(own.ranges.held[own.own].sum()),
+        "holds": int(own.ranges.holds[own.own].sum()),
         "of": int(own.own.sum()),
         "skids": int((own.ranges.reason[own.own] == "skids").sum()),
     }
@@ -176,13 +176,13 @@ def _like(results: SolvedCases, model: str, base: str) -> tuple[np.ndarray, np.n
     """Return the cases of two models that agree in all other factors, shape (k,) each."""
     others = [name for name in results.factors if name != MODEL]
     key = codes(results.table, others)
-    found = []
+    pairs = []
     for name in (model, base):
         rows = np.flatnonzero((results.table[MODEL] == name).to_numpy())
         first = np.unique(key[rows], return_index=True)
-        found.append((first[0], rows[first[1]]))
-    both = np.intersect1d(found[0][0], found[1][0], assume_unique=True)
-    return tuple(rows[np.searchsorted(keys, both)] for keys, rows in found)  # type: ignore[return-value]
+        pairs.append((first[0], rows[first[1]]))
+    both = np.intersect1d(pairs[0][0], pairs[1][0], assume_unique=True)
+    return tuple(rows[np.searchsorted(keys, both)] for keys, rows in pairs)  # type: ignore[return-value]
 
 
 def _ratios(results: SolvedCases, ranges: CaseRanges, model: str, base: str) -> np.ndarray:
@@ -190,11 +190,11 @@ def _ratios(results: SolvedCases, ranges: CaseRanges, model: str, base: str) -> 
     shape (k,).
     """
     one, other = _like(results, model, base)
-    both = ranges.held[one] & ranges.held[other]
+    both = ranges.holds[one] & ranges.holds[other]
     mine, theirs = ranges.value[one[both]], ranges.value[other[both]]
     with np.errstate(divide="ignore", invalid="ignore"):
-        found = np.where(mine == theirs, 1.0, mine / theirs)
-    return np.asarray(found[np.isfinite(found)])
+        ratios = np.where(mine == theirs, 1.0, mine / theirs)
+    return np.asarray(ratios[np.isfinite(ratios)])
 
 
 def _like_against_like(
@@ -206,7 +206,7 @@ def _like_against_like(
     points = {}
     for model in models[1:]:
         one, other = _like(results, model, models[0])
-        both = ranges.held[one] & ranges.held[other]
+        both = ranges.holds[one] & ranges.holds[other]
         points[model] = {"y": ranges.value[one[both]], "x": ranges.value[other[both]]}
     return {"base": models[0], "points": points}
 

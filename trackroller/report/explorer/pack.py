@@ -110,11 +110,11 @@ def sample_rows(state: np.ndarray, keep: np.ndarray, most: int) -> np.ndarray:
     rare = strata[counts <= RARE]
     chosen |= np.isin(state, rare)
     left = max(0, most - int(chosen.sum()))
-    rest = int(counts[counts > RARE].sum())
+    frequent = int(counts[counts > RARE].sum())
     for stratum, cases in zip(strata, counts, strict=True):
         if cases > RARE:
             rows = np.flatnonzero((state == stratum) & ~keep)
-            share = min(cases, max(RARE, left * cases // rest))
+            share = min(cases, max(RARE, left * cases // frequent))
             chosen[rng.choice(rows, int(share), replace=False)] = True
     return np.flatnonzero(chosen)
 

@@ -43,16 +43,16 @@ def explorer(results: Results) -> dict[str, Any]:
     """
     ds = results.data
     columns = collect(results)
-    settings, more = solve_inputs(results, {c.name: c for c in columns})
-    columns += more
+    settings, setting_columns = solve_inputs(results, {c.name: c for c in columns})
+    columns += setting_columns
     of_designs, lists = design_columns(results)
     columns += of_designs
     state = next(c for c in columns if c.name == "state").values
     cases = len(state)
-    kept = pareto_rows(results, cases) | extreme_rows(
+    chosen = pareto_rows(results, cases) | extreme_rows(
         state, (c.values for c in columns if c.levels is None)
     )
-    rows = sample_rows(state, kept, affordable_rows(columns))
+    rows = sample_rows(state, chosen, affordable_rows(columns))
     if len(rows) < cases:
         columns = [dataclasses.replace(c, values=c.values[rows]) for c in columns]
         columns.append(Column("row", "Row", "", "row", rows.astype(float)))
@@ -77,15 +77,14 @@ def explorer(results: Results) -> dict[str, Any]:
         "lists": lists,
         "columns": packed,
     }
-    said = (
-        f"{count(len(rows))} of {count(cases)} cases are shown: a sample by regime and validity, "
-        "with all cases of rare states, the smallest and the largest value of every quantity in "
-        "every state, and the Pareto set of the study's goals. Counts and shares are those of the "
-        "sample."
-    )
     sampled = ""
     if len(rows) < cases:
-        sampled = said
+        sampled = (
+            f"{count(len(rows))} of {count(cases)} cases are shown: a sample by regime and "
+            "validity, with all cases of rare states, the smallest and the largest value of every "
+            "quantity in every state, and the Pareto set of the study's goals. Counts and shares "
+            "are those of the sample."
+        )
     return {
         "header": _json(header),
         "rows": markupsafe.Markup(block),

@@ -329,8 +329,8 @@ def _first_limits(results: Results) -> list[Column]:
 
 def flag_text(mask: int, flags: Sequence[str]) -> str:
     """Write the validity flags of a bit mask in words, 'none' without a flag."""
-    said = [VALIDITY[flag].words for i, flag in enumerate(flags) if mask & (1 << i)]
-    return "; ".join(said) or "none"
+    words = [VALIDITY[flag].words for i, flag in enumerate(flags) if mask & (1 << i)]
+    return "; ".join(words) or "none"
 
 
 def solve_inputs(
@@ -352,14 +352,14 @@ def solve_inputs(
     ds = results.data
     dims = results.dims
     settings = []
-    more = []
+    columns = []
     for key in (*PARAMETERS, *MATERIAL_FIELDS, *MAPPING_FIELDS, *OPTIONS):
         name = key
         if f"{key}_value" in ds.variables:
             name = f"{key}_value"
         if name in ds.variables and set(ds[name].dims) & set(dims):
             if name not in known:
-                more.append(_input(name, flat(ds, name, dims)))
+                columns.append(_input(name, flat(ds, name, dims)))
             settings.append([key, [name]])
             continue
         text = setting_text(_fixed(ds, results, name))
@@ -367,7 +367,7 @@ def solve_inputs(
             settings.append([key, text])
     if results.config.duty:
         settings.append(["duty", setting_text(dict(results.config.duty)) or ""])
-    return settings, more
+    return settings, columns
 
 
 def _input(name: str, values: np.ndarray) -> Column:

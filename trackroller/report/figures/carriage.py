@@ -123,8 +123,8 @@ def _name(
         labels.setdefault((float(at[j, 0]), float(at[j, 1])), []).append(text)
     for place, texts in labels.items():
         away = (masses - np.array(place)) / size
-        taken = ((away > 0) & (away < np.array([LABEL_WIDTH, LABEL_HEIGHT]))).all(axis=1).any()
-        if taken:
+        is_taken = ((away > 0) & (away < np.array([LABEL_WIDTH, LABEL_HEIGHT]))).all(axis=1).any()
+        if is_taken:
             offset, side = ((6, -6), "top")
         else:
             offset, side = ((6, 6), "baseline")

@@ -151,17 +151,17 @@ def case_name(ds: xr.Dataset) -> str:
     if CASE not in ds.attrs:
         return "one case"
     given = {name: value for name, value in inputs_of(ds).items() if not is_default(name, value)}
-    said = [
+    texts = [
         setting(n, v)
         for n, v in given.items()
         if n in PARAMETERS and isinstance(v, float) and v == v
     ]
     pair = [str(inputs_of(ds)[name]) for name in MATERIAL_FIELDS]
     if set(given) & set(MATERIAL_FIELDS):
-        said += [level_text("material_pair", " / ".join(pair))]
-    said += [long_name(name) for name in given if name in MAPPING_FIELDS]
-    if said:
-        return listing(said)
+        texts += [level_text("material_pair", " / ".join(pair))]
+    texts += [long_name(name) for name in given if name in MAPPING_FIELDS]
+    if texts:
+        return listing(texts)
     return "default case"
 
 

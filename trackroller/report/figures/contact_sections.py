@@ -259,7 +259,7 @@ def _mark_peak(axes: Axes, part: xr.Dataset, plane: tuple[str, str]) -> None:
 def _sentence(part: xr.Dataset, bodies: list[str]) -> str:
     if "peak_stress" not in part or "peak_z" not in part:
         return "The peak was not computed."
-    said = []
+    texts = []
     for body in bodies:
         own = part.sel(body=body)
         value = float(own["peak_stress"])
@@ -268,5 +268,5 @@ def _sentence(part: xr.Dataset, bodies: list[str]) -> str:
             where = "at the surface"
         else:
             where = f"{rounded(depth, 2)} mm deep"
-        said.append(f"{value:.0f} MPa {where} in the {body}")
-    return f"The peak is {' and '.join(said)}."
+        texts.append(f"{value:.0f} MPa {where} in the {body}")
+    return f"The peak is {' and '.join(texts)}."

@@ -56,11 +56,11 @@ def pareto_front(front: xr.Dataset, results: Results | None = None) -> style.Dra
         )
     )
     legend(figure, entries)
-    wanted = listing(
+    goals_words = listing(
         [f"{front[n].attrs.get('long_name') or long_name(n)} {_WAYS[w]}" for n, w in goals]
     )
     return figure, style.FigureInfo(
-        "pareto-front", f"Pareto set for {wanted} (arrows on the axes)."
+        "pareto-front", f"Pareto set for {goals_words} (arrows on the axes)."
     )
 
 
@@ -106,12 +106,18 @@ def _trade(
     xs, ys = front[x].values.astype(float), front[y].values.astype(float)
     finite = np.isfinite(xs) & np.isfinite(ys)
     shown = (front["optimal"].values == 1) & finite
-    rest = np.random.default_rng(1).permutation(np.flatnonzero(finite & ~shown))
+    others = np.random.default_rng(1).permutation(np.flatnonzero(finite & ~shown))
     size = 14
-    if len(rest) > 500:
+    if len(others) > 500:
         size = 6
     axes.scatter(
-        xs[rest], ys[rest], s=size, c=colour[rest].tolist(), alpha=0.6, linewidth=0, rasterized=True
+        xs[others],
+        ys[others],
+        s=size,
+        c=colour[others].tolist(),
+        alpha=0.6,
+        linewidth=0,
+        rasterized=True,
     )
     if joined:
         order = np.argsort(xs[shown])

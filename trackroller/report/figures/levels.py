@@ -50,10 +50,10 @@ def _drive(low: float, high: float) -> str:
     return f"{way}, {rounded(least, 2)} to {rounded(most, 2)} N"
 
 
-def held_words(held: Mapping[str, Any]) -> str:
+def held_words(levels: Mapping[str, Any]) -> str:
     """State the levels at which factors are held; an empty text if no factor is held."""
-    if held:
-        return f"Held: {'; '.join(setting(name, level) for name, level in held.items())}."
+    if levels:
+        return f"Held: {'; '.join(setting(name, level) for name, level in levels.items())}."
     return ""
 
 

@@ -41,7 +41,7 @@ def stress_against_fit(results: Results) -> style.Drawn:
     if not fits or not bodies:
         return None
     hue = _hue(results, f"peak_stress_{bodies[0]}", fits)
-    rows, held = results.hold(tuple(name for name in (*fits, hue) if name))
+    rows, levels_held = results.hold(tuple(name for name in (*fits, hue) if name))
     rows, label = add_fit(results, rows[results.rolling[rows.index]])
     if rows["_fit"].nunique() < 2:
         return None
@@ -83,7 +83,7 @@ def stress_against_fit(results: Results) -> style.Drawn:
         marks = "Filled marks: the peak lies at the surface; hollow marks: below it."
     caption = (
         "Peak von Mises stress (MPa) of roller and guide, the worse of the two contacts, over the "
-        f"fit of groove and guide; rolling cases. {marks} {held_words(held)}"
+        f"fit of groove and guide; rolling cases. {marks} {held_words(levels_held)}"
     )
     return figure, style.FigureInfo("stress_against_fit", caption.strip())
 
@@ -175,7 +175,7 @@ def forces_against_axial(results: Results) -> style.Drawn:
     if "motor_force" in results.factors and len(results.levels("motor_force")) <= 5:
         drives = results.levels("motor_force")
         shown = (*shown, "motor_force")
-    rows, held = results.hold(shown)
+    rows, levels_held = results.hold(shown)
     figure, panels = style.panels(
         "Forces of both contacts against axial force", 74, len(kinds), sharex=True
     )
@@ -200,17 +200,17 @@ def forces_against_axial(results: Results) -> style.Drawn:
         if d is not None
     ]
     legend(figure, entries, 5)
-    caption = _caption_of_forces(len(drives), held, results.grid)
+    caption = _caption_of_forces(len(drives), levels_held, results.grid)
     return figure, style.FigureInfo("forces_against_axial_force", caption)
 
 
-def _caption_of_forces(drives: int, held: dict[str, Any], solved: bool) -> str:
+def _caption_of_forces(drives: int, levels_held: dict[str, Any], solved: bool) -> str:
     each = ""
     if drives > 1:
         each = f", for {drives} motor forces"
     note = MEDIANS
     if solved:
-        note = held_words(held)
+        note = held_words(levels_held)
     caption = (
         "Forces (N) of contact 1 (circles) and contact 2 (squares) on the roller over the axial "
         f"force{each}. {note}"

@@ -48,7 +48,7 @@ def life_map(results: Results) -> style.Drawn:
     if pair is None:
         return None
     column, words, unit = results.life
-    rows, held = results.hold(pair)
+    rows, levels_held = results.hold(pair)
     lives = rows[column][results.rolling[rows.index]]
     if not (np.isfinite(lives) & (lives > 0)).any():
         return None
@@ -71,7 +71,7 @@ def life_map(results: Results) -> style.Drawn:
         and (beyond_sn_data(results, column)[rows.index] & results.rolling[rows.index]).any()
     ):
         how += "; lives in brackets lie beyond the S-N data"
-    return figure, style.FigureInfo("life_map", f"{over}. {how}. {held_words(held)}".strip())
+    return figure, style.FigureInfo("life_map", f"{over}. {how}. {held_words(levels_held)}".strip())
 
 
 def _life_pair(results: Results) -> Pair | None:

@@ -52,12 +52,12 @@ def legend(figure: Figure, entries: Entries | Mapping[str, Artist], columns: int
     else:
         own = {text: Line2D([], [], **look) for text, look in entries}
     for count in range(columns, 0, -1):
-        made = figure.legend(
+        box = figure.legend(
             own.values(), own, loc="outside lower left", ncols=count, alignment="left"
         )
-        if count == 1 or made.get_window_extent().width <= figure.bbox.width:
+        if count == 1 or box.get_window_extent().width <= figure.bbox.width:
             return
-        made.remove()
+        box.remove()
 
 
 def quantiles(

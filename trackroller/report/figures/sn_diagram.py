@@ -222,10 +222,10 @@ def _scatter_words(known: Mapping[str, Material], names: Points) -> str:
     """Say at which share of the median life one in ten has failed, for each material that gives its
     scatter.
     """
-    said = []
+    texts = []
     for name in (n for n in names if SNCurve.of(known[n]).scatters):
         scatter = float(SNCurve.of(known[name]).scatter_ranges[0])
-        said.append(f"{rounded(scatter**-0.5, 2)} times its median life ({name})")
-    if said:
-        return f"By the scatter of the material, 10 % have failed at {listing(said)}."
+        texts.append(f"{rounded(scatter**-0.5, 2)} times its median life ({name})")
+    if texts:
+        return f"By the scatter of the material, 10 % have failed at {listing(texts)}."
     return ""

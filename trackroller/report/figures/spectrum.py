@@ -39,17 +39,17 @@ def damage_by_block(ds: xr.Dataset) -> style.Drawn:
     nowhere = np.logical_and.reduce(list(unknown.values()))
     order = order[~nowhere[order]]
     shown = order[:MOST]
-    rest = order[MOST:]
+    further = order[MOST:]
     words = [names[i] for i in shown]
-    if len(rest):
-        words.append(f"{len(rest)} others")
+    if len(further):
+        words.append(f"{len(further)} others")
     figure, panels = style.panels(
         f"Damage by block: {ds.attrs['title']}", 24 + 6.0 * len(words), len(shares), sharey=True
     )
     worst_blocks = []
     for axes, colour, (body, part) in zip(panels, style.PAIR, shares.items(), strict=False):
-        if len(rest):
-            values = np.append(part[shown], part[rest].sum())
+        if len(further):
+            values = np.append(part[shown], part[further].sum())
         else:
             values = part[shown]
         bars = axes.barh(words, 100 * values, color=colour, height=0.62)

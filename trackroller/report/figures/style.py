@@ -88,9 +88,9 @@ def colours(texts: Sequence[str], materials: bool) -> list[str]:
         return palette(len(texts))
     known = builtin_database().names()
     names = [material_of_level(text) for text in short_levels(texts)]
-    rest = len(COLOURS) - len(known)
+    spare = len(COLOURS) - len(known)
     places = [
-        known.index(n) if n in known else len(known) + zlib.crc32(n.encode()) % rest for n in names
+        known.index(n) if n in known else len(known) + zlib.crc32(n.encode()) % spare for n in names
     ]
     return [COLOURS[place % len(COLOURS)] for place in places]
 

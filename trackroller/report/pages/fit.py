@@ -95,7 +95,7 @@ def sentences(fit: Fit) -> list[str]:
     """Return the statements at the head of the page: what was fitted, and what is not
     identified.
     """
-    said = []
+    texts = []
     for own in fit.groups:
         failed = int(own.line.tests.failed.sum())
         size = own.line.size
@@ -117,10 +117,10 @@ def sentences(fit: Fit) -> list[str]:
                 values.append(
                     f"{_short(name)} {cell(own.estimate(name))}{unit} ({_ends(low, high)})"
                 )
-        said.append(
+        texts.append(
             f"{failed} of {size} tests {ends}: {', '.join(values)}; 90 % intervals in brackets."
         )
-    return said
+    return texts
 
 
 def _short(name: str) -> str:
@@ -134,9 +134,9 @@ def _short(name: str) -> str:
 
 def cannot_tell(fit: Fit) -> list[str]:
     """Return sentences on what the tests do not tell."""
-    said = []
+    texts = []
     for name in fit.unidentified:
-        said.append(
+        texts.append(
             f"The tests do not identify the {_short(name)}: its estimate lies at a bound, "
             "and is no number."
         )
@@ -144,19 +144,19 @@ def cannot_tell(fit: Fit) -> list[str]:
         limit = math.nan
         if "fatigue_limit" in fit.material:
             limit = fit.knee
-        said += _of_fatigue(fit.group("fatigue"), limit)
-    return [*said, *fit.notes, *fit.not_given]
+        texts += _of_fatigue(fit.group("fatigue"), limit)
+    return [*texts, *fit.notes, *fit.not_given]
 
 
 def _of_fatigue(own: Group, knee: float) -> list[str]:
     """Return sentences on the range of a line, and on how wide its lives are."""
     low, high, longest = own.tested
-    said = [
+    texts = [
         f"Stresses of {rounded(low)} to {rounded(high)} MPa and up to {rounded(longest)} cycles "
         "were tested. A life at another stress, or a longer one, is an extrapolation of the line."
     ]
     if not own.line.knee and knee > 1.05 * longest:
-        said.append(
+        texts.append(
             f"The strength is stated at {rounded(knee)} cycles, beyond the longest test: "
             "it is extrapolated."
         )
@@ -164,15 +164,15 @@ def _of_fatigue(own: Group, knee: float) -> list[str]:
         ends = own.line.interval_of_life(math.log(low), 0.1)
         width = math.exp(min(ends.high - ends.low, 50.0))
         if width > WIDE:
-            said.append(
+            texts.append(
                 f"B10 at {rounded(low)} MPa is known within a factor of {rounded(width, 2)}. "
                 "`trackroller fit next` says which test narrows it most."
             )
-    said.append(
+    texts.append(
         "B10 lies below its interval in up to some 8 % of the fits where 5 % are nominal (page "
         "'Intervals of fitted S-N lines')."
     )
-    return said
+    return texts
 
 
 def table_of_tests(fit: Fit) -> Table:

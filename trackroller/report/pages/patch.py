@@ -100,7 +100,7 @@ def sentences(ds: xr.Dataset) -> list[str]:
     """
     own = along_cases(ds)
     used = own["friction_force_share"]
-    said = []
+    texts = []
     if used.notnull().any():
         best = own.isel(case=int(np.nanargmax(used.values.round(4))))  # the first of equal ones
         creepages = ", ".join(
@@ -109,22 +109,22 @@ def sentences(ds: xr.Dataset) -> list[str]:
             if float(best[name]) != 0.0
         )
         share = rounded(PER_CENT * float(best["friction_force_share"]))
-        said.append(
+        texts.append(
             f"The largest friction force is {share} % of mu F_N, at {creepages or 'no creepage'}."
         )
     missed = int((own["converged"] == 0).sum())
     if missed:
-        said.append(
+        texts.append(
             f"{missed} of {own.sizes['case']} cases have not converged: the friction law is not "
             "met there."
         )
     steep = int((own["steep_friction"] == 1).sum())
     if steep:
-        said.append(
+        texts.append(
             f"{capital(own['steep_friction'].attrs['long_name'])} in {steep} of "
             f"{own.sizes['case']} cases."
         )
-    return said
+    return texts
 
 
 def _shown(one: xr.Dataset, name: str) -> float:

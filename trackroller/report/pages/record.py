@@ -145,9 +145,9 @@ def command_of(ds: xr.Dataset, words: tuple[str, ...] = ("solve",)) -> str:
 def _options_of(ds: xr.Dataset) -> dict[str, str]:
     """Return the options of a result: those that decide most, and all that are not the default."""
     model = str(ds.attrs["contact_model"])
-    found = {}
+    options = {}
     for name, option in OPTIONS.items():
         text = ds.attrs.get(name)
         if text and (name in DECISIVE or text != option.attribute(option.default, model)):
-            found[name] = str(text)
-    return found
+            options[name] = str(text)
+    return options

@@ -121,8 +121,8 @@ def render(ds: xr.Dataset, name: str = "") -> str:
 def named_answer(ds: xr.Dataset, name: str) -> Answer:
     """Return the record of one roller with the name of its sheet."""
     answer = answer_of_roller(ds)
-    told = sheet_of(ds)
-    return replace(answer, facts={**answer.facts, "name": name, "date": told.get("date", "")})
+    sheet = sheet_of(ds)
+    return replace(answer, facts={**answer.facts, "name": name, "date": sheet.get("date", "")})
 
 
 def notes_of_sheet(ds: xr.Dataset) -> dict[str, list[str]]:

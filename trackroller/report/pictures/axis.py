@@ -39,17 +39,17 @@ class Axis:
 
         Infinite and undefined values stand at its ends, and so does 0 on a logarithmic axis.
         """
-        found = np.asarray(list(values), dtype=float)
-        found = found[np.isfinite(found)]
-        positive = found[found > 0]
+        numbers = np.asarray(list(values), dtype=float)
+        numbers = numbers[np.isfinite(numbers)]
+        positive = numbers[numbers > 0]
         if logarithmic is None:
             wide = positive.size > 0 and positive.max() > WIDE_RATIO * positive.min()
-            logarithmic = bool(wide and (found >= 0).all())
+            logarithmic = bool(wide and (numbers >= 0).all())
         if logarithmic and positive.size:
             return cls(*_logarithmic_ends(float(positive.min()), float(positive.max()), room), True)
-        if not found.size:
+        if not numbers.size:
             return cls(0.0, 1.0)
-        return cls(*_linear_ends(float(found.min()), float(found.max()), room))
+        return cls(*_linear_ends(float(numbers.min()), float(numbers.max()), room))
 
     def place(self, value: float) -> float:
         """Return where a value stands, from 0 to 100 %."""
@@ -150,13 +150,13 @@ def _steps(low: float, high: float) -> list[list[float]]:
     steps = sorted(
         one * 10.0**exponent for exponent in (power, power + 1) for one in (1, 2, 2.5, 5)
     )
-    found = []
+    marks = []
     for step in steps:
         first = math.ceil(low / step - 1e-9)
         last = math.floor(high / step + 1e-9)
         if 1 <= last - first <= 20:
-            found.append([float(f"{one * step:.12g}") for one in range(first, last + 1)])
-    return found
+            marks.append([float(f"{one * step:.12g}") for one in range(first, last + 1)])
+    return marks
 
 
 def tick_text(value: float) -> str:

@@ -172,7 +172,7 @@ class Bars:
 
     def words(self, row: Mapping[Any, Any]) -> str:
         """Return the numbers of a bar in words."""
-        said = []
+        texts = []
         for column in self.columns.values():
             low = float(row[column.name])
             if math.isnan(low):
@@ -182,10 +182,10 @@ class Bars:
                 high = float(row[column.until])
             if self.shares:
                 text = " to ".join(dict.fromkeys((grouped(100 * low, 3), grouped(100 * high, 3))))
-                said.append(f"{column.title} {text} %")
+                texts.append(f"{column.title} {text} %")
             else:
-                said.append(f"{column.title} {carried_range(low, high)} {self.units}".rstrip())
-        return ", ".join(said) or "unknown"
+                texts.append(f"{column.title} {carried_range(low, high)} {self.units}".rstrip())
+        return ", ".join(texts) or "unknown"
 
     def key(self) -> list[tuple[Markup, str]]:
         """Return the marks of a bar with their words."""
@@ -212,10 +212,10 @@ def drawn_columns(answer: Answer) -> dict[str, Column]:
     """Return the columns that the bars of a table draw: those of role `bar`, otherwise those of a
     share.
     """
-    found = [column for column in answer.columns if column.role == "bar"]
-    if not found:
-        found = [column for column in answer.columns if column.kind == "share"]
-    return {column.name: column for column in found}
+    bars = [column for column in answer.columns if column.role == "bar"]
+    if not bars:
+        bars = [column for column in answer.columns if column.kind == "share"]
+    return {column.name: column for column in bars}
 
 
 def _sample(mark: Markup) -> Markup:

@@ -160,13 +160,13 @@ def points(places: Sequence[tuple[float, float]]) -> str:
 
 def _runs(known: np.ndarray) -> list[list[int]]:
     """Return neighbouring levels that have a value."""
-    found: list[list[int]] = []
+    runs: list[list[int]] = []
     for i in np.flatnonzero(known):
-        if found and found[-1][-1] == i - 1:
-            found[-1].append(int(i))
+        if runs and runs[-1][-1] == i - 1:
+            runs[-1].append(int(i))
         else:
-            found.append([int(i)])
-    return found
+            runs.append([int(i)])
+    return runs
 
 
 def _dots(curve: Curve, axis: Axis, places: Sequence[float]) -> list[Markup]:

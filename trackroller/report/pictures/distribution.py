@@ -68,11 +68,11 @@ def draw_distribution(answer: Answer, data: Mapping[str, Any]) -> Picture:
         if one.size
     )
     drawn = framed(joined(parts), FLAT, words, left=46, right=14, top=24)
-    more = ""
+    further = ""
     if len(values) > len(shown):
-        more = f" {len(values) - len(shown):,} more candidates are not drawn."
+        further = f" {len(values) - len(shown):,} more candidates are not drawn."
     return Picture(
-        drawn, caption_of(data, f"Share of the conditions that reach a value [%].{more}")
+        drawn, caption_of(data, f"Share of the conditions that reach a value [%].{further}")
     )
 
 

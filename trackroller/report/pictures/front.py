@@ -70,17 +70,17 @@ def draw_front(answer: Answer, data: Mapping[str, Any]) -> Picture | None:
         f"{one['title']}: {grouped(one['x'], 3)}, {grouped(one['y'], 3)}" for one in named
     )
     drawn = framed(joined(parts), TALL, spoken or title, left=left, right=14, top=24)
-    said = f"Small dots: {int(front.sum()):,} designs that no other one beats"
+    caption = f"Small dots: {int(front.sum()):,} designs that no other one beats"
     if (~front).any():
-        said += "; rings: other designs"
-    said += "; large: those of the headline."
+        caption += "; rings: other designs"
+    caption += "; large: those of the headline."
     if len(values[0]) < len(words):
-        said += f" Not drawn: {', '.join(words[2:])}."
+        caption += f" Not drawn: {', '.join(words[2:])}."
     if not known.all():
-        said += f" Not drawn, because a goal is not known: {int((~known).sum()):,} designs."
+        caption += f" Not drawn, because a goal is not known: {int((~known).sum()):,} designs."
     if len(rows) < len(front):
-        said += f" {len(front) - len(rows):,} designs are not drawn."
-    return Picture(drawn, caption_of(data, said), beside=True)
+        caption += f" {len(front) - len(rows):,} designs are not drawn."
+    return Picture(drawn, caption_of(data, caption), beside=True)
 
 
 def _thinned(best: np.ndarray) -> list[int]:

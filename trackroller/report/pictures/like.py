@@ -56,11 +56,11 @@ def draw_like(answer: Answer, data: Mapping[str, Any]) -> Picture:
         parts.append(label(cut(name, 150), 0, percent_place(y), "end", dx=-10, dy=4))
         known = one[np.isfinite(one)]
         if known.size <= MOST_DOTS:
-            kept = known
+            dots = known
         else:
-            kept = np.quantile(known, np.linspace(0, 1, MOST_DOTS))
+            dots = np.quantile(known, np.linspace(0, 1, MOST_DOTS))
         spread = 30.0 / len(ratios)
-        for number_of, value in enumerate(kept):
+        for number_of, value in enumerate(dots):
             # golden section: an even scatter without chance
             moved = y + spread * (((number_of * 0.618034) % 1) - 0.5)
             style = "d faint co"

@@ -219,12 +219,12 @@ def _spec(spec: Any) -> str:
 
 def correlation_row(results: Results) -> list[Row]:
     """Return the rank correlations of the study file as one row, if there are any."""
-    said = [
+    texts = [
         f"{long_name(one)} with {long_name(other)} {number(rho)}"
         for one, other, rho in results.config.rank_correlations
     ]
-    if said:
-        return [Row("Rank correlations", "; ".join(said))]
+    if texts:
+        return [Row("Rank correlations", "; ".join(texts))]
     return []
 
 

@@ -105,12 +105,12 @@ def rows_of(answer: Answer, columns: Iterable[Column] | None = None) -> Rows:
     first = {}
     if records:
         first = records[0]
-    said = [
+    notes = [
         _shared_text(answer, column, first) for column in answer.columns if column.name in shared
     ]
     if any(column.units == "h" for column in shown):
-        said.append(year_words())
-    return Rows(heads, cells, tuple(text for text in said if text))
+        notes.append(year_words())
+    return Rows(heads, cells, tuple(text for text in notes if text))
 
 
 def _is_hidden(column: Column) -> bool:
