@@ -25,6 +25,7 @@ from trackroller.parameters import contact_models
 from trackroller.parameters.accuracy import RUNGS
 from trackroller.roller import expected_errors
 from validation.benchmarks import groove, programs, scaling
+from validation.measured.benchmark.entry import OURS
 from validation.measured.benchmark.table import PROGRAMS as ENTRIES
 
 DOCS = Path(__file__).resolve().parents[1] / "docs"
@@ -124,7 +125,7 @@ def adopt(target: str, results: Path) -> None:
         if not of_study:
             shutil.copy(folder / "figures" / "index.json", DATA / f"{target}_figures.json")
     if target == "measured":
-        shutil.copy(folder / "entry.csv", ENTRIES / "trackroller.csv")
+        shutil.copy(folder / "entry.csv", ENTRIES / f"{OURS}.csv")
     if target == "tradeoff":
         ERRORS.write_text(errors(), encoding="utf-8")
         COSTS.write_text(costs(), encoding="utf-8")

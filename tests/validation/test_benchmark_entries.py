@@ -11,7 +11,7 @@ import pytest
 
 from trackroller.errors import InputError
 from validation.measured.benchmark import table
-from validation.measured.benchmark.entry import write_entry
+from validation.measured.benchmark.entry import OURS, write_entry
 from validation.pages import render
 
 ROOT = Path(__file__).parents[2]
@@ -98,9 +98,9 @@ def test_the_example_of_the_page_is_printed_by_the_command(tmp_path):
 
 @pytest.mark.slow
 def test_our_entry_is_what_the_program_computes(tmp_path):
-    write_entry(tmp_path / "trackroller.csv")
-    fresh = table.read_program(tmp_path / "trackroller.csv")
-    kept = table.read_program(table.PROGRAMS / "trackroller.csv")
+    write_entry(tmp_path / f"{OURS}.csv")
+    fresh = table.read_program(tmp_path / f"{OURS}.csv")
+    kept = table.read_program(table.PROGRAMS / f"{OURS}.csv")
     truths = table.read_truths()
     for key, truth in truths.items():
         assert fresh.results[key] == pytest.approx(kept.results[key], abs=1e-4 * abs(truth.scale))

@@ -22,8 +22,14 @@ from typing import Any
 import numpy as np
 
 from trackroller.damage.catalogue import FIELD as CATALOGUE
-from trackroller.damage.catalogue import LAWS, catalogue_km
-from trackroller.errors import Collector, InputError, check_names, text_of, unknown_name
+from trackroller.damage.catalogue import LAWS, apply_stroke_factor, catalogue_km
+from trackroller.errors import (
+    Collector,
+    InputError,
+    check_names,
+    text_of,
+    unknown_name,
+)
 from trackroller.files import files_beside, find_beside, read_text
 from trackroller.numerics.numbers import number_in, number_or_nan
 from trackroller.numerics.plain import mapping_of
@@ -107,6 +113,9 @@ class CatalogueRoller:
     moment : float
         Permissible moment [N mm], which does not count here: the statics of a carriage knows no
         moment of a roller.
+    exponent, speed_factor, stroke_factor : float
+        Exponent of the life in place of that of the law, factor of the life for speed, and factor
+        of both permissible forces for short strokes [1]; NaN if not given.
     """
 
     radial_force: float
@@ -115,15 +124,24 @@ class CatalogueRoller:
     law: str = LAWS[0]
     offset: float = math.nan
     moment: float = math.nan
+    exponent: float = math.nan
+    speed_factor: float = math.nan
+    stroke_factor: float = math.nan
 
     def load_factor(self, radial: np.ndarray, axial: np.ndarray) -> np.ndarray:
         """Return the sum of the ratios of both forces [N] to their permissible values [1]."""
-        return np.abs(radial) / self.radial_force + np.abs(axial) / self.axial_force
+        ratios = np.abs(radial) / self.radial_force + np.abs(axial) / self.axial_force
+        return apply_stroke_factor(ratios, self.stroke_factor)
 
     def life(self, load_factor: np.ndarray) -> np.ndarray:
         """Return the life at load factors [1], in km."""
         return catalogue_km(
-            load_factor, np.asarray(self.basic_life), np.asarray(self.law), self.offset
+            load_factor,
+            np.asarray(self.basic_life),
+            np.asarray(self.law),
+            self.offset,
+            self.exponent,
+            self.speed_factor,
         )
 
 

@@ -15,6 +15,7 @@ from trackroller.files import write_text
 from validation.measured import grooves
 from validation.measured.benchmark.table import QUANTITIES, read_cases
 
+OURS = "trackroller"  # name of this program in the table
 ELEMENTS = {"preview": 20, "standard": 40, "reference": 60}  # of wheels in grooves
 REMARK = "exact theory, accuracy {}, Hertz's patches"
 
