@@ -55,7 +55,8 @@ def test_the_lead_is_the_answer(name, lead):
 
 
 def test_a_number_has_the_figures_of_its_error():
-    said = [headline_of(decide(headline={"low": 211_634.0, "high": 211_634.0, "error": e})).ending for e in (0.48, 0.02)]
+    lives = [{"low": 211_634.0, "high": 211_634.0, "error": error} for error in (0.48, 0.02)]
+    said = [headline_of(decide(headline=life)).ending for life in lives]
     assert " 210,000 h" in said[0] and " 212,000 h" in said[1]
 
 
