@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from trackroller.results.answer import Answer, Required
-from trackroller.results.lives import FIRST_LIMIT, OF_PAIR
+from trackroller.results.life_columns import FIRST_LIMIT, OF_PAIR
 
 
 def required_of_output(answer: Answer) -> list[Required]:

@@ -17,16 +17,11 @@ from trackroller.methods.optimise import nondominated_ranks
 from trackroller.parameters import BODIES, REGIMES
 from trackroller.parameters.carriage_fields import long_name_of, parameter_of
 from trackroller.results.answer import Answer, Caution, Column, Required, yes_or_blank
-from trackroller.results.answer_parts import (
-    case_cautions,
-    checks_left_out,
-    facts_of,
-    given_for_nothing,
-    not_given_words,
-)
 from trackroller.results.case_ranges import CaseRanges
 from trackroller.results.comparison import wilson
-from trackroller.results.judging import (
+from trackroller.results.life_columns import OF_PAIR, lacks_a_body
+from trackroller.results.requirement import required_of
+from trackroller.results.search_fitness import (
     Judged,
     Shares,
     beyond_data,
@@ -41,9 +36,14 @@ from trackroller.results.judging import (
     shares_of,
     shortfall,
 )
-from trackroller.results.lives import OF_PAIR, lacks_a_body
-from trackroller.results.requirement import required_of
 from trackroller.results.solved_cases import SAME_ENDS, SolvedCases
+from trackroller.results.study_facts import (
+    case_cautions,
+    checks_left_out,
+    facts_of,
+    given_for_nothing,
+    not_given_words,
+)
 from trackroller.roller.output_names import is_life
 from trackroller.study.design.levels import in_words
 from trackroller.study.file.search import judged_by

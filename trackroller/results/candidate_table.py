@@ -12,8 +12,8 @@ from trackroller.parameters import BODIES
 from trackroller.parameters.carriage_fields import long_name_of, parameter_of
 from trackroller.results.answer import STATES, Column
 from trackroller.results.comparison import Comparison, wilson
-from trackroller.results.lives import BESIDE, OF_PAIR, lacks_a_body
-from trackroller.results.places import case_text, places_of, places_text, plain
+from trackroller.results.life_columns import BESIDE, OF_PAIR, lacks_a_body
+from trackroller.results.subgroups import case_text, places_of, places_text, plain
 from trackroller.roller.output_names import is_life
 from trackroller.study.outputs import flat, of_first_limit
 

@@ -14,9 +14,9 @@ import pandas as pd
 
 from trackroller.methods.b10 import b10
 from trackroller.parameters import FIRST_TO_FAIL, REGIMES
-from trackroller.results.by_tests import beyond_sn_data
-from trackroller.results.columns import codes
-from trackroller.results.lives import FIRST_LIMIT, body_lives
+from trackroller.results.case_columns import codes
+from trackroller.results.life_columns import FIRST_LIMIT, body_lives
+from trackroller.results.lives_by_tests import beyond_sn_data
 from trackroller.results.robustness import material_deviations
 from trackroller.results.solved_cases import SolvedCases, made_once
 from trackroller.roller.output_names import is_life

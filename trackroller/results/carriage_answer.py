@@ -29,9 +29,8 @@ from trackroller.parameters import BODIES, MATERIAL_FIELDS, REGIME_LABELS, REGIM
 from trackroller.parameters.carriage_fields import long_name_of
 from trackroller.parameters.validity import VALIDITY
 from trackroller.results.answer import Answer, Caution, Column, Part, Required
-from trackroller.results.flags import OUTSIDE
 from trackroller.results.friction import friction_cautions
-from trackroller.results.lives import FIRST_LIMIT
+from trackroller.results.life_columns import FIRST_LIMIT
 from trackroller.results.placeholders import guess_cautions, placeholders_part
 from trackroller.results.roller_answer import (
     CODES,
@@ -41,6 +40,7 @@ from trackroller.results.roller_answer import (
     state_of_life,
 )
 from trackroller.results.spectrum_answer import not_given_values
+from trackroller.results.validity_flags import OUTSIDE
 from trackroller.roller.dataset import validity_bit
 from trackroller.roller.duty import strokes_words
 from trackroller.roller.stored_inputs import MATERIALS, doubts_of

@@ -11,9 +11,9 @@ import numpy as np
 
 from trackroller.parameters import BODIES, FIRST_TO_FAIL, REGIMES
 from trackroller.results.answer import Required
-from trackroller.results.by_tests import beyond_sn_data, by_tests_of
 from trackroller.results.first_limits import first_at, first_limit
-from trackroller.results.lives import FIRST_LIMIT, OF_PAIR
+from trackroller.results.life_columns import FIRST_LIMIT, OF_PAIR
+from trackroller.results.lives_by_tests import beyond_sn_data, by_tests_of
 from trackroller.results.solved_cases import SolvedCases
 from trackroller.roller.output_names import body_of, is_life
 from trackroller.study.outputs import flat, of_fatigue, of_first_limit

@@ -17,11 +17,11 @@ from scipy.stats import norm
 from trackroller.methods.b10 import b10
 from trackroller.results.answer import Required
 from trackroller.results.candidates import Candidates
+from trackroller.results.case_columns import codes
 from trackroller.results.case_ranges import CaseRanges
-from trackroller.results.columns import codes
+from trackroller.results.factor_levels import MOST_LEVELS
 from trackroller.results.first_limits import UNSURE
-from trackroller.results.groups import MOST_LEVELS
-from trackroller.results.lives import FIRST_LIMIT, OF_PAIR
+from trackroller.results.life_columns import FIRST_LIMIT, OF_PAIR
 from trackroller.results.requirement import required_of
 from trackroller.results.robustness import material_deviations
 from trackroller.results.solved_cases import SolvedCases

@@ -13,14 +13,6 @@ import pandas as pd
 from trackroller.damage import limit_word
 from trackroller.parameters.carriage_fields import long_name_of
 from trackroller.results.answer import Answer
-from trackroller.results.answer_parts import (
-    cautions,
-    checks_left_out,
-    facts_of,
-    given_for_nothing,
-    lost_by_missing_input,
-    not_given_words,
-)
 from trackroller.results.candidate_table import (
     candidate_columns,
     candidate_table,
@@ -29,11 +21,19 @@ from trackroller.results.candidate_table import (
 )
 from trackroller.results.comparison import EQUAL, Comparison
 from trackroller.results.effect_curves import Effects
-from trackroller.results.first_ends import ends_by_factor
-from trackroller.results.lives import OF_PAIR
-from trackroller.results.places import places_of, places_text, plain
+from trackroller.results.ends_by_factor import ends_by_factor
+from trackroller.results.life_columns import OF_PAIR
 from trackroller.results.solved_cases import SolvedCases
-from trackroller.results.turning import Turning
+from trackroller.results.study_facts import (
+    cautions,
+    checks_left_out,
+    facts_of,
+    given_for_nothing,
+    lost_by_missing_input,
+    not_given_words,
+)
+from trackroller.results.subgroups import places_of, places_text, plain
+from trackroller.results.turning_values import Turning
 from trackroller.roller.output_names import is_life
 
 RIVALS = 200  # of the leader that are compared with it pair by pair, the best ones

@@ -16,11 +16,11 @@ from trackroller.methods.interactions import MAX_ROWS, ROWS_PER_TERM, best_fit
 from trackroller.methods.intervals import constant
 from trackroller.parameters.carriage_fields import long_name_of, parameter_of
 from trackroller.results.answer import Curve
+from trackroller.results.case_columns import codes
 from trackroller.results.case_ranges import CaseRanges
-from trackroller.results.columns import codes
-from trackroller.results.groups import BINS, MOST_LEVELS, groups, spaced_by_ratio
-from trackroller.results.places import plain
+from trackroller.results.factor_levels import BINS, MOST_LEVELS, groups, spaced_by_ratio
 from trackroller.results.solved_cases import SolvedCases
+from trackroller.results.subgroups import plain
 from trackroller.study.design.entries import OPTION_FACTORS
 
 FEWEST_ROWS = 30  # smallest number of cases that are fitted

@@ -8,8 +8,8 @@ import pandas as pd
 from trackroller.damage import LIMITS
 from trackroller.damage.verdict import breaking
 from trackroller.parameters import BODIES, FIRST_TO_FAIL
-from trackroller.results.groups import MOST_LEVELS
-from trackroller.results.lives import FIRST_LIMIT
+from trackroller.results.factor_levels import MOST_LEVELS
+from trackroller.results.life_columns import FIRST_LIMIT
 from trackroller.results.solved_cases import SolvedCases
 from trackroller.study.outputs import flat
 

@@ -8,19 +8,19 @@ from typing import Any
 import pandas as pd
 
 from trackroller.results.answer import Answer
-from trackroller.results.answer_parts import (
+from trackroller.results.case_ranges import CaseRanges
+from trackroller.results.effect_curves import Effects
+from trackroller.results.ends_by_factor import UNKNOWN, end_of_case, ends_by_factor
+from trackroller.results.output_ranges import COLUMNS, output_ranges
+from trackroller.results.requirement import required_of
+from trackroller.results.solved_cases import SolvedCases
+from trackroller.results.study_facts import (
     case_cautions,
     checks_left_out,
     facts_of,
     given_for_nothing,
     not_given_words,
 )
-from trackroller.results.case_ranges import CaseRanges
-from trackroller.results.effect_curves import Effects
-from trackroller.results.first_ends import UNKNOWN, end_of_case, ends_by_factor
-from trackroller.results.output_ranges import COLUMNS, output_ranges
-from trackroller.results.requirement import required_of
-from trackroller.results.solved_cases import SolvedCases
 from trackroller.results.what_matters import shown_ranges
 
 

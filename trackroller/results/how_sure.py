@@ -9,19 +9,19 @@ from typing import Any
 import numpy as np
 
 from trackroller.results.answer import Answer
-from trackroller.results.answer_parts import (
+from trackroller.results.candidate_table import candidate_columns, candidate_table, names_of
+from trackroller.results.comparison import Comparison
+from trackroller.results.decide import Decider, leading, not_held_by_any, with_ratios
+from trackroller.results.effect_curves import Effects
+from trackroller.results.ends_by_factor import ends_by_factor
+from trackroller.results.solved_cases import SolvedCases
+from trackroller.results.study_facts import (
     cautions,
     checks_left_out,
     facts_of,
     given_for_nothing,
     not_given_words,
 )
-from trackroller.results.candidate_table import candidate_columns, candidate_table, names_of
-from trackroller.results.comparison import Comparison
-from trackroller.results.decide import Decider, leading, not_held_by_any, with_ratios
-from trackroller.results.effect_curves import Effects
-from trackroller.results.first_ends import ends_by_factor
-from trackroller.results.solved_cases import SolvedCases
 
 
 def answer_how_sure(results: SolvedCases) -> Answer:

@@ -21,7 +21,7 @@ from trackroller.damage.verdict import ENDS, STATES
 from trackroller.fit.stored import StoredFit, fits_of_case
 from trackroller.materials import Material
 from trackroller.parameters import BODIES, PARAMETERS, REGIMES
-from trackroller.results.lives import past_data
+from trackroller.results.life_columns import past_data
 from trackroller.roller.dataset import validity_bit
 from trackroller.roller.geometry import rolling_radius
 from trackroller.roller.limit_notes import placeholders_of

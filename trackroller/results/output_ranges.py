@@ -9,8 +9,8 @@ import pandas as pd
 
 from trackroller.results.answer import Column
 from trackroller.results.case_ranges import CaseRanges
-from trackroller.results.places import case_text
 from trackroller.results.solved_cases import SolvedCases
+from trackroller.results.subgroups import case_text
 from trackroller.roller.output_names import is_life
 from trackroller.study.outputs import default_names
 

@@ -15,11 +15,17 @@ from trackroller.methods import Design
 from trackroller.methods.factor import readable
 from trackroller.parameters import EXACTNESS, REGIME_LABELS, REGIMES
 from trackroller.parameters.carriage_fields import parameter_of
-from trackroller.results.by_tests import beyond_sn_data
 from trackroller.results.candidates import Candidates, candidates_of
-from trackroller.results.columns import codes
+from trackroller.results.case_columns import codes
 from trackroller.results.constraints import Column, meeting
-from trackroller.results.judging import SAFE_B10, beyond_data, goal_column, goals_of_search, judge
+from trackroller.results.lives_by_tests import beyond_sn_data
+from trackroller.results.search_fitness import (
+    SAFE_B10,
+    beyond_data,
+    goal_column,
+    goals_of_search,
+    judge,
+)
 from trackroller.results.sensitivity import analysis_of
 from trackroller.results.solved_cases import SolvedCases, made_once
 from trackroller.roller.output_names import is_life

@@ -12,9 +12,9 @@ from trackroller.results.comparison import Comparison, compared_output
 from trackroller.results.decide import answer_decide
 from trackroller.results.how_it_behaves import answer_how_it_behaves
 from trackroller.results.how_sure import answer_how_sure
-from trackroller.results.judging import optimum_of
 from trackroller.results.output_ranges import output_ranges
 from trackroller.results.requirement import required_of
+from trackroller.results.search_fitness import optimum_of
 from trackroller.results.solved_cases import SolvedCases, made_once
 from trackroller.results.what_matters import answer_what_matters, shown_ranges
 from trackroller.results.which_model import answer_which_model, models_of

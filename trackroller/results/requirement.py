@@ -7,7 +7,7 @@ from dataclasses import replace
 from trackroller.damage.wear import KM_PER_HOUR
 from trackroller.numerics.numbers import number_or_nan
 from trackroller.results.answer import Required
-from trackroller.results.lives import FIRST_LIMIT
+from trackroller.results.life_columns import FIRST_LIMIT
 from trackroller.results.solved_cases import SolvedCases
 from trackroller.roller.requirement import Requirement
 

@@ -13,9 +13,9 @@ import xarray as xr
 from trackroller.errors import InputError
 from trackroller.results import SHOWN
 from trackroller.results.answer import Answer
-from trackroller.results.by_tests import ByTests, by_tests_of
 from trackroller.results.candidates import Candidates, candidates_of
 from trackroller.results.how_it_behaves import answer_how_it_behaves
+from trackroller.results.lives_by_tests import ByTests, by_tests_of
 from trackroller.results.pareto import pareto, study_pareto
 from trackroller.results.questions import answer_of
 from trackroller.results.sensitivity import analysis_of, indices_of
@@ -160,7 +160,7 @@ class Results(SolvedCases):
         Returns
         -------
         ByTests or None
-            See `trackroller.results.by_tests.ByTests`; None without a material that was fitted to
+            See `trackroller.results.lives_by_tests.ByTests`; None without a material that was fitted to
             tests.
         """
         return by_tests_of(self)

@@ -21,8 +21,8 @@ from trackroller.methods import Design
 from trackroller.methods.b10 import b10, quantile
 from trackroller.methods.factor import readable
 from trackroller.parameters import BODIES, MATERIAL_FIELDS, REGIMES
-from trackroller.results.by_tests import beyond_sn_data
-from trackroller.results.labels import output_labels
+from trackroller.results.index_labels import output_labels
+from trackroller.results.lives_by_tests import beyond_sn_data
 from trackroller.results.solved_cases import SolvedCases
 from trackroller.results.targets import at_points, scattering_body
 from trackroller.roller.output_names import body_of, is_life

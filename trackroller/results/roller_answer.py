@@ -31,14 +31,14 @@ from trackroller.parameters import BODIES, PARAMETERS, REGIMES
 from trackroller.parameters.carriage_fields import long_name_of
 from trackroller.parameters.example import drive_question
 from trackroller.results.answer import Answer, Caution, Column, Part, Required, yes_or_blank
-from trackroller.results.columns import at_surface
-from trackroller.results.flags import flags_of, not_judged
+from trackroller.results.case_columns import at_surface
 from trackroller.results.friction import friction_cautions
-from trackroller.results.lives import FIRST_LIMIT, OF_PAIR
+from trackroller.results.life_columns import FIRST_LIMIT, OF_PAIR
 from trackroller.results.margins import First, Margin, lifeless_bodies, margins, worst_contact
 from trackroller.results.placeholders import guess_cautions, placeholders_part
-from trackroller.results.places import level_text
 from trackroller.results.roller_lives import lives_part
+from trackroller.results.subgroups import level_text
+from trackroller.results.validity_flags import flags_of, not_judged
 from trackroller.roller import stored_inputs as record
 from trackroller.roller.dataset import VARIABLES, shown, solved_by
 from trackroller.roller.duty import duty_of, strokes_of, years

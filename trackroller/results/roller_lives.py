@@ -18,7 +18,7 @@ from trackroller.fit.stored import StoredFit, fits_of_case
 from trackroller.materials import Material
 from trackroller.parameters import BODIES, FIRST_TO_FAIL, REGIMES
 from trackroller.results.answer import Column, Part, yes_or_blank
-from trackroller.results.lives import past_data
+from trackroller.results.life_columns import past_data
 from trackroller.results.margins import BROKEN, SKIDS, overrollings, worst_contact
 
 TESTED = (0.1, 0.5)  # failure probabilities at which the interval of tests is stated

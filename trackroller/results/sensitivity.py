@@ -20,8 +20,7 @@ from trackroller.methods.correlation import correlated_pairs
 from trackroller.methods.factor import label
 from trackroller.methods.method import Estimated, Estimates
 from trackroller.methods.saltelli import all_groups
-from trackroller.results.by_tests import bands
-from trackroller.results.labels import (
+from trackroller.results.index_labels import (
     RELIABLE,
     correlated,
     factor_name,
@@ -31,6 +30,7 @@ from trackroller.results.labels import (
     stacked,
     treatment,
 )
+from trackroller.results.lives_by_tests import bands
 from trackroller.results.robustness import material_deviations, robustness
 from trackroller.results.solved_cases import SolvedCases, made_once
 from trackroller.results.targets import targets

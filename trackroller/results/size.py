@@ -18,6 +18,7 @@ import numpy as np
 import pandas as pd
 
 from trackroller.carriage.file import CHANCE, carriage_of, written_out
+from trackroller.carriage.files import name_of_study
 from trackroller.errors import InputError, unknown_name
 from trackroller.files import files_beside
 from trackroller.numerics.numbers import finite_number
@@ -27,8 +28,8 @@ from trackroller.parameters.example import EXAMPLE
 from trackroller.results.load_ratio import EXACT, FORCES, LoadRatios, load_ratios
 from trackroller.results.mounting import Mounting, rollers_by_place
 from trackroller.results.results import Results
+from trackroller.results.run import run
 from trackroller.results.size_spectrum import VERDICTS, spectrum_table
-from trackroller.results.solving import run
 from trackroller.roller.aliases import OTHER_OPTIONS, with_options
 from trackroller.roller.duty import OVERROLLINGS
 from trackroller.roller.requirement import DEFAULT
@@ -344,7 +345,7 @@ def _keys_of(case: Path | str | Mapping[str, Any], shelf: Path | str) -> dict[st
             "Remove it: --shelf gives it.",
             "stands there already",
         )
-    keys["name"] = _name(str(keys.get("name", stem)), Path(shelf).stem)
+    keys["name"] = name_of_study(f"size-{keys.get('name', stem)}-{Path(shelf).stem}")
     keys["question"] = "decide"
     return _with_shelf(keys, shelf)
 
@@ -458,7 +459,7 @@ def _overloaded(keys: Mapping[str, Any], safety: str | float) -> dict[str, Any]:
         for name, value in keys.items()
         if name not in ("requirement", "pareto", "goals")
     }
-    return left | {"name": f"{keys['name']}-{OVERLOAD}", "base": base}
+    return left | {"name": name_of_study(f"{keys['name']}-{OVERLOAD}"), "base": base}
 
 
 def sizing_of(

@@ -23,10 +23,10 @@ from trackroller.parameters import (
     ROLE_OF,
     expressions,
 )
-from trackroller.results import groups
-from trackroller.results.columns import base_values, case_columns, codes, factor_names
+from trackroller.results.case_columns import base_values, case_columns, codes, factor_names
 from trackroller.results.constraints import Column, meeting, quantity_of
-from trackroller.results.lives import BESIDE, FIRST_LIMIT, LIVES, OF_PAIR, body_lives
+from trackroller.results.factor_levels import MOST_LEVELS, levels, numeric, ordered
+from trackroller.results.life_columns import BESIDE, FIRST_LIMIT, LIVES, OF_PAIR, body_lives
 from trackroller.results.own_outputs import with_own_outputs
 from trackroller.roller.output_names import body_of
 from trackroller.study.design.entries import CASE_FIELDS, OPTION_FACTORS
@@ -232,7 +232,7 @@ class SolvedCases:
         Numbers in rising order, categories in order of appearance.
         """
         if name not in self._levels:  # a page asks a dozen times for the levels of each factor
-            self._levels[name] = groups.levels(self.table[name])
+            self._levels[name] = levels(self.table[name])
         return list(self._levels[name])
 
     @cached_property
@@ -241,14 +241,14 @@ class SolvedCases:
 
     def numeric(self, name: str) -> bool:
         """Say whether the factor is a number."""
-        return groups.numeric(self.table[name])
+        return numeric(self.table[name])
 
     def ordered(self, name: str) -> bool:
         """Return whether the levels of a factor have an order.
 
         Materials, few drives and few curves have no order.
         """
-        return groups.ordered(self.table[name])
+        return ordered(self.table[name])
 
     @cached_property
     def categories(self) -> tuple[str, ...]:
@@ -256,9 +256,7 @@ class SolvedCases:
         their levels.
         """
         return tuple(
-            f
-            for f in self.factors
-            if not self.ordered(f) and len(self.levels(f)) <= groups.MOST_LEVELS
+            f for f in self.factors if not self.ordered(f) and len(self.levels(f)) <= MOST_LEVELS
         )
 
     def behind(self, name: str) -> tuple[str, ...]:

@@ -24,14 +24,12 @@ from trackroller.damage import LIMITS
 from trackroller.damage.verdict import STATES
 from trackroller.parameters import BODIES, PARAMETERS, REGIME_LABELS, REGIMES
 from trackroller.parameters.carriage_fields import long_name_of
-from trackroller.parameters.example import ABSENT, drive_question
+from trackroller.parameters.example import drive_question, is_absent
 from trackroller.results.answer import Answer, Caution, Column, Part, yes_or_blank
-from trackroller.results.flags import flags_of, not_judged
 from trackroller.results.friction import friction_cautions
-from trackroller.results.lives import FIRST_LIMIT, past_data
+from trackroller.results.life_columns import FIRST_LIMIT, past_data
 from trackroller.results.margins import First, Margin, is_guessed
 from trackroller.results.placeholders import guess_cautions, placeholders_part
-from trackroller.results.places import level_text
 from trackroller.results.roller_answer import (
     CODES,
     OF_ANY_LIMIT,
@@ -39,6 +37,8 @@ from trackroller.results.roller_answer import (
     facts_of_data,
     material_name,
 )
+from trackroller.results.subgroups import level_text
+from trackroller.results.validity_flags import flags_of, not_judged
 from trackroller.roller.dataset import validity_bit
 from trackroller.roller.duty import strokes_words
 from trackroller.roller.limit_notes import notes_of
@@ -473,7 +473,7 @@ def _blocks(ds: xr.Dataset) -> Part:
     their sum.
     """
     known = [name for name in LOAD_FIELDS if np.isfinite(ds[name].values).any()]
-    loads = [name for name in known if name not in ABSENT or ds[name].values.any()]
+    loads = [name for name in known if not is_absent(name, ds[name].values)]
     columns = [
         Column("block", "Block", "", "name of the block", "text", role="name"),
         Column("distance", "Distance", "m", "travel of the block", "whole"),

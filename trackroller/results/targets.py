@@ -17,8 +17,8 @@ from trackroller.methods import Design
 from trackroller.methods.correlation import correlated_pairs
 from trackroller.methods.factor import Factor
 from trackroller.methods.probability import probabilities
-from trackroller.results.groups import MOST_LEVELS
-from trackroller.results.lives import FIRST_LIMIT
+from trackroller.results.factor_levels import MOST_LEVELS
+from trackroller.results.life_columns import FIRST_LIMIT
 from trackroller.roller.output_names import body_of, is_life
 from trackroller.roller.requirement import Requirement
 from trackroller.study.design.levels import in_words

@@ -22,11 +22,11 @@ from trackroller.damage.wear import KM_PER_HOUR
 from trackroller.parameters import BODIES
 from trackroller.parameters.carriage_fields import long_name_of
 from trackroller.results.answer import Answer, Caution, Column, Part, Required
-from trackroller.results.flags import flags_of
 from trackroller.results.friction import friction_cautions
-from trackroller.results.lives import OF_PAIR
+from trackroller.results.life_columns import OF_PAIR
 from trackroller.results.placeholders import guess_cautions, placeholders_part
 from trackroller.results.roller_answer import CODES, facts_of_data, not_given_words
+from trackroller.results.validity_flags import flags_of
 from trackroller.roller.limit_notes import placeholders_of
 from trackroller.roller.requirement import requirement_of
 from trackroller.roller.stored_inputs import NOT_GIVEN, inputs_of

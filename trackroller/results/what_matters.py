@@ -11,22 +11,22 @@ import xarray as xr
 from trackroller.parameters import REGIMES
 from trackroller.parameters.carriage_fields import long_name_of
 from trackroller.results.answer import Answer, Column, Curve
-from trackroller.results.answer_parts import (
+from trackroller.results.case_ranges import CaseRanges
+from trackroller.results.comparison import compared_output
+from trackroller.results.effect_curves import Effects
+from trackroller.results.ends_by_factor import ends_by_factor
+from trackroller.results.ranking import estimate, headline, index_words, order, robust_design
+from trackroller.results.requirement import required_of
+from trackroller.results.sensitivity import analysis_of
+from trackroller.results.solved_cases import SolvedCases
+from trackroller.results.study_facts import (
     case_cautions,
     checks_left_out,
     facts_of,
     given_for_nothing,
     not_given_words,
 )
-from trackroller.results.case_ranges import CaseRanges
-from trackroller.results.comparison import compared_output
-from trackroller.results.effect_curves import Effects
-from trackroller.results.first_ends import ends_by_factor
-from trackroller.results.places import level_text
-from trackroller.results.ranking import estimate, headline, index_words, order, robust_design
-from trackroller.results.requirement import required_of
-from trackroller.results.sensitivity import analysis_of
-from trackroller.results.solved_cases import SolvedCases
+from trackroller.results.subgroups import level_text
 from trackroller.roller.output_names import is_life
 from trackroller.study.design.entries import OPTION_FACTORS
 from trackroller.study.outputs import default_names

@@ -13,24 +13,24 @@ import pandas as pd
 from trackroller.parameters import EXACTNESS
 from trackroller.parameters.carriage_fields import long_name_of
 from trackroller.results.answer import Answer, Column
-from trackroller.results.answer_parts import (
+from trackroller.results.candidate_table import candidate_table, names_of
+from trackroller.results.candidates import Candidates
+from trackroller.results.case_columns import codes
+from trackroller.results.case_ranges import CaseRanges
+from trackroller.results.comparison import Comparison, compared_output
+from trackroller.results.decide import Decider
+from trackroller.results.effect_curves import Effects
+from trackroller.results.ends_by_factor import ends_by_factor
+from trackroller.results.requirement import required_of
+from trackroller.results.solved_cases import SolvedCases
+from trackroller.results.study_facts import (
     case_cautions,
     checks_left_out,
     facts_of,
     given_for_nothing,
     not_given_words,
 )
-from trackroller.results.candidate_table import candidate_table, names_of
-from trackroller.results.candidates import Candidates
-from trackroller.results.case_ranges import CaseRanges
-from trackroller.results.columns import codes
-from trackroller.results.comparison import Comparison, compared_output
-from trackroller.results.decide import Decider
-from trackroller.results.effect_curves import Effects
-from trackroller.results.first_ends import ends_by_factor
-from trackroller.results.places import level_text, plain
-from trackroller.results.requirement import required_of
-from trackroller.results.solved_cases import SolvedCases
+from trackroller.results.subgroups import level_text, plain
 
 MODEL = "contact_model"
 

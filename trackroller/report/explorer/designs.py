@@ -13,8 +13,8 @@ from trackroller.parameters import FIRST_TO_FAIL
 from trackroller.report.explorer.rows import Column
 from trackroller.report.numbers import GUIDE_UNKNOWN, Life, capital, count, part_of, with_unit
 from trackroller.report.tables.table import cell, factor_cell, goal_heading, heading
-from trackroller.results.by_tests import beyond_sn_data
 from trackroller.results.candidates import Candidates, hardest_first
+from trackroller.results.lives_by_tests import beyond_sn_data
 from trackroller.results.pareto import study_pareto
 from trackroller.results.results import Results
 from trackroller.study.file.goals import statistic

@@ -26,10 +26,10 @@ from trackroller.parameters.carriage_fields import parameter_of
 from trackroller.parameters.validity import VALIDITY
 from trackroller.report.numbers import BEYOND, capital, level_text, long_name, plain, unit_text
 from trackroller.report.tables.inputs import stored_materials
-from trackroller.results.by_tests import beyond_sn_data
-from trackroller.results.columns import BODY_RESULTS, CONTACT_RESULTS, WHOLE_RESULTS
+from trackroller.results.case_columns import BODY_RESULTS, CONTACT_RESULTS, WHOLE_RESULTS
+from trackroller.results.factor_levels import spaced_by_ratio
 from trackroller.results.first_limits import first_limit
-from trackroller.results.groups import spaced_by_ratio
+from trackroller.results.lives_by_tests import beyond_sn_data
 from trackroller.results.results import Results
 from trackroller.roller.duty import years
 from trackroller.roller.output_names import body_of, declared, is_life

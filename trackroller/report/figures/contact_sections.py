@@ -18,7 +18,7 @@ from trackroller.halfspace.stress import FRICTION_SIGNS, stress_on_grid, von_mis
 from trackroller.report.figures import style
 from trackroller.report.figures.contact_outline import Patch, case_text, outline, widths
 from trackroller.report.numbers import near, rounded
-from trackroller.results.columns import at_surface
+from trackroller.results.case_columns import at_surface
 from trackroller.roller.stored_inputs import MATERIALS, materials_of
 
 PLANES = (

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from trackroller.report.numbers import level_text, long_name, number, rounded, setting
-from trackroller.results.groups import DRIVE, classes
+from trackroller.results.factor_levels import DRIVE, classes
 from trackroller.results.results import Results
 
 COLOURS = 5  # most groups that get a colour each

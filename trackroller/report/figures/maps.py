@@ -24,8 +24,8 @@ from trackroller.report.numbers import (
     rounded,
     with_unit,
 )
-from trackroller.results.by_tests import beyond_sn_data
-from trackroller.results.groups import BINS, classes
+from trackroller.results.factor_levels import BINS, classes
+from trackroller.results.lives_by_tests import beyond_sn_data
 from trackroller.results.ranking import ranked_factors
 from trackroller.results.results import Results
 

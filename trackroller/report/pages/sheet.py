@@ -37,8 +37,8 @@ from trackroller.report.words.assumptions import (
 )
 from trackroller.results.answer import Answer
 from trackroller.results.answers import answer_of
-from trackroller.results.flags import flags_of
 from trackroller.results.roller_answer import answer_of_roller, materials_of_case
+from trackroller.results.validity_flags import flags_of
 from trackroller.roller import stored_inputs as record
 from trackroller.roller.dataset import solved_by
 from trackroller.roller.duty import OVERROLLINGS, duty_of, duty_words, strokes_of, years

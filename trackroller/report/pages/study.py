@@ -28,9 +28,9 @@ from trackroller.report.tables.indices import index_tables
 from trackroller.report.tables.table import Table, cell
 from trackroller.report.workbook import export, write_answer
 from trackroller.results.answer import Answer
-from trackroller.results.judging import OPTIMUM
-from trackroller.results.looks import UNTIL
+from trackroller.results.interim_looks import UNTIL
 from trackroller.results.results import Results, shown_answer
+from trackroller.results.search_fitness import OPTIMUM
 from trackroller.roller.dataset import solved_by
 from trackroller.roller.doubts import doubts
 from trackroller.roller.stored_inputs import NOT_GIVEN, as_material

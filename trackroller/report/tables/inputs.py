@@ -20,7 +20,7 @@ from trackroller.parameters import (
     PARAMETERS,
 )
 from trackroller.parameters.carriage_fields import parameter_of
-from trackroller.parameters.example import ABSENT
+from trackroller.parameters.example import is_absent
 from trackroller.report.numbers import (
     capital,
     level_text,
@@ -94,8 +94,8 @@ def input_rows(
             and is_default(name, value)
         )
         optional = name in (*MAPPING_FIELDS, "guide_overrollings_per_hour") and value is None
-        absent = name in (*OF_LIMITS, *ABSENT) and is_default(name, value)
-        if not (drawn or optional or absent):
+        unused = name in OF_LIMITS and is_default(name, value)
+        if not (drawn or optional or unused or is_absent(name, value)):
             row = input_row(name, value)
             if not_given is not None:
                 row = replace(

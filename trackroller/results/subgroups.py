@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 
 from trackroller.parameters.carriage_fields import long_name_of, parameter_of
-from trackroller.results.groups import MOST_LEVELS, confined, levels
+from trackroller.results.factor_levels import MOST_LEVELS, confined, levels
 from trackroller.study.design.levels import in_words
 
 MOST_PRODUCTS = 2  # combinations of levels that describe a place

@@ -13,7 +13,7 @@ from trackroller.damage import LIMITS
 from trackroller.parameters import BODIES
 from trackroller.results.comparison import Comparison
 from trackroller.results.first_limits import COEFFICIENT, reached_by_body
-from trackroller.results.lives import BESIDE, FIRST_LIMIT
+from trackroller.results.life_columns import BESIDE, FIRST_LIMIT
 from trackroller.roller.limit_notes import Placeholder, placeholders_of
 from trackroller.study.outputs import flat
 

@@ -11,7 +11,7 @@ import pandas as pd
 import xarray as xr
 
 from trackroller.parameters import EXACTNESS
-from trackroller.results.columns import CONTACT_RESULTS, codes, input_columns
+from trackroller.results.case_columns import CONTACT_RESULTS, codes, input_columns
 from trackroller.results.solved_cases import SolvedCases
 from trackroller.study.outputs import flat
 
@@ -215,7 +215,7 @@ QUANTITIES = (
 def errors(paired: xr.Dataset) -> xr.Dataset:
     """Return the error of each cheaper model against the reference where both roll.
 
-    `paired`: dataset of `trackroller.results.contact_models`. Errors are relative; those of
+    `paired`: dataset of `trackroller.results.model_errors`. Errors are relative; those of
     friction forces are over mu F_N and that of the spin moment over mu F_N sqrt(a b), that of stick
     is a difference of shares. The larger error of both contacts and bodies counts.
     """

@@ -9,9 +9,9 @@ from trackroller.damage import limit_word
 from trackroller.parameters import BODIES
 from trackroller.parameters.carriage_fields import long_name_of
 from trackroller.results.case_ranges import CaseRanges
-from trackroller.results.groups import BINS, classes
-from trackroller.results.places import level_text
+from trackroller.results.factor_levels import BINS, classes
 from trackroller.results.solved_cases import SolvedCases
+from trackroller.results.subgroups import level_text
 from trackroller.roller.output_names import is_life
 from trackroller.study.design.entries import OPTION_FACTORS
 

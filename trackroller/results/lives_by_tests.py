@@ -30,7 +30,7 @@ from trackroller.fit.stored import StoredFit, stored_fit
 from trackroller.methods.b10 import b10
 from trackroller.parameters import BODIES, FIRST_TO_FAIL
 from trackroller.results.first_limits import reached_by_body
-from trackroller.results.lives import body_lives, past_data
+from trackroller.results.life_columns import body_lives, past_data
 from trackroller.results.solved_cases import SAME_ENDS, SolvedCases, made_once
 from trackroller.results.targets import hits_of, scattering_body
 from trackroller.roller.output_names import body_of, is_life

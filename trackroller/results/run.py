@@ -86,10 +86,12 @@ def run_any(study: Study, results: Path | str = "results", **how: Any) -> Ledger
     The failed cases of a search that are to be solved again are solved before it goes on.
     """
     if study.config.until is not None:
-        from trackroller.results.growing import grow_study as run  # heavy: scipy.stats, as below
+        from trackroller.results.sample_growth import (
+            grow_study as run,  # heavy: scipy.stats, as below
+        )
     elif study.decides:
         # heavy: no job of a workflow needs it
-        from trackroller.results.optimum import search_designs as run
+        from trackroller.results.search import search_designs as run
     else:
         run = run_study
     return run(study, results, **how)

@@ -13,16 +13,16 @@ import pandas as pd
 from trackroller.damage import LIMITS, limit_word
 from trackroller.parameters import BODIES
 from trackroller.parameters.carriage_fields import long_name_of
-from trackroller.parameters.example import ABSENT
+from trackroller.parameters.example import is_absent
 from trackroller.results.answer import Caution
 from trackroller.results.candidates import slip_margin
+from trackroller.results.case_columns import codes
 from trackroller.results.case_ranges import CaseRanges
-from trackroller.results.columns import codes
 from trackroller.results.comparison import Comparison
 from trackroller.results.friction import friction_cautions
-from trackroller.results.lives import OF_PAIR, body_lives
-from trackroller.results.places import level_text, places_of, places_text
+from trackroller.results.life_columns import OF_PAIR, body_lives
 from trackroller.results.solved_cases import SolvedCases
+from trackroller.results.subgroups import level_text, places_of, places_text
 from trackroller.roller.limit_notes import given_in_vain
 from trackroller.roller.output_names import body_of, is_life
 from trackroller.roller.stored_inputs import names_not_given
@@ -149,10 +149,11 @@ def not_given_words(results: SolvedCases) -> dict[str, str]:
     """Return the values that nobody gave, with their units."""
     words = {}
     for name in names_not_given(results.data.attrs):
-        if name in results.factors or name in results.derived or name in ABSENT:
+        if name in results.factors or name in results.derived:
             continue
         value = results.base.get(name)
-        if value is not None and not (isinstance(value, float) and np.isnan(value)):
+        unknown = value is None or (isinstance(value, float) and np.isnan(value))
+        if not unknown and not is_absent(name, value):
             words[name] = level_text(name, value)
     return words
 

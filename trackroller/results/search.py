@@ -31,7 +31,7 @@ from trackroller.methods.optimise import (
     survivors,
 )
 from trackroller.parameters import PARAMETERS
-from trackroller.results.judging import OPTIMUM, Judged, best_in, judge, recommended, spread
+from trackroller.results.search_fitness import OPTIMUM, Judged, best_in, judge, recommended, spread
 from trackroller.results.stored_study import solved_results
 from trackroller.study.file.load import parse_study
 from trackroller.study.file.study import Study

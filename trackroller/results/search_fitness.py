@@ -14,10 +14,10 @@ from trackroller.methods.factor import readable
 from trackroller.methods.optimise import crowding
 from trackroller.parameters import REGIME_LABELS, REGIMES
 from trackroller.results.answer import Required
-from trackroller.results.by_tests import beyond_sn_data
 from trackroller.results.case_ranges import CaseRanges
 from trackroller.results.comparison import Comparison
 from trackroller.results.constraints import Column
+from trackroller.results.lives_by_tests import beyond_sn_data
 from trackroller.results.requirement import requirements_of
 from trackroller.results.solved_cases import OUTSIDE, SolvedCases, made_once
 from trackroller.roller.output_names import is_life

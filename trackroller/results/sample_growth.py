@@ -12,7 +12,7 @@ import json
 from pathlib import Path
 from typing import Any
 
-from trackroller.results.looks import UNTIL, look
+from trackroller.results.interim_looks import UNTIL, look
 from trackroller.results.stored_study import solved_results
 from trackroller.study.cost import duration
 from trackroller.study.design.growth import doubled

@@ -12,7 +12,7 @@ import numpy as np
 from trackroller.methods.b10 import log_b10, share
 from trackroller.methods.intervals import constant
 from trackroller.parameters import REGIMES
-from trackroller.results.labels import factor_name
+from trackroller.results.index_labels import factor_name
 from trackroller.results.robustness import material_deviations
 from trackroller.results.solved_cases import SolvedCases
 from trackroller.results.targets import hits_of, scattering_body
