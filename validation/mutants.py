@@ -147,8 +147,18 @@ DECISIONS = {
     "class-of-a-value": ("results/factor_levels.py", 'side="right") - 1', 'side="left") - 1', (*DESIGNS, *WORDS)),
     "target-met": ("roller/requirement.py", "(values >= self.least) &", "(values > self.least) &", TARGETS),
     "all-targets": ("results/targets.py", ".min(axis=1) for body", ".max(axis=1) for body", TARGETS),
-    "curve-in-words": ("report/numbers.py", 'side = "inner"\n        if value > 0', 'side = "inner"\n        if value < 0', WORDS),
-    "drive-in-words": ("report/numbers.py", 'drive = "braked"\n        if value < 0', 'drive = "braked"\n        if value > 0', WORDS),
+    "curve-in-words": (
+        "report/numbers.py",
+        'side = "inner"\n        if value > 0',
+        'side = "inner"\n        if value < 0',
+        WORDS,
+    ),
+    "drive-in-words": (
+        "report/numbers.py",
+        'drive = "braked"\n        if value < 0',
+        'drive = "braked"\n        if value > 0',
+        WORDS,
+    ),
     "fold": ("report/numbers.py", "ratio = max(ratio, 1", "ratio = min(ratio, 1", WORDS),
     "way-of-a-goal": (
         "results/search_fitness.py",

@@ -160,8 +160,8 @@ class Results(SolvedCases):
         Returns
         -------
         ByTests or None
-            See `trackroller.results.lives_by_tests.ByTests`; None without a material that was fitted to
-            tests.
+            See `trackroller.results.lives_by_tests.ByTests`; None without a material that was
+            fitted to tests.
         """
         return by_tests_of(self)
 
