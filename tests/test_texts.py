@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import errno
 
+import numpy as np
 import pandas as pd
 import pytest
 import yaml
@@ -39,6 +40,11 @@ def test_a_sign_that_a_terminal_obeys_is_refused_and_shown_escaped(sign):
 ALIKE = ["a\u200b", "\ufeffa", "so\xadft", "a\u2060b", "a\u200d", "a\ufe0f", "\u3164", "\u2800", "\U000e0041a"]
 
 
+@pytest.mark.parametrize(("value", "shown"), [(np.float64(2.5), "2.5"), (np.array([1.0, 2.0]), "[1.0, 2.0]")])
+def test_a_message_shows_numbers_without_names_of_the_library(value, shown):
+    assert f"slip = {shown} is" in str(InputError("slip", value, "a number"))
+
+
 @pytest.mark.parametrize("text", [*ALIKE, "\u0301a", "a \u0308", "   ", "\u3000"])
 def test_a_name_that_does_not_show_whole_is_refused_and_the_remedy_works(text):
     with pytest.raises(InputError, match=r"an invisible character|without its letter|blanks") as caught:
@@ -64,7 +70,7 @@ def test_an_empty_name_is_one_that_was_not_given(value):
     assert (spectrum.name, spectrum.blocks[0].name) == ("spectrum", "block 1")
 
 
-@pytest.mark.parametrize("value", [True, 1.5, ["a"], {"a": 1}])
+@pytest.mark.parametrize("value", [True, 1.5, ["a"], {"a": 1}, np.ones(2)])
 @pytest.mark.parametrize("key", ["name", "description", "cases"])
 def test_a_name_is_a_text(key, value):
     given = [{"name": value}] if key == "cases" else value

@@ -55,7 +55,8 @@ class InputError(ValueError):
                 remedy,
             ]
         else:
-            shown = f"{field} = {shortened(repr(value))}"
+            plain = value.tolist() if hasattr(value, "tolist") else value  # without NumPy's names
+            shown = f"{field} = {shortened(repr(plain))}"
             parts = [
                 f"{shown} {wrong or 'is not usable'}",
                 allowed and f"Allowed: {allowed}",
@@ -178,7 +179,7 @@ def text_of(value: Any, field: str, default: str = "", lines: bool = False) -> s
     >>> text_of(None, "name", "cart"), text_of(7, "name", "cart")
     ('cart', '7')
     """
-    if value is None or value == "":
+    if value is None or (isinstance(value, str) and not value):
         return default
     if isinstance(value, bool) or not isinstance(value, (str, int)):
         raise InputError(field, value, "a text, or a whole number", "Put the text in quotes.")

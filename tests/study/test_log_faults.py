@@ -469,3 +469,20 @@ def test_a_log_with_long_stops_moves_at_a_usual_speed(tmp_path):
     columns["speed"] = np.where(np.arange(400) % 10 == 0, 1.0, 0.0)
     log = read(write(tmp_path / "l.csv", columns, names_of(("time", "speed"))))
     assert "unusual_speed" not in codes(log)
+
+
+@pytest.mark.parametrize("stamp", ["2026-11-29 10:00:{:06.3f}", "10:00:{:04.1f}", "29.11.2026 10:00:{:02.0f}"])
+def test_a_column_of_dates_is_one_error_whose_remedy_works(tmp_path, stamp):
+    columns = {name: column[:300] for name, column in truth().items()}
+    path = write(tmp_path / "l.csv", columns, names_of(("time", "speed")))
+    head, *lines = path.read_text().splitlines()
+    seconds = [line.split(",")[0] for line in lines]
+    dated = [
+        ",".join([stamp.format(float(time)), *line.split(",")[1:]]) for time, line in zip(seconds, lines, strict=True)
+    ]
+    path.write_text("\n".join([head, *dated]) + "\n")
+    with pytest.raises(InputError, match="all cells below it are no numbers") as caught:
+        read(path)
+    assert len(caught.value.errors) == 1 and "seconds since the first line" in str(caught.value)
+    path.write_text("\n".join([head, *lines]) + "\n")
+    assert read(path).travel.sum() > 0

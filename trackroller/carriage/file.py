@@ -83,6 +83,7 @@ OF_LOADS = (*LOADS, "velocity")  # parameters of a roller that its carriage give
 SQUARE = 1e-6  # largest cosine between directions that count as perpendicular
 # of the distance: rollers of a pair press against each other if they are off their line by less
 IN_LINE = 1e-3
+LARGEST_RADIUS = 1e12  # of a curve of the track [mm]; beyond it, the track is straight
 _POINT = "three numbers [x, y, z] in mm: x forward, y left, z up"
 _AT = "Write at: [0, 0, 60]."
 
@@ -856,7 +857,8 @@ def _angle(value: Any, where: str) -> float:
             return 0.0
         raise InputError(where, value, allowed, f"Write {value} % or {value} deg.", "has no unit")
     if parts[1] == "%":
-        return math.atan(float(parts[0]) / 100.0)
+        share = _number(parts[0], where, "-", "a slope in % or degrees")
+        return math.atan(share / 100.0)
     return math.radians(
         _number(value, where, "deg", "a slope in % or degrees, from -90 to 90", -90.0, 90.0)
     )
@@ -864,11 +866,12 @@ def _angle(value: Any, where: str) -> float:
 
 def _radius(value: Any, where: str) -> float:
     radius = number_or_nan(value, "mm", where)
-    if math.isnan(radius) or radius == 0:
+    is_straight = math.isinf(radius)
+    if not (0 < abs(radius) <= LARGEST_RADIUS or is_straight):
         raise InputError(
             where,
             value,
-            "a radius, > 0 to the left and < 0 to the right",
+            "a radius, > 0 to the left and < 0 to the right, at most 1e12 mm or inf",
             "Write curve_radius: 1.5 m.",
         )
     return radius

@@ -165,8 +165,8 @@ def fit_sn(  # noqa: PLR0913 - one argument for each choice of a fit
     }
     notes = [*_read_as(tests, failed), *_notes(load_type, ratio, bool(has_limit), observed)]
     if knee is None:
-        line, told = _decided(line)
-        notes += told
+        line, sentences = _decided(line)
+        notes += sentences
     fatigue = Group("fatigue", line, priors, at=_stated_at(line))
     return Fit("sn", name or "fitted material", (fatigue,), tests, like, given, notes)
 

@@ -270,7 +270,13 @@ def _check_discs(columns: Mapping[str, np.ndarray]) -> None:
     """Refuse discs without a width or with spin, a width of other bodies, and discs beside other
     bodies.
     """
-    flat = columns.get("curvature_lateral", np.ones(())) == 0.0
+    lateral = columns.get("curvature_lateral", np.ones(()))
+    least = PATCH_FIELDS["curvature_rolling"].lower
+    flat = lateral == 0.0
+    if np.any(~flat & (lateral < least)):
+        allowed = f"0, which stands for two discs, or a curvature >= {least:g} 1/mm"
+        remedy = "Write curvature_lateral: 0, and width: 10 mm."
+        raise InputError("curvature_lateral", float(lateral[lateral > 0].min()), allowed, remedy)
     if flat.any() and not flat.all():
         allowed = "0 in all cases, which stands for two discs, or > 0 in all cases"
         remedy = "Solve discs and ellipses one after the other."

@@ -123,14 +123,14 @@ def doubts(values: Mapping[str, Any], materials: Iterable[Material] = ()) -> lis
         sentences += [
             text
             for number in ends
-            if (text := _unusual(name, number, PARAMETERS[name].unit, usual, ""))
+            if (text := sentence_of_unusual(name, number, PARAMETERS[name].unit, usual, ""))
         ]
     for material in {m.name: m for m in materials}.values():
         for name, usual in OF_FAMILY.get(material.family, {}).items():
             number = getattr(material, name)
             kind = f" for the family {material.family} (material '{material.name}')"
             if number is not None:
-                sentences += [_unusual(name, number, PROPERTIES[name].unit, usual, kind)]
+                sentences += [sentence_of_unusual(name, number, PROPERTIES[name].unit, usual, kind)]
         sentences += [_exponent(material, name) for name in ("woehler_exponent", "second_exponent")]
     sentences += ratings(values)
     guide_radii = _numbers(values.get("guide_profile_radius", EXAMPLE["guide_profile_radius"]))
@@ -154,8 +154,22 @@ def doubts_of_case(case: Case, database: MaterialDatabase) -> list[str]:
     )
 
 
-def _unusual(name: str, number: float, unit: str, usual: tuple[float, float], kind: str) -> str:
-    """Return the sentence about an unusual number, '' for a usual one."""
+def sentence_of_unusual(
+    name: str, number: float, unit: str, usual: tuple[float, float], kind: str
+) -> str:
+    """Return the sentence about a number outside its usual sizes, '' for a usual one.
+
+    Parameters
+    ----------
+    name, unit : str
+        Field and unit of the number.
+    number : float
+        The number; its sign does not count.
+    usual : tuple of float
+        Smallest and largest usual size.
+    kind : str
+        For what they are usual, such as ' for the family metal'.
+    """
     low, high = usual
     size = abs(number)
     shown = "" if unit == "-" else f" {unit}"
@@ -226,7 +240,7 @@ def ratings(values: Mapping[str, Any]) -> list[str]:
     for mapping in _mappings(values.get("catalogue")):
         life = mapping.get("basic_life")
         if isinstance(life, (int, float)):
-            out.append(_unusual("catalogue.basic_life", life, "km", BASIC_LIFE, ""))
+            out.append(sentence_of_unusual("catalogue.basic_life", life, "km", BASIC_LIFE, ""))
     return [text for text in dict.fromkeys(out) if text]
 
 
