@@ -80,6 +80,14 @@ RATINGS = {
     "catalogue": {"radial_force": "N", "axial_force": "N", "moment": "N mm"},
 }
 LARGER_UNITS = {"N": "kN", "N mm": "Nm"}
+# ASSUME: sizes [mm] and strengths [MPa] between which those of studs and axles lie
+STUD = {
+    "diameter": (2.0, 300.0),
+    "length": (1.0, 1000.0),
+    "yield_strength": (50.0, 2500.0),
+    "tensile_strength": (50.0, 3000.0),
+}
+SHORT = 0.5  # ASSUME: diameters of free length below which a stud is no beam
 # share of the radial force below which a rating is asked about; 1 for the others
 SMALL = {"axial_force": 0.02}
 # ASSUME: width of measured points over the radius of the guide; inches as mm are below, micrometres
@@ -130,6 +138,7 @@ def doubts(values: Mapping[str, Any], materials: Iterable[Material] = ()) -> lis
                 sentences += [_unusual(name, number, PROPERTIES[name].unit, usual, kind)]
         sentences += [_exponent(material, name) for name in ("woehler_exponent", "second_exponent")]
     sentences += ratings(values)
+    sentences += _studs(values)
     guide_radii = _numbers(values.get("guide_profile_radius", EXAMPLE["guide_profile_radius"]))
     for name in ("guide_profile", "roller_profile"):
         radius = next((r for r in guide_radii if r > 0.0), math.nan)
@@ -221,6 +230,22 @@ def ratings(values: Mapping[str, Any]) -> list[str]:
                 f"meant, write '{number:g} {larger}' or {1e3 * number:g}."
             )
     return list(dict.fromkeys(out))
+
+
+def _studs(values: Mapping[str, Any]) -> list[str]:
+    """Return sentences about studs of an unusual size or strength, and about short ones."""
+    sentences = []
+    for stud in _mappings(values.get("stud")):
+        for name, usual in STUD.items():
+            if name in stud:
+                unit = "MPa" if "strength" in name else "mm"
+                sentences.append(_unusual(f"stud.{name}", stud[name], unit, usual, ""))
+        if stud["length"] < SHORT * stud["diameter"]:
+            sentences.append(
+                f"stud.length = {stud['length']:g} mm is less than half the diameter; the stress "
+                "of so short a stud is not that of a beam."
+            )
+    return sentences
 
 
 def _mappings(value: Any) -> list[dict[str, Any]]:
