@@ -161,3 +161,32 @@ def test_the_command_writes_the_carriage_of_its_places(shelf, tmp_path):
     assert CliRunner().invoke(app, ["verify", "results/size-cart-rollers"]).exit_code == 0
     refused = CliRunner().invoke(app, [*words, "-o", "sized.yaml"])
     assert refused.exit_code != 0
+
+
+def test_a_stud_excludes_a_roller_and_its_load_ratio_is_that_of_the_forces(shelf):
+    """Stress and moments of a stud are proportional to the forces, but for the moments of the contacts."""
+    text = shelf.read_text().splitlines()
+    studs = {"mid": "10;25;640", "large": "5;25;640", "soft": "16;25;640", "no price": "16;25;640"}
+    rows = [f"{line};{studs[line.split(';')[0]]}" for line in text[1:]]
+    heads = "stud_diameter [mm];stud_length [mm];stud_yield_strength [MPa]"
+    shelf.write_text("\n".join([f"{text[0]};{heads}", *rows]) + "\n")
+    case = BASE | {"radial_force": -500, "axial_force": 50} | QUICK
+    found = tr.size(case, shelf, life=100, safety=1.5)
+    table = found.table.set_index("roller")
+    assert "stud of the roller" in table.loc["large", "excluded_by"] and table.loc["large", "verdict"] == "not enough"
+    for name in ("mid", "large"):
+        ratio = found.ratios.table.loc[name, "stud"]
+        stud = dict(zip(("diameter", "length", "yield_strength"), map(float, studs[name].split(";")), strict=True))
+        loaded = BASE | roller(name) | {"radial_force": -500 * ratio, "axial_force": 50 * ratio, "stud": stud}
+        ds = tr.solve(loaded, outputs=("forces", "stud"), **QUICK)
+        assert ds["stud_static_utilisation"].item() == pytest.approx(1.0, abs=2e-4)
+
+
+def test_a_stud_counts_in_a_carriage(shelf):
+    stud = {"diameter": 6, "length": 20, "yield_strength": 640}
+    values = cart("mid")
+    for entry in values["rollers"].values():
+        entry["roller"]["stud"] = stud
+    ds = solve_carriage(values)
+    used = ds["utilisation"].sel(limit="stud", body="roller")
+    assert (used > 1).all() and (ds["limit_state"].sel(limit="stud", body="roller") == 3).all()

@@ -9,11 +9,12 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from trackroller.cli.case import YAML, case_of, writable, write_yaml_file
+from trackroller.cli.case import YAML, read_case, writable, write_yaml_file
 from trackroller.cli.usage import print_doubts
 from trackroller.damage import limit_word
 from trackroller.damage.bearing import FIELD as BEARING
 from trackroller.damage.catalogue import FIELD as CATALOGUE
+from trackroller.damage.stud import FIELD as STUD
 from trackroller.errors import InputError
 from trackroller.files import files_beside
 from trackroller.numerics.units import PLAIN
@@ -22,7 +23,7 @@ from trackroller.report.terminal import print_table, print_text
 from trackroller.study.design.entries import SHELVES, SIZES
 from trackroller.study.design.levels import entries, in_words
 from trackroller.study.file.load import parse_study
-from trackroller.study.file.shelf import ROLLER, base_of_case, with_rows, without_overridden
+from trackroller.study.file.shelf import ROLLER, base_beside_shelf, with_rows, without_overridden
 from trackroller.study.file.study import Study
 from trackroller.study.store.crate import write_crate
 from trackroller.study.store.ledger import study_folder
@@ -192,8 +193,7 @@ def shelf_study(file: Path, of: str, case: Path | None, settings: list[str] | No
     """
     base: dict[str, Any] = {}
     if case is not None or settings:
-        given, _, _ = case_of(case, settings)
-        base = base_of_case(given)
+        base, _, _ = read_case(case, settings, base_beside_shelf)
     with files_beside(file):
         keys, places = with_rows(
             {"name": "shelf", "base": base, "factors": {of: {"file": file.name}}}
@@ -218,6 +218,6 @@ def _cell(name: str, value: Any) -> str:
     """Return a value of a row as text."""
     if value is None or value == "" or (isinstance(value, float) and math.isnan(value)):
         return "–"
-    if name in (BEARING.name, CATALOGUE.name):
+    if name in (BEARING.name, CATALOGUE.name, STUD.name):
         return entries(json.loads(value))
     return in_words(name, value)

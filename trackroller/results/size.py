@@ -33,11 +33,15 @@ from trackroller.results.size_spectrum import VERDICTS, spectrum_table
 from trackroller.roller.aliases import OTHER_OPTIONS, with_options
 from trackroller.roller.duty import OVERROLLINGS
 from trackroller.roller.requirement import DEFAULT
-from trackroller.roller.settings import checked_case
 from trackroller.study.design.carriage_cases import common_values
 from trackroller.study.file.config import IN_STUDY, NAME
 from trackroller.study.file.load import load_study
-from trackroller.study.file.shelf import ROLLER, base_of_case, with_rows, without_overridden
+from trackroller.study.file.shelf import (
+    ROLLER,
+    base_beside_shelf,
+    with_rows,
+    without_overridden,
+)
 from trackroller.study.file.study import Study
 from trackroller.study.outputs import of_fatigue
 from trackroller.yaml_file import read_mapping
@@ -389,8 +393,8 @@ def _path_of(case: Any) -> Path | None:
 
 def _of_case(values: Mapping[str, Any]) -> dict[str, Any]:
     """Return the keys of a study with the values of a case file."""
-    case, options, beside = checked_case(values)
-    keys: dict[str, Any] = {"base": base_of_case(case)}
+    base, options, beside = base_beside_shelf(values)
+    keys: dict[str, Any] = {"base": base}
     keys |= {option.name: options[option.name] for option in IN_STUDY if option.name in options}
     keys |= {name: beside[name] for name in ("duty", "requirement") if name in beside}
     return keys
