@@ -44,6 +44,8 @@ def test_the_told_error_of_the_slip_power_holds_for_wheels_in_grooves(row):
     ratio = own["half_width"] / 10.0 * ONE
     told = float(close_fit.model_error(ratio, close_fit.SLIP_POWER)[0])
     assert 0.0 < 1.0 - row["friction_power"] / own["friction_power"] <= told
+    resistance = row["friction_power"] / 0.42  # at 0.42 m/s: 0.205, 0.767 and 1.68 N at 10 kN
+    assert 0.0 < 1.0 - resistance / own["rolling_resistance"] <= told
 
 
 def test_an_error_ends_with_the_witnesses():
