@@ -93,8 +93,8 @@ FORMULAS = {
     "second-order": ("methods/saltelli.py", "first[:, i] - first[:, j]", "first[:, i] + first[:, j]", SOBOL),
     "dominated": (
         "results/pareto.py",
-        "(held < costs[row]).any",
-        "(held < costs[row]).all",
+        "(front_costs < costs[row]).any",
+        "(front_costs < costs[row]).all",
         ("results/test_pareto.py",),
     ),
     "direction": ("results/pareto.py", 'direction == "min":', 'direction == "max":', ("results/test_pareto.py",)),

@@ -260,7 +260,7 @@ def _studs(values: Mapping[str, Any]) -> list[str]:
         for name, usual in STUD.items():
             if name in stud:
                 unit = "MPa" if "strength" in name else "mm"
-                sentences.append(_unusual(f"stud.{name}", stud[name], unit, usual, ""))
+                sentences.append(sentence_of_unusual(f"stud.{name}", stud[name], unit, usual, ""))
         if stud["length"] < SHORT * stud["diameter"]:
             sentences.append(
                 f"stud.length = {stud['length']:g} mm is less than half the diameter; the stress "
