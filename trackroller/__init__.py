@@ -21,6 +21,7 @@ _WHERE = {
     "explore": "trackroller.report.show",
     "find": "trackroller.roller.find",
     "fit_bench": "trackroller.fit.bench",
+    "fit_catalogue": "trackroller.fit.catalogue",
     "fit_sn": "trackroller.fit.coupons",
     "next_tests": "trackroller.fit.next_tests",
     "patch": "trackroller.one_patch.solve",
@@ -46,6 +47,7 @@ if TYPE_CHECKING:
     from trackroller import report as report
     from trackroller.errors import InputError as InputError
     from trackroller.fit.bench import fit_bench as fit_bench
+    from trackroller.fit.catalogue import fit_catalogue as fit_catalogue
     from trackroller.fit.coupons import fit_sn as fit_sn
     from trackroller.fit.next_tests import next_tests as next_tests
     from trackroller.halfspace.stress import max_shear as max_shear

@@ -93,11 +93,11 @@ FORMULAS = {
     "second-order": ("methods/saltelli.py", "first[:, i] - first[:, j]", "first[:, i] + first[:, j]", SOBOL),
     "dominated": (
         "results/pareto.py",
-        "(held < costs[row]).any",
-        "(held < costs[row]).all",
+        "(front_costs < costs[row]).any",
+        "(front_costs < costs[row]).all",
         ("results/test_pareto.py",),
     ),
-    "direction": ("results/pareto.py", '"min" else -1.0', '"min" else 1.0', ("results/test_pareto.py",)),
+    "direction": ("results/pareto.py", 'direction == "min":', 'direction == "max":', ("results/test_pareto.py",)),
     "wear-depth": ("damage/wear.py", "return np.asarray(1e-3 * k.reshape", "return np.asarray(1e-2 * k.reshape", WEAR),
     "wear-tied": ("damage/wear.py", "np.where(braked, pressed, rubbed)", "np.where(braked, pressed, shear)", WEAR),
     "wear-place": ("damage/wear.py", "0.5 * (after - before)", "0.5 * (before - after)", WEAR),
@@ -131,7 +131,7 @@ FORMULAS = {
 # borders, signs and orders in study, analysis, report and command line
 DECISIONS = {
     "needed-samples": ("methods/convergence.py", "/ target) ** 2", "/ target)", CONVERGENCE),
-    "figures-of-error": ("report/numbers.py", "figures = 2 if error >= COARSE", "figures = 2 if error < COARSE", WORDS),
+    "figures-of-error": ("report/numbers.py", "if error >= COARSE", "if error < COARSE", WORDS),
     "share-interval": ("results/comparison.py", "(share + z**2 / (2 * trials))", "(share + z**2 / trials)", ANSWER),
     "requirement-error": ("results/case_ranges.py", "_shrunk(self.low, error)", "_grown(self.low, error)", ANSWER),
     "curve-of-like-cases": (
@@ -147,8 +147,18 @@ DECISIONS = {
     "class-of-a-value": ("results/factor_levels.py", 'side="right") - 1', 'side="left") - 1', (*DESIGNS, *WORDS)),
     "target-met": ("roller/requirement.py", "(values >= self.least) &", "(values > self.least) &", TARGETS),
     "all-targets": ("results/targets.py", ".min(axis=1) for body", ".max(axis=1) for body", TARGETS),
-    "curve-in-words": ("report/numbers.py", "'outer' if value > 0", "'outer' if value < 0", WORDS),
-    "drive-in-words": ("report/numbers.py", "'driven' if value < 0", "'driven' if value > 0", WORDS),
+    "curve-in-words": (
+        "report/numbers.py",
+        'side = "inner"\n        if value > 0',
+        'side = "inner"\n        if value < 0',
+        WORDS,
+    ),
+    "drive-in-words": (
+        "report/numbers.py",
+        'drive = "braked"\n        if value < 0',
+        'drive = "braked"\n        if value > 0',
+        WORDS,
+    ),
     "fold": ("report/numbers.py", "ratio = max(ratio, 1", "ratio = min(ratio, 1", WORDS),
     "way-of-a-goal": (
         "results/search_fitness.py",

@@ -14,13 +14,15 @@ import subprocess
 import tempfile
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-import jinja2
 from markupsafe import Markup, escape
 
 from trackroller.errors import InputError, WorkError
 from trackroller.study.store.put import put, put_text
+
+if TYPE_CHECKING:
+    from jinja2 import Template
 
 _KINDS = {".svg": "image/svg+xml", ".png": "image/png"}
 _BROWSERS = ("chromium", "chromium-browser", "google-chrome", "chrome", "msedge")
@@ -48,10 +50,12 @@ def render(template: str, content: dict[str, Any], **filters: Callable[..., Any]
 
 
 @functools.cache
-def _template(name: str, filters: tuple[tuple[str, Callable[..., Any]], ...]) -> jinja2.Template:
+def _template(name: str, filters: tuple[tuple[str, Callable[..., Any]], ...]) -> Template:
     """Return a compiled template; compiling takes half of the time of a drawing, which the live
     page repeats.
     """
+    import jinja2  # noqa: PLC0415 - heavy, and a terminal needs no template
+
     environment = jinja2.Environment(
         loader=jinja2.PackageLoader("trackroller.report", "templates"),
         autoescape=True,

@@ -29,6 +29,7 @@ from trackroller.parameters import BODIES, MATERIAL_FIELDS, REGIME_LABELS, REGIM
 from trackroller.parameters.carriage_fields import long_name_of
 from trackroller.parameters.validity import VALIDITY
 from trackroller.results.answer import Answer, Caution, Column, Part, Required
+from trackroller.results.friction import friction_cautions
 from trackroller.results.life_columns import FIRST_LIMIT
 from trackroller.results.placeholders import guess_cautions, placeholders_part
 from trackroller.results.roller_answer import (
@@ -206,6 +207,7 @@ def answer_of_carriage(ds: xr.Dataset) -> Answer:
             counted="load cases",
             models=[],
             accuracy="",
+            probability=float(ds.attrs.get("failure_probability", math.nan)),
         ),
     )
 
@@ -633,6 +635,7 @@ def _warnings(ds: xr.Dataset) -> Iterator[Caution]:
     yield from _one_contact(ds)
     yield from _second_models(ds)
     yield from _flags(ds)
+    yield from friction_cautions(ds.attrs)
     for text in doubts_of(ds):
         yield Caution("doubtful", 1, 1, text, "")
 

@@ -1,16 +1,12 @@
-"""Which question a study asks, and its answer; the answer to whatever else was solved."""
+"""Which question a study asks, and its answer."""
 
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable
-
-import xarray as xr
 
 from trackroller.parameters import REGIMES
 from trackroller.results.answer import Answer
 from trackroller.results.best import answer_of_search
-from trackroller.results.carriage_answer import answer_of_carriage
 from trackroller.results.case_ranges import CaseRanges
 from trackroller.results.comparison import Comparison, compared_output
 from trackroller.results.decide import answer_decide
@@ -18,15 +14,11 @@ from trackroller.results.how_it_behaves import answer_how_it_behaves
 from trackroller.results.how_sure import answer_how_sure
 from trackroller.results.output_ranges import output_ranges
 from trackroller.results.requirement import required_of
-from trackroller.results.roller_answer import answer_of_roller
 from trackroller.results.search_fitness import optimum_of
 from trackroller.results.solved_cases import SolvedCases, made_once
-from trackroller.results.spectrum_answer import answer_of_spectrum
-from trackroller.results.wear_answer import answer_of_wear
 from trackroller.results.what_matters import answer_what_matters, shown_ranges
 from trackroller.results.which_model import answer_which_model, models_of
 from trackroller.roller.output_names import is_life
-from trackroller.roller.stored_inputs import CASE
 
 SENSITIVITY = ("saltelli", "morris", "central_composite", "box_behnken", "plackett_burman")
 
@@ -91,7 +83,7 @@ def _ranks(name: str) -> bool:
 
 
 @made_once
-def answer_of_study(results: SolvedCases) -> Answer | None:
+def answer_of(results: SolvedCases) -> Answer | None:
     """Return the answer to a study; None for a search that did not come to its end.
 
     Parameters
@@ -125,26 +117,3 @@ def _with_outputs(answer: Answer, results: SolvedCases) -> Answer:
     """Return an answer with the range of each usual output of the study."""
     ranges = CaseRanges(results, answer.output, is_life(answer.output[0]))
     return dataclasses.replace(answer, outputs=output_ranges(results, ranges))
-
-
-def answer_of_data(ds: xr.Dataset) -> Answer | None:
-    """Return the record of a roller, a roller that wears, a spectrum or a carriage; None for
-    results of several cases.
-
-    Parameters
-    ----------
-    ds : xarray.Dataset
-        Result of `trackroller.solve`, `trackroller.wear`, `trackroller.carriage` or
-        `solve_spectrum`.
-    """
-    makers: dict[str, Callable[[xr.Dataset], Answer]] = {
-        "groove_depth": answer_of_wear,
-        "damage_sum": answer_of_spectrum,
-        "load_case": answer_of_carriage,
-    }
-    for name, make in makers.items():
-        if name in ds.variables:
-            return make(ds)
-    if CASE in ds.attrs and "case" not in ds.dims:
-        return answer_of_roller(ds)
-    return None

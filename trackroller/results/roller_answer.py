@@ -32,6 +32,7 @@ from trackroller.parameters.carriage_fields import long_name_of
 from trackroller.parameters.example import drive_question
 from trackroller.results.answer import Answer, Caution, Column, Part, Required, yes_or_blank
 from trackroller.results.case_columns import at_surface
+from trackroller.results.friction import friction_cautions
 from trackroller.results.life_columns import FIRST_LIMIT, OF_PAIR
 from trackroller.results.margins import First, Margin, lifeless_bodies, margins, worst_contact
 from trackroller.results.placeholders import guess_cautions, placeholders_part
@@ -721,6 +722,7 @@ def warnings_of(ds: xr.Dataset, own: Sequence[Margin], first: First | None) -> I
         yield _caution(CODES.get(flag.name, "flagged"), f"{flag.sentence} {flag.remedy}")
     yield from (_caution("extrapolated", text) for text in beyond_tests(ds))
     yield from guess_cautions(placeholders_part(ds))
+    yield from friction_cautions(ds.attrs)
     yield from (
         _caution("flagged", note) for note in notes_of(ds) if note.startswith(OF_TEMPERATURE)
     )

@@ -26,6 +26,7 @@ from trackroller.parameters import BODIES, PARAMETERS, REGIME_LABELS, REGIMES
 from trackroller.parameters.carriage_fields import long_name_of
 from trackroller.parameters.example import drive_question, is_absent
 from trackroller.results.answer import Answer, Caution, Column, Part, yes_or_blank
+from trackroller.results.friction import friction_cautions
 from trackroller.results.life_columns import FIRST_LIMIT, past_data
 from trackroller.results.margins import First, Margin, is_guessed
 from trackroller.results.placeholders import guess_cautions, placeholders_part
@@ -565,6 +566,7 @@ def _warnings(ds: xr.Dataset) -> Iterator[Caution]:
     for (code, text), names in _flagged_blocks(ds).items():
         yield Caution(code, len(names), total, f"{', '.join(names)}: {text}", "blocks")
     yield from guess_cautions(placeholders_part(ds))
+    yield from friction_cautions(ds.attrs)
     for note in notes_of(ds):
         if note.startswith(OF_TEMPERATURE):
             yield Caution("flagged", total, total, note, "blocks")

@@ -19,6 +19,7 @@ from trackroller.results.candidates import slip_margin
 from trackroller.results.case_columns import codes
 from trackroller.results.case_ranges import CaseRanges
 from trackroller.results.comparison import Comparison
+from trackroller.results.friction import friction_cautions
 from trackroller.results.life_columns import OF_PAIR, body_lives
 from trackroller.results.solved_cases import SolvedCases
 from trackroller.results.subgroups import level_text, places_of, places_text
@@ -279,7 +280,7 @@ def case_cautions(results: SolvedCases, ranges: CaseRanges, rows: np.ndarray) ->
                 _listed(f"{long_name_of(n)} {v}" for n, v in words.items()),
             )
         )
-    return listed
+    return [*listed, *friction_cautions(results.data.attrs)]
 
 
 def _outlives_groove(results: SolvedCases, output: str) -> np.ndarray:

@@ -22,6 +22,7 @@ from trackroller.damage.wear import KM_PER_HOUR
 from trackroller.parameters import BODIES
 from trackroller.parameters.carriage_fields import long_name_of
 from trackroller.results.answer import Answer, Caution, Column, Part, Required
+from trackroller.results.friction import friction_cautions
 from trackroller.results.life_columns import OF_PAIR
 from trackroller.results.placeholders import guess_cautions, placeholders_part
 from trackroller.results.roller_answer import CODES, facts_of_data, not_given_words
@@ -269,6 +270,7 @@ def _warnings(ds: xr.Dataset, guesses: Part) -> Iterator[Caution]:
     for flag in flags.values():
         yield Caution(CODES.get(flag.name, "flagged"), 1, 1, f"{flag.sentence} {flag.remedy}", "")
     yield from guess_cautions(guesses)
+    yield from friction_cautions(ds.attrs)
     words = _not_given(ds)
     if words:
         text = ", ".join(f"{long_name_of(name)} {value}" for name, value in words.items())

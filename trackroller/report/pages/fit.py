@@ -12,6 +12,7 @@ import numpy as np
 import xarray as xr
 
 from trackroller.errors import listing
+from trackroller.fit.catalogue import CatalogueFit
 from trackroller.fit.fitted import WORDS, Fit, Group
 from trackroller.report import html
 from trackroller.report.numbers import capital, rounded, with_unit
@@ -175,7 +176,7 @@ def _of_fatigue(own: Group, knee: float) -> list[str]:
     return texts
 
 
-def table_of_tests(fit: Fit) -> Table:
+def table_of_tests(fit: Fit | CatalogueFit) -> Table:
     """List the tests as they were given."""
     names = list(dict.fromkeys(name for row in fit.tests.rows for name in row))
     rows = [
