@@ -17,7 +17,7 @@ from trackroller.results.candidates import Candidates, candidates_of
 from trackroller.results.how_it_behaves import answer_how_it_behaves
 from trackroller.results.lives_by_tests import ByTests, by_tests_of
 from trackroller.results.pareto import pareto, study_pareto
-from trackroller.results.questions import answer_of
+from trackroller.results.questions import answer_of_study
 from trackroller.results.sensitivity import analysis_of, indices_of
 from trackroller.results.solved_cases import SolvedCases
 from trackroller.results.summary import summary_of
@@ -151,7 +151,7 @@ class Results(SolvedCases):
         Answer or None
             See `trackroller.results.answer.Answer`; None for a search that did not come to its end.
         """
-        return answer_of(self)
+        return answer_of_study(self)
 
     @property
     def by_tests(self) -> ByTests | None:
