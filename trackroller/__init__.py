@@ -28,7 +28,7 @@ _WHERE = {
     "solve": "trackroller.roller.solver",
     "load_study": "trackroller.study.file.load",
     "open_study": "trackroller.results.stored_study",
-    "run": "trackroller.results.solving",
+    "run": "trackroller.results.run",
     "size": "trackroller.results.size",
     "wear": "trackroller.roller.wear",
     "workbook": "trackroller.report.show",
@@ -59,8 +59,8 @@ if TYPE_CHECKING:
     from trackroller.one_patch.solve import patch as patch
     from trackroller.report.show import explore as explore
     from trackroller.report.show import workbook as workbook
+    from trackroller.results.run import run as run
     from trackroller.results.size import size as size
-    from trackroller.results.solving import run as run
     from trackroller.results.stored_study import open_study as open_study
     from trackroller.roller.case import Case as Case
     from trackroller.roller.find import find as find

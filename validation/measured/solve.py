@@ -9,7 +9,7 @@ from scipy.signal import fftconvolve
 
 import trackroller as tr
 from trackroller.contact import close_fit
-from trackroller.damage.heat import cell_temperature
+from trackroller.damage.moving_source import cell_temperature
 from trackroller.materials import builtin_database
 from validation.measured import grooves, pin_in_hole
 from validation.measured.facts import column, read

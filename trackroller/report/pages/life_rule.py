@@ -35,7 +35,7 @@ def sentences(fit: CatalogueFit) -> list[str]:
     values += f", basic life {cell(fit.basic_life)} km"
     if " (" in _range(fit, "exponent"):
         values += "; 90 % intervals in brackets"
-    said = [
+    statements = [
         f"{len(fit.life)} lives give {values}.",
         f"The lives deviate from this rule by up to {_percent(fit.deviation)}, and from the "
         f"nearest law, '{nearest}', by up to {_percent(fit.laws[nearest])}.",
@@ -44,15 +44,15 @@ def sentences(fit: CatalogueFit) -> list[str]:
     ]
     low, high = fit.interval("offset")
     if high - low > LOOSE:
-        said.append(
+        statements.append(
             f"The loads hardly tell the offset, which may be {rounded(low, 2)} to "
             f"{rounded(high, 2)}: add smaller loads, or hold it by --offset (offset=)."
         )
-    said.append(
+    statements.append(
         f"Our life by wear falls with the load to the power {OURS['wear']:g}, and by fatigue to "
         f"the power {OURS['fatigue']:g} (a steel roller that rolls freely)."
     )
-    return said
+    return statements
 
 
 def entry_text(catalogue: Mapping[str, float]) -> str:
@@ -99,7 +99,7 @@ def write_rule(fit: CatalogueFit, path: Path | str) -> Path:
     digest = f", sha256 {fit.tests.digest[:16]}" if fit.tests.digest else ""
     content = {
         "name": fit.tests.name,
-        "said": [*sentences(fit), *fit.notes],
+        "statements": [*sentences(fit), *fit.notes],
         "figures": list(pictures(partial(life_over_load, fit)).values()),
         "rules": rule_table(fit),
         "note": entry_note(fit),

@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 
 from trackroller.parameters.carriage_fields import long_name_of, parameter_of
-from trackroller.results.groups import MOST_LEVELS, confined, levels
+from trackroller.results.factor_levels import MOST_LEVELS, confined, levels
 from trackroller.study.design.levels import in_words
 
 MOST_PRODUCTS = 2  # combinations of levels that describe a place
@@ -18,7 +18,9 @@ Levels = Mapping[str, tuple[Any, ...]]
 
 def plain(value: Any) -> Any:
     """Return a level as a plain number or text."""
-    return value.item() if isinstance(value, np.generic) else value
+    if isinstance(value, np.generic):
+        return value.item()
+    return value
 
 
 def levels_of(table: pd.DataFrame, names: Sequence[str], row: int) -> dict[str, Any]:
@@ -65,15 +67,15 @@ def _without_needless(
     table: pd.DataFrame, restricted: Levels, hit: np.ndarray, among: np.ndarray
 ) -> Levels:
     """Return the levels without those of factors that the other ones restrict already."""
-    kept = dict(restricted)
+    needed = dict(restricted)
     for name in list(restricted):
-        others = {other: own for other, own in kept.items() if other != name}
+        others = {other: own for other, own in needed.items() if other != name}
         inside = among.copy()
         for other, own in others.items():
             inside &= table[other].isin(own).to_numpy()
         if others and inside.sum() == hit.sum():
-            kept = others
-    return kept
+            needed = others
+    return needed
 
 
 def number_text(value: float) -> str:
@@ -81,7 +83,9 @@ def number_text(value: float) -> str:
     with four.
     """
     text = f"{value:.6g}"
-    digits = 6 if float(text) == value else 4
+    digits = 4
+    if float(text) == value:
+        digits = 6
     return f"{value:,.{digits}g}".replace("-", "−").replace("inf", "∞")
 
 
@@ -92,7 +96,10 @@ def level_text(name: str, value: Any) -> str:
     if name == "guide_curve_radius" and np.isinf(value):
         return "straight"
     known = parameter_of(name)
-    unit = "" if known is None or known.unit == "-" else f" {known.unit}"
+    if known is None or known.unit == "-":
+        unit = ""
+    else:
+        unit = f" {known.unit}"
     return (number_text(float(value)) + unit).replace(" deg", "°")
 
 

@@ -13,7 +13,7 @@ from trackroller.damage import LIMITS
 from trackroller.parameters import BODIES
 from trackroller.results.comparison import Comparison
 from trackroller.results.first_limits import COEFFICIENT, reached_by_body
-from trackroller.results.lives import BESIDE, FIRST_LIMIT
+from trackroller.results.life_columns import BESIDE, FIRST_LIMIT
 from trackroller.roller.limit_notes import Placeholder, placeholders_of
 from trackroller.study.outputs import flat
 
@@ -42,11 +42,13 @@ class Turning:
         data = self.own.results.data
         if self.own.ranges.output != FIRST_LIMIT or "life_hours_by_limit_low" not in data:
             return None
-        found = []
+        ends = []
         for end in ("_low", "_high"):
             moved = self.own.ranges.hours_at(end)
-            found.append(reached_by_body(self.own.results, end) if moved is None else moved)
-        return found[0], found[1]
+            if moved is None:
+                moved = reached_by_body(self.own.results, end)
+            ends.append(moved)
+        return ends[0], ends[1]
 
     @cached_property
     def _worst(self) -> dict[tuple[int, int], np.ndarray]:
@@ -55,9 +57,11 @@ class Turning:
     @cached_property
     def placeholders(self) -> list[Placeholder]:
         """Return the placeholders of limits that end lives, and the tests of fitted materials."""
-        found = [one for one in placeholders_of(self.own.results.data) if one.limit not in BESIDE]
+        placeholders = [
+            one for one in placeholders_of(self.own.results.data) if one.limit not in BESIDE
+        ]
         tests = [Placeholder("fatigue", name, "tests") for name in self.own.ranges.tested]
-        return found + tests
+        return placeholders + tests
 
     def moves(self, one: Placeholder, rows: np.ndarray) -> np.ndarray:
         """Return which limits and bodies of some cases rest on a placeholder, (rows, limit, 2)
@@ -90,7 +94,7 @@ class Turning:
     def _worst_of(self, number: int, one: Placeholder) -> np.ndarray:
         assert self.hours is not None
         rows = self.own.rows[number]
-        rows = rows[self.own.reachable[rows] & self.own.ranges.held[rows]]
+        rows = rows[self.own.reachable[rows] & self.own.ranges.holds[rows]]
         if not len(rows):
             return np.zeros(len(STEPS))
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -121,7 +125,8 @@ class Turning:
         """
         if self.hours is None:
             return None
-        best, found = LEAST, None
+        best = LEAST
+        placeholder = None
         for one in self.placeholders:
             mine = self.worst(leader, one)
             if mine[-1] <= mine[0] * (1 + 1e-9):
@@ -132,10 +137,12 @@ class Turning:
                 )
                 if ahead.mean() >= best:
                     best = float(ahead.mean())
-                    found = self.told(
-                        one, int(np.argmin(ahead)) if ahead[0] else int(np.argmax(ahead))
-                    )
-        return found
+                    if ahead[0]:
+                        first_met = int(np.argmin(ahead))
+                    else:
+                        first_met = int(np.argmax(ahead))
+                    placeholder = self.record_of(one, first_met)
+        return placeholder
 
     def decides(self, number: int, least: float) -> dict[str, Any] | None:
         """Return the placeholder whose place decides whether a candidate reaches a life; None
@@ -145,18 +152,24 @@ class Turning:
         """
         if self.hours is None:
             return None
-        widest, found = 1.0, None
+        widest = 1.0
+        placeholder = None
         for one in self.placeholders:
             mine = self.worst(number, one)
-            width = mine[-1] / mine[0] if mine[0] > 0 else np.inf
+            width = np.inf
+            if mine[0] > 0:
+                width = mine[-1] / mine[0]
             if width <= widest * (1 + 1e-9):
                 continue
             enough = mine >= least
-            turns = bool(enough[-1] and not enough[0])
-            widest, found = width, self.told(one, int(np.argmax(enough)) if turns else -1)
-        return found
+            step = -1
+            if enough[-1] and not enough[0]:
+                step = int(np.argmax(enough))
+            widest = width
+            placeholder = self.record_of(one, step)
+        return placeholder
 
-    def told(self, one: Placeholder, step: int) -> dict[str, Any]:
+    def record_of(self, one: Placeholder, step: int) -> dict[str, Any]:
         """Return a placeholder with the value at one of `STEPS`, -1 for none; only a wear
         coefficient has one.
         """
@@ -205,15 +218,17 @@ class Turning:
                     "turn": np.nan,
                     "units": "",
                 }
-            found = self.told(known[0], -1)
+            placeholder = self.record_of(known[0], -1)
             if len(known) > 1:
-                found["what"] = " or ".join(dict.fromkeys(one.name for one in known))
+                placeholder["what"] = " or ".join(dict.fromkeys(one.name for one in known))
             if known[0].name == "yield_strength":
                 stored = json.loads(str(results.data.attrs.get("materials", "{}"))).get(
                     material, {}
                 )
-                found["turn"] = float(stored.get("yield_strength", np.nan)) * float(np.nanmax(use))
-            return found
+                placeholder["turn"] = float(stored.get("yield_strength", np.nan)) * float(
+                    np.nanmax(use)
+                )
+            return placeholder
         return None
 
     def of_span(self, leader: int, rivals: list[int]) -> dict[str, Any] | None:
@@ -245,12 +260,16 @@ class Turning:
         if own.spans[0] != COEFFICIENT and known is not None and 0 < mine.min() < mine.max():
             target = max(self._middle(rival, levels) for rival in overtaking)
             share = np.log(target / mine.min()) / np.log(mine.max() / mine.min())
-            return self.told(known, int(np.clip(np.searchsorted(STEPS, share), 0, len(STEPS) - 1)))
+            return self.record_of(
+                known, int(np.clip(np.searchsorted(STEPS, share), 0, len(STEPS) - 1))
+            )
         name = own.spans[0]
         values = own.results.levels(name)
-        what = "wear_coefficient" if name == COEFFICIENT else name
-        found = {"what": what, "of": "", "on": "", "turn": np.nan, "units": "times its value"}
-        return found | {"low": values[0], "high": values[-1]}
+        what = name
+        if name == COEFFICIENT:
+            what = "wear_coefficient"
+        quantity = {"what": what, "of": "", "on": "", "turn": np.nan, "units": "times its value"}
+        return quantity | {"low": values[0], "high": values[-1]}
 
     def _middle(self, number: int, levels: np.ndarray) -> float:
         """Return the geometric middle of the range of a candidate over the places of the
@@ -270,7 +289,9 @@ class Turning:
         limit, guide = (part[row] for part in own.ranges.first)
         material = str(self.materials[BODIES[int(guide)]][row])
         known = [one for one in self.placeholders if (one.limit, one.material) == (limit, material)]
-        return known[0] if known else None
+        if known:
+            return known[0]
+        return None
 
     def _at_level(self, number: int, levels: np.ndarray) -> np.ndarray:
         """Return the life of a candidate at its worst condition at each level of the spanned
@@ -279,8 +300,8 @@ class Turning:
         own = self.own
         rows = own.rows[number]
         rows = rows[own.reachable[rows]]
-        found = [
+        at_level = [
             own.ranges.middle[rows[own.level[rows] == level]].min(initial=np.inf)
             for level in levels
         ]
-        return np.array(found)
+        return np.array(at_level)

@@ -11,7 +11,7 @@ import pandas as pd
 import xarray as xr
 
 from trackroller.parameters import EXACTNESS
-from trackroller.results.columns import CONTACT_RESULTS, codes, input_columns
+from trackroller.results.case_columns import CONTACT_RESULTS, codes, input_columns
 from trackroller.results.solved_cases import SolvedCases
 from trackroller.study.outputs import flat
 
@@ -59,7 +59,9 @@ def pairs(results: SolvedCases) -> xr.Dataset | None:
     data: dict[str, Any] = {}
     for name in (n for n in RESULTS if n in ds):
         values = flat(ds, name, tuple(dims)).astype(float)[rows]
-        values[rows < 0] = -1.0 if name == "regime" else np.nan
+        values[rows < 0] = np.nan
+        if name == "regime":
+            values[rows < 0] = -1.0
         data[name] = ((MODEL, "design", *(d for d in ds[name].dims if d not in dims)), values)
     if results.life is not None:
         data["life"] = (
@@ -69,9 +71,10 @@ def pairs(results: SolvedCases) -> xr.Dataset | None:
     inputs = table.drop(columns=MODEL).iloc[rows[-1]]
     # a word has its number beside
     given = inputs.get("friction_coefficient_value", inputs.get("friction_coefficient"))
-    inputs["friction_coefficient"] = (
-        results.base["friction_coefficient"] if given is None else pd.to_numeric(given)
-    )
+    if given is None:
+        inputs["friction_coefficient"] = results.base["friction_coefficient"]
+    else:
+        inputs["friction_coefficient"] = pd.to_numeric(given)
     coords = {str(name): ("design", inputs[name].to_numpy()) for name in inputs}
     coords |= {name: (name, ds[name].values) for name in ("contact", "body") if name in ds}
     attrs = {"reference": models[-1], "left": int(len(table) - (rows >= 0).sum())}
@@ -212,12 +215,13 @@ QUANTITIES = (
 def errors(paired: xr.Dataset) -> xr.Dataset:
     """Return the error of each cheaper model against the reference where both roll.
 
-    `paired`: dataset of `trackroller.results.contact_models`. Errors are relative; those of
+    `paired`: dataset of `trackroller.results.model_errors`. Errors are relative; those of
     friction forces are over mu F_N and that of the spin moment over mu F_N sqrt(a b), that of stick
     is a difference of shares. The larger error of both contacts and bodies counts.
     """
     reference = str(paired.attrs["reference"])
-    ref, parts = paired.sel(contact_model=reference), []
+    ref = paired.sel(contact_model=reference)
+    parts = []
     for model in (str(m) for m in paired["contact_model"].values if m != reference):
         one = paired.sel(contact_model=model)
         rolls = (one["regime"] == 0) & (ref["regime"] == 0)

@@ -51,5 +51,7 @@ def lacks_a_body(hours: np.ndarray, limits: list[str], name: str) -> np.ndarray:
 
 def body_lives(goal: str) -> dict[str, str]:
     """Return the columns of the lives of roller and guide that belong to the life of a pair."""
-    name = "life_to_first_limit_hours_{}" if goal == FIRST_LIMIT[0] else "{}_life_hours"
+    name = "{}_life_hours"
+    if goal == FIRST_LIMIT[0]:
+        name = "life_to_first_limit_hours_{}"
     return {body: name.format(body) for body in BODIES}

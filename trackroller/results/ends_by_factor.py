@@ -9,9 +9,9 @@ from trackroller.damage import limit_word
 from trackroller.parameters import BODIES
 from trackroller.parameters.carriage_fields import long_name_of
 from trackroller.results.case_ranges import CaseRanges
-from trackroller.results.groups import BINS, classes
-from trackroller.results.places import level_text
+from trackroller.results.factor_levels import BINS, classes
 from trackroller.results.solved_cases import SolvedCases
+from trackroller.results.subgroups import level_text
 from trackroller.roller.output_names import is_life
 from trackroller.study.design.entries import OPTION_FACTORS
 
@@ -56,7 +56,7 @@ def ends_by_factor(results: SolvedCases, ranges: CaseRanges) -> pd.DataFrame:
     rows = results.of_one_model()
     ends = end_of_case(ranges)[rows]
     order = pd.Series(ends).value_counts().index.tolist()
-    found = [{"factor": "all", "level": ""} | _counts(ends, order)]
+    counts = [{"factor": "all", "level": ""} | _counts(ends, order)]
     for name in results.factors:
         if name in OPTION_FACTORS:
             continue
@@ -64,11 +64,11 @@ def ends_by_factor(results: SolvedCases, ranges: CaseRanges) -> pd.DataFrame:
         for place, level in enumerate(levels):
             here = index == place
             if here.any():
-                found.append(
+                counts.append(
                     {"factor": long_name_of(name), "level": _words(name, level)}
                     | _counts(ends[here], order)
                 )
-    return pd.DataFrame(found)
+    return pd.DataFrame(counts)
 
 
 def _counts(ends: np.ndarray, order: list[str]) -> dict[str, int]:

@@ -30,7 +30,7 @@ from trackroller.fit.stored import StoredFit, stored_fit
 from trackroller.methods.b10 import b10
 from trackroller.parameters import BODIES, FIRST_TO_FAIL
 from trackroller.results.first_limits import reached_by_body
-from trackroller.results.lives import body_lives, past_data
+from trackroller.results.life_columns import body_lives, past_data
 from trackroller.results.solved_cases import SAME_ENDS, SolvedCases, made_once
 from trackroller.results.targets import hits_of, scattering_body
 from trackroller.roller.output_names import body_of, is_life
@@ -59,15 +59,16 @@ def materials_fitted(results: SolvedCases) -> dict[str, StoredFit]:
 
 def options_of(results: SolvedCases) -> dict[str, Any]:
     """Return the options by which the compared cases of a study were solved."""
-    held = {name: results.held_level(name) for name in results.factors if name in OPTION_FACTORS}
-    return {key: value for key, value in results.data.attrs.items() if key in DEFAULTS} | held
+    levels = {name: results.held_level(name) for name in results.factors if name in OPTION_FACTORS}
+    return {key: value for key, value in results.data.attrs.items() if key in DEFAULTS} | levels
 
 
 def not_held(results: SolvedCases) -> dict[str, str]:
     """Return the fitted materials of a study that was solved with other options than their fit,
     with these options.
     """
-    used, found = options_of(results), {}
+    used = options_of(results)
+    reasons = {}
     for name, fit in materials_fitted(results).items():
         other = [
             f"{k} {fit.given[k]}"
@@ -75,8 +76,8 @@ def not_held(results: SolvedCases) -> dict[str, str]:
             if str(used.get(k, DEFAULTS[k])) != fit.given.get(k, used.get(k))
         ]
         if other:
-            found[name] = listing(other)
-    return found
+            reasons[name] = listing(other)
+    return reasons
 
 
 @made_once
@@ -91,7 +92,9 @@ def by_tests_of(results: SolvedCases) -> ByTests | None:
     """
     other = not_held(results)
     fits = {name: fit for name, fit in materials_fitted(results).items() if name not in other}
-    return ByTests(results, fits) if fits else None
+    if fits:
+        return ByTests(results, fits)
+    return None
 
 
 def beyond_sn_data(results: SolvedCases, column: str) -> np.ndarray:
@@ -144,17 +147,17 @@ def required(results: SolvedCases) -> ByTests:
     InputError
         If no material of the study was fitted, or the study has other options than a fit.
     """
-    found = materials_fitted(results)
-    if not found:
+    fits = materials_fitted(results)
+    if not fits:
         stored = list(json.loads(str(results.data.attrs.get("materials", "{}"))))
         allowed = "a study with a material that `trackroller fit` wrote"
         remedy = (
             f"Fit {listing(stored, 'or')} to tests, or set material_scatter to true or a number."
         )
         raise InputError("analysis.material_scatter", WANTED, allowed, remedy)
-    for fit in found.values():
+    for fit in fits.values():
         check_same(fit.given, options_of(results), fit.name)
-    return ByTests(results, found)
+    return ByTests(results, fits)
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -181,7 +184,8 @@ class ByTests:
         out = {}
         for i, (name, fit) in enumerate(self.fits.items()):
             rows = _spread_evenly(fit.posterior)
-            rows = rows if i == 0 else np.random.default_rng(i).permutation(rows)
+            if i != 0:
+                rows = np.random.default_rng(i).permutation(rows)
             out[name] = Values(
                 *(
                     np.broadcast_to(v, fit.posterior.weight.shape)[rows]
@@ -201,17 +205,22 @@ class ByTests:
         for body in BODIES:
             names = (f"fatigue_stress_{body}", f"peak_stress_{body}")
             known = next((name for name in names if self.results.has(name)), "")
-            out[body] = self.results.column(known) if known else self._by_line(body)
+            if known:
+                out[body] = self.results.column(known)
+            else:
+                out[body] = self._by_line(body)
         return out
 
     def _by_line(self, body: str) -> np.ndarray:
         """Return the stress of a body at which the line of its material gives its life, (n,) [MPa];
         else NaN.
         """
-        names, cycles = self.results.material(body), self.results.column(f"life_cycles_{body}")
+        names = self.results.material(body)
+        cycles = self.results.column(f"life_cycles_{body}")
         out = np.full(len(names), np.nan)
         for name, fit in self.fits.items():
-            best, rows = fit.line.best, (names == name) & (cycles > 0) & np.isfinite(cycles)
+            best = fit.line.best
+            rows = (names == name) & (cycles > 0) & np.isfinite(cycles)
             out[rows] = np.exp(
                 fit.line.reference + (best.level - np.log(cycles[rows])) / best.slope
             )
@@ -239,11 +248,9 @@ class ByTests:
         """Return the cases whose stress or life of a body lies beyond the tests of its material,
         (n,).
         """
-        names, stress, cycles = (
-            self.named[body],
-            self.stress[body],
-            self.results.column(f"life_cycles_{body}"),
-        )
+        names = self.named[body]
+        stress = self.stress[body]
+        cycles = self.results.column(f"life_cycles_{body}")
         out = np.zeros(len(names), dtype=bool)
         for name, fit in self.fits.items():
             rows = names == name
@@ -272,16 +279,18 @@ class ByTests:
         tuple of numpy.ndarray
             0 and NaN where the material was not fitted.
         """
-        names, stress = self.named[body][rows], self.stress[body][rows]
-        size = len(range(*draws.indices(DRAWS))) if isinstance(draws, slice) else len(draws)
+        names = self.named[body][rows]
+        stress = self.stress[body][rows]
+        if isinstance(draws, slice):
+            size = len(range(*draws.indices(DRAWS)))
+        else:
+            size = len(draws)
         shift, deviation = np.zeros((len(rows), size)), np.full((len(rows), size), np.nan)
         deviate = float(ndtri(probability))
         for name, fit in self.fits.items():
             own = names == name
-            best, values = (
-                fit.line.best,
-                Values(*(np.asarray(value)[draws] for value in self.drawn[name])),
-            )
+            best = fit.line.best
+            values = Values(*(np.asarray(value)[draws] for value in self.drawn[name]))
             away = np.log(stress[own])[:, None] - fit.line.reference
             spread = np.exp(values.log_scatter)
             shift[own] = (values.level - best.level) - (values.slope - best.slope) * away
@@ -304,7 +313,8 @@ class ByTests:
         """Return the hours until each limit when those by fatigue are moved, see `lives`, (n,
         limit, body) [h].
         """
-        out, limits = self._reached[end].copy(), self.results.data["limit"].values.tolist()
+        out = self._reached[end].copy()
+        limits = self.results.data["limit"].values.tolist()
         for i, body in enumerate(BODIES):
             if "fatigue" in limits:
                 out[:, limits.index("fatigue"), i] *= np.exp(shift(body))
@@ -337,9 +347,12 @@ class ByTests:
                 for s in (0, 1)
             )
         elif of_first_limit(name):
-            kept = [BODIES.index(body)] if body else list(range(len(BODIES)))
-            before = self._reached[end][:, :, kept].min(axis=(1, 2))
-            after = self.reached(shift, end)[:, :, kept].min(axis=(1, 2))
+            if body:
+                places = [BODIES.index(body)]
+            else:
+                places = list(range(len(BODIES)))
+            before = self._reached[end][:, :, places].min(axis=(1, 2))
+            after = self.reached(shift, end)[:, :, places].min(axis=(1, 2))
         else:
             return values
         known = np.isfinite(before) & (before > 0) & np.isfinite(values)
@@ -347,8 +360,9 @@ class ByTests:
 
     def at(self, draw: int, rows: np.ndarray | None = None, probability: float = 0.5) -> Shift:
         """Return the shifts of ln life of one draw by body."""
-        every = np.arange(len(self.results.table)) if rows is None else rows
-        return lambda body: self.moved(body, every, [draw], probability)[0][:, 0]
+        if rows is None:
+            rows = np.arange(len(self.results.table))
+        return lambda body: self.moved(body, rows, [draw], probability)[0][:, 0]
 
     def words(self, names: Iterable[str]) -> str:
         """Return the words for the tests of some materials: 'the 6 tests of rig steel'."""
@@ -369,11 +383,9 @@ def _spread_evenly(posterior: Posterior) -> np.ndarray:
         for part in parts:
             order = part[np.argsort(own[part], kind="stable")]
             share = np.cumsum(weight[order])
-            cuts = (
-                np.searchsorted(share, np.arange(1, PARTS) / PARTS * share[-1])
-                if len(order)
-                else []
-            )
+            cuts = []
+            if len(order):
+                cuts = np.searchsorted(share, np.arange(1, PARTS) / PARTS * share[-1])
             halves += np.split(order, cuts)
         parts = halves
     order = np.concatenate(parts)
@@ -385,9 +397,9 @@ def probability_of(results: SolvedCases, name: str) -> float:
     """Return the failure probability that a life of a study belongs to [1]: lives to a limit have
     that of the study.
     """
-    return (
-        float(results.data.attrs.get("failure_probability", 0.5)) if of_first_limit(name) else 0.5
-    )
+    if of_first_limit(name):
+        return float(results.data.attrs.get("failure_probability", 0.5))
+    return 0.5
 
 
 def _drawn_lives(
@@ -396,13 +408,17 @@ def _drawn_lives(
     """Return the lives of a column and the deviations of log10 life under each draw, (n, draws)
     each.
     """
-    name, n = column.name, len(column.values)
-    every, p = np.arange(n), probability_of(own.results, column.name)
+    name = column.name
+    n = len(column.values)
+    every = np.arange(n)
+    p = probability_of(own.results, column.name)
     lives = np.stack(
         [own.lives(name, column.values, own.at(i, probability=p)) for i in range(DRAWS)], axis=1
     )
     deviation = own.moved(scattering_body(name), every)[1]
-    return lives, np.where(np.isnan(deviation), 0.0 if given is None else given[:, None], deviation)
+    if given is None:
+        given = np.zeros(n)
+    return lives, np.where(np.isnan(deviation), given[:, None], deviation)
 
 
 def bands(results: SolvedCases, deviations: Mapping[str, np.ndarray]) -> xr.Dataset:
@@ -425,33 +441,34 @@ def bands(results: SolvedCases, deviations: Mapping[str, np.ndarray]) -> xr.Data
         with the scatter of the material; over the cases that roll. Their attributes `tests` and
         `materials` say how many tests the bands rest on, and of which materials.
     """
-    own, wanted = required(results), results.config.requirement
+    own = required(results)
+    requirement = results.config.requirement
     words = {
         "tests": str(sum(fit.rows for fit in own.fits.values())),
         "materials": listing(list(own.fits)),
     }
-    columns = _columns(results, list(wanted))
-    found = []
+    columns = _columns(results, list(requirement))
+    parts = []
     for column in columns:
         judged = results.judged_targets.get(column.name)
         sooner = judged is not None and bool(
             (results.valid & (judged < column.values * (1 - SAME_ENDS))).any()
         )
         if not is_life(column.name) or sooner:
-            found.append((math.nan, math.nan))
+            parts.append((math.nan, math.nan))
             continue
         lives, scatter = _drawn_lives(own, column, deviations.get(scattering_body(column.name)))
-        goal = wanted[column.name]
+        goal = requirement[column.name]
         shares = [
             float(
                 hits_of(dataclasses.replace(column, values=lives[:, i]), goal, scatter[:, i]).mean()
             )
             for i in range(DRAWS)
         ]
-        found.append(tuple(np.quantile(shares, BAND)))
+        parts.append(tuple(np.quantile(shares, BAND)))
     out = xr.Dataset()
     if columns:
-        low, high = np.array(found, float).T
+        low, high = np.array(parts, float).T
         attrs = {"units": "1", "long_name": "probability over all cases, 90 % by the tests"} | words
         ends = {"tests_low": ("target", low, attrs), "tests_high": ("target", high, attrs)}
         out = xr.Dataset(ends, {"target": [column.name for column in columns]})
@@ -461,13 +478,11 @@ def bands(results: SolvedCases, deviations: Mapping[str, np.ndarray]) -> xr.Data
 def _columns(results: SolvedCases, names: list[str]) -> list[Output]:
     """Return these outputs as they are, without a limit of their number."""
     factors = results.design.factors
-    return (
-        outputs(
+    if names:
+        return outputs(
             results.data, factors, names, scale="natural", unlimited=True, allowed=results.allowed
         )
-        if names
-        else []
-    )
+    return []
 
 
 def _b10_bands(
@@ -476,7 +491,8 @@ def _b10_bands(
     """Return B10 of each life and its band by the tests, at each design point or over all cases of
     a sample.
     """
-    results, design = own.results, own.results.design
+    results = own.results
+    design = own.results.design
     lives = [
         name
         for name, _, _ in (results.life or ("", "", ""), *results.fatigue_lives)
@@ -485,30 +501,35 @@ def _b10_bands(
     lives = [name for name in dict.fromkeys(lives) if is_life(name)]
     if not (design.method.points or design.method.sampled) or not lives:
         return xr.Dataset()
-    points: list[Any] = (
-        list(design.points) if design.method.points else [design.method.independent_rows(design)]
-    )
+    points: list[Any] = list(design.points)
+    if not design.method.points:
+        points = [design.method.independent_rows(design)]
     columns = _columns(results, lives)
     values = np.full((3, len(columns), len(points)), np.nan)
     for i, column in enumerate(columns):
         given = deviations.get(scattering_body(column.name))
         known = results.with_breaks(column)
         moved, scatter = _drawn_lives(own, dataclasses.replace(column, values=known), given)
-        best = np.zeros(design.size) if given is None else given
+        if given is None:
+            best = np.zeros(design.size)
+        else:
+            best = given
         for p, rows in enumerate(points):
-            kept = np.arange(design.size)[rows]
-            kept = kept[~np.isnan(known[kept])]
-            if kept.size < 2:
+            counted = np.arange(design.size)[rows]
+            counted = counted[~np.isnan(known[counted])]
+            if counted.size < 2:
                 continue
-            values[0, i, p] = b10(known[kept], best[kept])[0]
-            values[1:, i, p] = np.quantile(b10_of_draws(moved[kept], scatter[kept]), BAND)
+            values[0, i, p] = b10(known[counted], best[counted])[0]
+            values[1:, i, p] = np.quantile(b10_of_draws(moved[counted], scatter[counted]), BAND)
     names = {
         "b10_tests": "life that 90 % reach, with the scatter of the material",
         "b10_tests_low": "its low end, 90 % by the tests",
         "b10_tests_high": "its high end, 90 % by the tests",
     }
-    axes = ("life", "point") if design.method.points else ("life",)
-    values = values if design.method.points else values[:, :, 0]
+    axes: tuple[str, ...] = ("life", "point")
+    if not design.method.points:
+        axes = ("life",)
+        values = values[:, :, 0]
     return xr.Dataset(
         {
             n: (axes, v, {"long_name": names[n]} | dict(words))

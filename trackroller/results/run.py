@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 import tempfile
 from collections.abc import Mapping
-from contextlib import nullcontext
+from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
 from typing import Any
 
@@ -61,17 +61,23 @@ def run(
     >>> float(solved.best(1)["roller_profile_radius"].iloc[0])
     -7.0
     """
-    checked = study if isinstance(study, Study) else load_study(study)
+    if isinstance(study, Study):
+        checked = study
+    else:
+        checked = load_study(study)
     with limited_to(cores), progress_bar(checked.name, progress) as bar:
         shown: dict[str, Any] = {"started": bar.started, "progress": bar.advanced, "tell": bar.tell}
         if results is None and not checked.decides:
             return Results(checked, checked.drawn, solve_study(checked, bar.started, bar.advanced))
         # the cases of a study that decides follow from stored results
-        with tempfile.TemporaryDirectory() if results is None else nullcontext(results) as place:
+        folder: AbstractContextManager[Path | str] = tempfile.TemporaryDirectory()
+        if results is not None:
+            folder = nullcontext(results)
+        with folder as place:
             solved = open_study(run_any(checked, place, **shown).folder.root)
-            return (
-                solved if results is not None else dataclasses.replace(solved, materials_file=None)
-            )
+            if results is not None:
+                return solved
+            return dataclasses.replace(solved, materials_file=None)
 
 
 def run_any(study: Study, results: Path | str = "results", **how: Any) -> Ledger:
@@ -80,10 +86,12 @@ def run_any(study: Study, results: Path | str = "results", **how: Any) -> Ledger
     The failed cases of a search that are to be solved again are solved before it goes on.
     """
     if study.config.until is not None:
-        from trackroller.results.growing import grow_study as run  # heavy: scipy.stats, as below
+        from trackroller.results.sample_growth import (
+            grow_study as run,  # heavy: scipy.stats, as below
+        )
     elif study.decides:
         # heavy: no job of a workflow needs it
-        from trackroller.results.optimum import search_designs as run
+        from trackroller.results.search import search_designs as run
     else:
         run = run_study
     return run(study, results, **how)

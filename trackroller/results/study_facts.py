@@ -13,15 +13,16 @@ import pandas as pd
 from trackroller.damage import LIMITS, limit_word
 from trackroller.parameters import BODIES
 from trackroller.parameters.carriage_fields import long_name_of
-from trackroller.parameters.example import ABSENT
+from trackroller.parameters.example import is_absent
 from trackroller.results.answer import Caution
 from trackroller.results.candidates import slip_margin
+from trackroller.results.case_columns import codes
 from trackroller.results.case_ranges import CaseRanges
-from trackroller.results.columns import codes
 from trackroller.results.comparison import Comparison
-from trackroller.results.lives import OF_PAIR, body_lives
-from trackroller.results.places import level_text, places_of, places_text
+from trackroller.results.friction import friction_cautions
+from trackroller.results.life_columns import OF_PAIR, body_lives
 from trackroller.results.solved_cases import SolvedCases
+from trackroller.results.subgroups import level_text, places_of, places_text
 from trackroller.roller.limit_notes import given_in_vain
 from trackroller.roller.output_names import body_of, is_life
 from trackroller.roller.stored_inputs import names_not_given
@@ -79,7 +80,7 @@ def checks_left_out(results: SolvedCases) -> dict[str, tuple[str, ...]]:
     A limit is checked for a body if its life, or of a limit without lives its use, is known in
     every valid row. A limit that is known in some of the rows is listed with their number.
     """
-    found: dict[str, list[str]] = {body: [] for body in BODIES}
+    checks: dict[str, list[str]] = {body: [] for body in BODIES}
     rows = results.of_one_model(results.inside)
     if not rows.any():
         rows = results.of_one_model()
@@ -92,10 +93,10 @@ def checks_left_out(results: SolvedCases) -> dict[str, tuple[str, ...]]:
                 continue
             hit = known.get(name, np.zeros((len(rows), len(BODIES)), dtype=bool))[rows, place]
             if not hit.any():
-                found[body].append(limit.word)
+                checks[body].append(limit.word)
             elif not hit.all():
-                found[body].append(f"{limit.word} ({int((~hit).sum()):,} of {len(hit):,} cases)")
-    return {body: tuple(names) for body, names in found.items()}
+                checks[body].append(f"{limit.word} ({int((~hit).sum()):,} of {len(hit):,} cases)")
+    return {body: tuple(names) for body, names in checks.items()}
 
 
 def _known(results: SolvedCases) -> dict[str, np.ndarray]:
@@ -108,7 +109,10 @@ def _known(results: SolvedCases) -> dict[str, np.ndarray]:
     out = {}
     for place, name in enumerate(str(one) for one in data["limit"].values):
         timed = ~np.isnan(lives[:, place])
-        out[name] = timed if timed.any() else ~np.isnan(uses[:, place])
+        if timed.any():
+            out[name] = timed
+        else:
+            out[name] = ~np.isnan(uses[:, place])
     return out
 
 
@@ -143,14 +147,15 @@ def given_for_nothing(results: SolvedCases) -> dict[str, str]:
 
 def not_given_words(results: SolvedCases) -> dict[str, str]:
     """Return the values that nobody gave, with their units."""
-    found = {}
+    words = {}
     for name in names_not_given(results.data.attrs):
-        if name in results.factors or name in results.derived or name in ABSENT:
+        if name in results.factors or name in results.derived:
             continue
         value = results.base.get(name)
-        if value is not None and not (isinstance(value, float) and np.isnan(value)):
-            found[name] = level_text(name, value)
-    return found
+        unknown = value is None or (isinstance(value, float) and np.isnan(value))
+        if not unknown and not is_absent(name, value):
+            words[name] = level_text(name, value)
+    return words
 
 
 def lost_by_missing_input(own: Comparison) -> str:
@@ -170,10 +175,10 @@ def lost_by_missing_input(own: Comparison) -> str:
             # more axial force is no remedy for a drive that friction cannot transmit
             lost &= ~skids
         hopeless = lost & own.unreachable
-        if not own.ranges.held.any():
+        if not own.ranges.holds.any():
             hopeless = lost
-        wanted = bool(own.required) and hopeless.any()
-        if wanted or lost.sum() >= MANY * own.own.sum():
+        is_open = bool(own.required) and hopeless.any()
+        if is_open or lost.sum() >= MANY * own.own.sum():
             return name
     return ""
 
@@ -181,9 +186,9 @@ def lost_by_missing_input(own: Comparison) -> str:
 def where_text(results: SolvedCases, hit: np.ndarray, among: np.ndarray) -> str:
     """Return the levels of factors that hold some rows and no others; '' if no levels do."""
     places = places_of(results.table, results.factors, hit, among)
-    return (
-        places_text([place for place in places if len(place) <= 3], results.table) if places else ""
-    )
+    if places:
+        return places_text([place for place in places if len(place) <= 3], results.table)
+    return ""
 
 
 def cautions(own: Comparison, shown: pd.DataFrame, named: int = 1) -> tuple[Caution, ...]:
@@ -195,20 +200,20 @@ def cautions(own: Comparison, shown: pd.DataFrame, named: int = 1) -> tuple[Caut
     shown : table of the answer, the leader first
     named : number of the first rows that the headline names; 0 for none
     """
-    found = [*case_cautions(own.results, own.ranges, own.own)]
+    listed = [*case_cautions(own.results, own.ranges, own.own)]
     if "second_state" in shown and own.required:
         turned = (shown["second_state"] != "") & (shown["second_state"] != shown["state"])
         if turned.iloc[1:].any():
             words = ", ".join(dict.fromkeys(shown["second"][turned]))
-            found.append(
+            listed.append(
                 Caution("second_model", int(turned.sum()), len(shown), words, "candidates")
             )
     edges = [edge for edge in shown["edge"].iloc[:named] if edge]
     if edges:
-        found.append(
+        listed.append(
             Caution("at_end", len(edges), named, _edge_text(own, shown, edges[0]), "candidates")
         )
-    return (*found, *_unlike(own, shown))
+    return (*listed, *_unlike(own, shown))
 
 
 def _edge_text(own: Comparison, shown: pd.DataFrame, edge: str) -> str:
@@ -218,7 +223,9 @@ def _edge_text(own: Comparison, shown: pd.DataFrame, edge: str) -> str:
         if long_name_of(name) in edge.split(", "):
             levels = own.results.levels(name)
             value = shown[name].iloc[0]
-            side = "smallest" if value == levels[0] else "largest"
+            side = "largest"
+            if value == levels[0]:
+                side = "smallest"
             ends = f"{level_text(name, levels[0])} to {level_text(name, levels[-1])}"
             parts.append(f"{long_name_of(name)} {level_text(name, value)}: {side} of {ends}")
     return "; ".join(parts)
@@ -233,9 +240,9 @@ def case_cautions(results: SolvedCases, ranges: CaseRanges, rows: np.ndarray) ->
     ranges : the output that the answer is about
     rows : the cases of the answer, shape (n,) bool
     """
-    found = []
+    listed = []
     total = int(rows.sum())
-    lost = rows & ~ranges.held & ranges.judged
+    lost = rows & ~ranges.holds & ranges.judged
     unknown = rows & ~ranges.judged
     for code, hit in (("not_held", lost), ("not_judged", unknown)):
         if hit.any():
@@ -246,26 +253,26 @@ def case_cautions(results: SolvedCases, ranges: CaseRanges, rows: np.ndarray) ->
                 f"{word} {count:,}" for word, count in reasons.value_counts().items()
             )
             where = where_text(results, hit, rows)
-            found.append(
-                Caution(code, int(hit.sum()), total, f"{counts}: {where}" if where else counts)
-            )
+            if where:
+                counts = f"{counts}: {where}"
+            listed.append(Caution(code, int(hit.sum()), total, counts))
     beyond = ranges.beyond & rows
     if is_life(ranges.output[0]) and beyond.any():
-        found.append(
+        listed.append(
             Caution(
                 "extrapolated", int(beyond.sum()), total, "life beyond the data of its S-N line"
             )
         )
-    beyond_table = results.flagged("wear_extrapolated") & rows & ranges.held
+    beyond_table = results.flagged("wear_extrapolated") & rows & ranges.holds
     if beyond_table.any():
         where = "wear beyond the table of its energy law"
-        found.append(Caution("extrapolated", int(beyond_table.sum()), total, where))
-    worn = _outlives_groove(results, ranges.output[0]) & rows & ranges.held
+        listed.append(Caution("extrapolated", int(beyond_table.sum()), total, where))
+    worn = _outlives_groove(results, ranges.output[0]) & rows & ranges.holds
     if worn.any():
-        found.append(Caution("worn", int(worn.sum()), total, "the groove changes within the life"))
+        listed.append(Caution("worn", int(worn.sum()), total, "the groove changes within the life"))
     words = not_given_words(results)
     if words:
-        found.append(
+        listed.append(
             Caution(
                 "not_given",
                 total,
@@ -273,7 +280,7 @@ def case_cautions(results: SolvedCases, ranges: CaseRanges, rows: np.ndarray) ->
                 _listed(f"{long_name_of(n)} {v}" for n, v in words.items()),
             )
         )
-    return found
+    return [*listed, *friction_cautions(results.data.attrs)]
 
 
 def _outlives_groove(results: SolvedCases, output: str) -> np.ndarray:
@@ -284,7 +291,7 @@ def _outlives_groove(results: SolvedCases, output: str) -> np.ndarray:
     """
     body = body_of(output)
     if is_life(output) and body:
-        return results.flagged("worn", body if results.by_body else "")
+        return results.flagged("worn", body)
     if output not in OF_PAIR or not results.by_body:
         return results.flagged("worn")
     beyond = {body: results.flagged("worn", body) for body in BODIES}
@@ -299,10 +306,10 @@ def _listed(texts: Iterable[str]) -> str:
 
 def _unlike(own: Comparison, shown: pd.DataFrame) -> list[Caution]:
     """Return the warnings that candidates differ in their loads, their samples or their scatter."""
-    found = []
+    listed = []
     if own.drawn and shown["n"].nunique() > 1:
         sizes = ", ".join(str(size) for size in shown["n"].head(NAMED_LEVELS))
-        found.append(
+        listed.append(
             Caution(
                 "unlike", len(shown), len(shown), f"sample sizes: {sizes} conditions", "candidates"
             )
@@ -312,7 +319,7 @@ def _unlike(own: Comparison, shown: pd.DataFrame) -> list[Caution]:
         words = _listed(
             f"{long_name_of(name)} by up to {100 * share:.2g} %" for name, share in loads.items()
         )
-        found.append(
+        listed.append(
             Caution(
                 "unlike",
                 own.count,
@@ -322,21 +329,21 @@ def _unlike(own: Comparison, shown: pd.DataFrame) -> list[Caution]:
             )
         )
     if own.count > 1 and not own.matched and not own.drawn and own.conditions:
-        found.append(
+        listed.append(
             Caution(
                 "unlike", own.count, own.count, "candidates have other conditions", "candidates"
             )
         )
-    return found
+    return listed
 
 
 def _unequal_loads(own: Comparison) -> Mapping[str, float]:
     """Return the loads that differ between candidates in the same condition by more than a
     hundredth.
     """
-    found: dict[str, float] = {}
+    ratios: dict[str, float] = {}
     if not own.matched or own.count < 2:
-        return found
+        return ratios
     for name in LOADS:
         if name in own.results.factors or name not in own.results.table:
             continue
@@ -350,5 +357,5 @@ def _unequal_loads(own: Comparison) -> Mapping[str, float]:
         known = (most > 0) & np.isfinite(least)
         apart = float((1.0 - least[known] / most[known]).max(initial=0.0))
         if apart > UNEQUAL:
-            found[name] = apart
-    return found
+            ratios[name] = apart
+    return ratios

@@ -31,7 +31,7 @@ from trackroller.methods.optimise import (
     survivors,
 )
 from trackroller.parameters import PARAMETERS
-from trackroller.results.judging import OPTIMUM, Judged, best_in, judge, recommended, spread
+from trackroller.results.search_fitness import OPTIMUM, Judged, best_in, judge, recommended, spread
 from trackroller.results.stored_study import solved_results
 from trackroller.study.file.load import parse_study
 from trackroller.study.file.study import Study
@@ -42,7 +42,8 @@ from trackroller.study.store.gather import gather
 from trackroller.study.store.ledger import Ledger
 from trackroller.study.store.put import put_text
 
-TABLE, ELEMENTS = "kalker_table", "kalker"
+TABLE = "kalker_table"
+ELEMENTS = "kalker"
 REPORTED = 10  # optima that are solved again at reference, spread along the front
 DECIDED = 2  # designs of the best fronts that the study's model decides among, in populations
 TOLERANCE = 0.05  # mm; a choice without the unit mm is changed by 1 % of its range
@@ -62,7 +63,8 @@ class _Search:
 
     def of(self, study: Study, genes: np.ndarray) -> Study:
         """Return a study with these designs, which stand in `designs.csv`."""
-        path, choices = self.folder.root / "designs.csv", study.drawn.meta["outer"]
+        path = self.folder.root / "designs.csv"
+        choices = study.drawn.meta["outer"]
         lines = [",".join(choices), *(",".join(repr(float(gene)) for gene in row) for row in genes)]
         put_text(path, "\n".join(lines) + "\n")
         config = study.config.model_copy(update={"table": path.name})
@@ -146,8 +148,12 @@ def _evolve(search: _Search, study: Study, tell: Tell) -> tuple[Judged, dict[str
     """Return all designs of the search and facts about it; stop at the budget or when no design is
     left.
     """
-    budget, choices = study.config.budget, _choices(study)
-    genes, known, number, why = genes_of(choices), None, 0, "every design is solved"
+    budget = study.config.budget
+    choices = _choices(study)
+    genes = genes_of(choices)
+    known = None
+    number = 0
+    why = "every design is solved"
     drawn = first_generation(genes, min(budget.generation, budget.designs), study.config.seed)
     while len(drawn):
         if known is not None and budget.hours is not None:
@@ -156,7 +162,10 @@ def _evolve(search: _Search, study: Study, tell: Tell) -> tuple[Judged, dict[str
                 why = f"the {budget.hours:g} hours are spent"
                 break
         new = search.judged(study, drawn)
-        known = new if known is None else known + new
+        if known is None:
+            known = new
+        else:
+            known = known + new
         first = nondominated_ranks(known.costs, known.missed) == 0
         number += 1
         valid = int((known.violation == 0).sum())
@@ -165,7 +174,9 @@ def _evolve(search: _Search, study: Study, tell: Tell) -> tuple[Judged, dict[str
             f"{first.sum()} best"
         )
         if len(known.genes) >= budget.designs:
-            why = f"the budget of {budget.designs} design{'s' * (budget.designs != 1)} is spent"
+            why = f"the budget of {budget.designs} designs is spent"
+            if budget.designs == 1:
+                why = "the budget of 1 design is spent"
             break
         many = min(budget.generation, budget.designs - len(known.genes))
         drawn = next_generation(
@@ -181,31 +192,41 @@ def _choices(study: Study) -> dict[str, Factor]:
 
 def _reported(search: _Search, decided: Judged, facts: dict[str, Any], tell: Tell) -> Ledger:
     """Polish the recommended design, solve the optima at reference, and gather the designs."""
-    study, choices = search.study, _choices(search.study)
+    study = search.study
+    choices = _choices(search.study)
     usable = decided.violation.min() < 1  # a design that is never valid is no optimum
-    designs, reached = _with_corners(search, decided, choices) if usable else (decided, {})
+    if usable:
+        designs, reached = _with_corners(search, decided, choices)
+    else:
+        designs = decided
+        reached = {}
     front = np.flatnonzero(nondominated_ranks(designs.costs, designs.missed) == 0)
     best = designs.take(front)
     chosen = recommended(best)
     corners = [best_in(best, goal) for goal in range(best.costs.shape[1])]
-    shown = (
-        np.union1d(spread(best.costs, REPORTED), [chosen, *corners]) if usable else np.empty(0, int)
-    )
-    exact = {"accuracy": "reference"} | (
-        {"contact_model": ELEMENTS} if study.config.contact_model == TABLE else {}
-    )
-    checked = (
-        search.judged(_with(study, **exact), best.genes[shown]) if usable else best.take(shown)
-    )
-    around = _neighbours(choices, best.genes[chosen]) if usable else []
-    moved = (
-        search.judged(study, np.array([genes for *_, genes in around]))
-        if around
-        else best.take(np.empty(0, int))
-    )
+    if usable:
+        shown = np.union1d(spread(best.costs, REPORTED), [chosen, *corners])
+    else:
+        shown = np.empty(0, int)
+    exact = {"accuracy": "reference"}
+    if study.config.contact_model == TABLE:
+        exact["contact_model"] = ELEMENTS
+    around = []
+    if usable:
+        checked = search.judged(_with(study, **exact), best.genes[shown])
+        around = _neighbours(choices, best.genes[chosen])
+    else:
+        checked = best.take(shown)
+    if around:
+        moved = search.judged(study, np.array([genes for *_, genes in around]))
+    else:
+        moved = best.take(np.empty(0, int))
     beside = f"{len(designs.genes) - len(decided.genes)} polished designs, {len(around)} neighbours"
     beside = f"solved beside the budget: {beside}, {len(shown)} optima at reference"
-    tell(beside if usable else "no design is valid, so there is no optimum to check")
+    if usable:
+        tell(beside)
+    else:
+        tell("no design is valid, so there is no optimum to check")
     final = search.of(study, designs.genes)
     optima = [
         {
@@ -285,11 +306,16 @@ def _polished(
     -------
     All designs, and whether neither an end nor the smallest step improves the last one.
     """
-    repeated = REPEATED if goal is None else CORNER_REPEATED
+    repeated = CORNER_REPEATED
+    if goal is None:
+        repeated = REPEATED
     rounds = [None, *POLISH_STEPS, None]
     for step in (step for step in rounds for _ in range(repeated)):
         middle = _leader(decided, goal)
-        beside = _ends(choices, middle) if step is None else _steps(choices, middle, step)
+        if step is None:
+            beside = _ends(choices, middle)
+        else:
+            beside = _steps(choices, middle, step)
         known = {row.tobytes() for row in decided.genes}
         tried = [genes for genes in beside if genes.tobytes() not in known]
         if tried:
@@ -303,42 +329,48 @@ def _polished(
 def _leader(designs: Judged, goal: int | None) -> np.ndarray:
     """Return the genes of the best design in a goal, or of the recommended one."""
     front = designs.take(np.flatnonzero(nondominated_ranks(designs.costs, designs.missed) == 0))
-    return np.asarray(front.genes[recommended(front) if goal is None else best_in(front, goal)])
+    if goal is None:
+        row = recommended(front)
+    else:
+        row = best_in(front, goal)
+    return np.asarray(front.genes[row])
 
 
 def _top(factor: Factor) -> float:
     """Return the largest value of the gene of a choice."""
-    return len(factor.levels) - 1 if factor.discrete else 1.0
+    if factor.discrete:
+        return len(factor.levels) - 1
+    return 1.0
 
 
 def _ends(choices: Mapping[str, Factor], middle: np.ndarray) -> list[np.ndarray]:
     """Return the designs that one choice takes to an end of its range, or to another category."""
-    found = []
+    ends = []
     for j, factor in enumerate(choices.values()):
         places = [0.0, _top(factor)]
         if not factor.ordered:
-            places = (
-                list(np.arange(len(factor.levels), dtype=float))
-                if len(factor.levels) <= MOST_CATEGORIES
-                else []
-            )
-        found += [_moved(middle, j, place) for place in places]
-    return found
+            places = []
+            if len(factor.levels) <= MOST_CATEGORIES:
+                places = list(np.arange(len(factor.levels), dtype=float))
+        ends += [_moved(middle, j, place) for place in places]
+    return ends
 
 
 def _steps(choices: Mapping[str, Factor], middle: np.ndarray, step: float) -> list[np.ndarray]:
     """Return the designs a step beside one in each ordered choice; a listed choice moves to its
     next level.
     """
-    found = []
+    steps = []
     for j, factor in enumerate(choices.values()):
-        size = 1.0 if factor.discrete else step
+        size = step
+        if factor.discrete:
+            size = 1.0
         if factor.ordered:
-            found += [
+            steps += [
                 _moved(middle, j, float(np.clip(middle[j] + way, 0, _top(factor))))
                 for way in (-size, size)
             ]
-    return found
+    return steps
 
 
 def _moved(genes: np.ndarray, place: int, value: float) -> np.ndarray:
@@ -357,20 +389,18 @@ def _neighbours(
         if factor.discrete:
             continue
         low, high = factor.numbers
-        size = (
-            TOLERANCE
-            if name in PARAMETERS and PARAMETERS[name].unit == "mm"
-            else abs(high - low) / 100
-        )
+        if name in PARAMETERS and PARAMETERS[name].unit == "mm":
+            size = TOLERANCE
+        else:
+            size = abs(high - low) / 100
         value = float(factor.from_unit(genes[j : j + 1])[0])
         for side in (-1, 1):
             to = np.clip(value + side * size, min(low, high), max(low, high))
             moved = genes.copy()
-            moved[j] = (
-                (to - low) / (high - low)
-                if factor.kind == "uniform"
-                else np.log(to / low) / np.log(high / low)
-            )
+            if factor.kind == "uniform":
+                moved[j] = (to - low) / (high - low)
+            else:
+                moved[j] = np.log(to / low) / np.log(high / low)
             if moved[j] != genes[j]:
                 out.append((name, f"{to - value:+.3g}", moved))
     return out

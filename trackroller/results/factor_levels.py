@@ -22,7 +22,9 @@ DRIVE = "motor_force"
 def levels(values: pd.Series) -> list[Any]:
     """List the values of a factor: numbers in rising order, categories in order of appearance."""
     known = values.dropna().unique()
-    return sorted(known.tolist()) if numeric(values) else list(known)
+    if numeric(values):
+        return sorted(known.tolist())
+    return list(known)
 
 
 def numeric(values: pd.Series) -> bool:
@@ -87,7 +89,8 @@ def classes(
     Index of the class of each of the chosen rows, shape (rows.sum(),), and per class its level or
     its ends (low, high).
     """
-    values, known = table[name].to_numpy()[rows], levels(table[name])
+    values = table[name].to_numpy()[rows]
+    known = levels(table[name])
     if most is None or not numeric(table[name]) or len(known) <= MOST_LEVELS:
         place = {v: i for i, v in enumerate(known)}
         return np.array([place.get(v, 0) for v in values], dtype=int), known
@@ -104,15 +107,21 @@ def groups(
     table: pd.DataFrame, name: str, rows: np.ndarray | None = None, most: int = BINS
 ) -> Groups:
     """Sort the chosen cases (all if `rows` is not given) into groups along a factor."""
-    rows = np.ones(len(table), dtype=bool) if rows is None else rows
+    if rows is None:
+        rows = np.ones(len(table), dtype=bool)
     index, ends = classes(table, name, rows, most)
-    low, high = zip(*(end if isinstance(end, tuple) else (end, end) for end in ends), strict=True)
-    at, own = np.arange(len(ends), dtype=float), table[name].to_numpy()[rows]
-    if in_order := ordered(table[name]):
-        at = np.array(
-            [np.median(own[index == k]) if (index == k).any() else np.nan for k in range(len(ends))]
-        )
-    return Groups(name, index, low, high, at, in_order)
+    intervals = [end if isinstance(end, tuple) else (end, end) for end in ends]
+    low, high = zip(*intervals, strict=True)
+    in_order = ordered(table[name])
+    if not in_order:
+        return Groups(name, index, low, high, np.arange(len(ends), dtype=float), in_order)
+    own = table[name].to_numpy()[rows]
+    medians = np.full(len(ends), np.nan)
+    for k in range(len(ends)):
+        members = own[index == k]
+        if members.size:
+            medians[k] = np.median(members)
+    return Groups(name, index, low, high, medians, in_order)
 
 
 def drives(table: pd.DataFrame) -> Groups:
@@ -170,7 +179,8 @@ def confined(
     """
     coded = {name: pd.factorize(table[name][among]) for name in names}
     best: list[Product] = []
-    own, rank = hit[among], (np.inf, np.inf)
+    own = hit[among]
+    rank = (np.inf, np.inf)
     for one, other in permutations(names, 2):
         (a, firsts), (b, others) = coded[one], coded[other]
         shape = len(firsts), len(others)
@@ -178,7 +188,8 @@ def confined(
         of, hits = (
             np.bincount(cell, w, shape[0] * shape[1]).reshape(shape) for w in (np.ones(len(a)), own)
         )
-        there, full = hits > 0, (hits > 0) & (hits == of)
+        there = hits > 0
+        full = (hits > 0) & (hits == of)
         inside = of[there].sum()
         alone = min(of[there.any(axis=1)].sum(), of[:, there.any(axis=0)].sum())
         if inside >= alone or 2 * hits.sum() < inside or (whole and (there & ~full).any()):
@@ -189,11 +200,12 @@ def confined(
         blocks = [*((rows, list(columns)) for columns, rows in merged.items())]
         blocks += [([i], [j]) for i, j in np.argwhere(there & ~full).tolist()]
         if len(blocks) <= most and (inside, len(blocks)) < rank:
-            best, rank = [], (inside, len(blocks))
+            best = []
+            rank = (inside, len(blocks))
             for rows, columns in blocks:
                 at = np.ix_(rows, columns)
-                held = {one: _in_order(firsts[rows]), other: _in_order(others[columns])}
-                best.append(Product(held, int(hits[at].sum()), int(of[at].sum())))
+                levels_of_pair = {one: _in_order(firsts[rows]), other: _in_order(others[columns])}
+                best.append(Product(levels_of_pair, int(hits[at].sum()), int(of[at].sum())))
     return sorted(best, key=lambda product: -product.count / product.of)
 
 

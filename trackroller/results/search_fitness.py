@@ -14,10 +14,10 @@ from trackroller.methods.factor import readable
 from trackroller.methods.optimise import crowding
 from trackroller.parameters import REGIME_LABELS, REGIMES
 from trackroller.results.answer import Required
-from trackroller.results.by_tests import beyond_sn_data
 from trackroller.results.case_ranges import CaseRanges
 from trackroller.results.comparison import Comparison
 from trackroller.results.constraints import Column
+from trackroller.results.lives_by_tests import beyond_sn_data
 from trackroller.results.requirement import requirements_of
 from trackroller.results.solved_cases import OUTSIDE, SolvedCases, made_once
 from trackroller.roller.output_names import is_life
@@ -110,7 +110,8 @@ def judge(results: SolvedCases, genes: np.ndarray | None = None) -> Judged:
     genes : numpy.ndarray, shape (n, choices), optional
         Genes of the designs; by default those of the design.
     """
-    design, goals = results.design, goals_of_search(results)
+    design = results.design
+    goals = goals_of_search(results)
     table, known = _values(results)
     counted = all(judged_by(goal)[0] in ("b10", "probability") for goal in goals)
     if genes is None:
@@ -139,10 +140,10 @@ def _beyond_spare(results: SolvedCases, lost: np.ndarray) -> np.ndarray:
     """Return shares of conditions in which designs are not valid; 0 where the requirement allows so
     many to fail.
     """
-    wanted = _to_meet(results).values()
-    if not wanted or not all(own.in_shares for own in wanted):
+    required = _to_meet(results).values()
+    if not required or not all(own.in_shares for own in required):
         return lost
-    spare = 1.0 - max(own.probability for own in wanted)
+    spare = 1.0 - max(own.probability for own in required)
     return np.where(lost <= spare + SHARE_ROUNDING, 0.0, lost)
 
 
@@ -173,7 +174,10 @@ def _required_values(results: SolvedCases) -> np.ndarray:
     columns = [np.zeros((shape[0], 0))]
     for _, own in judges_of(results):
         worse = own.worse.reshape(shape)
-        worst = worse.min(axis=1) if own.rises else worse.max(axis=1)
+        if own.rises:
+            worst = worse.min(axis=1)
+        else:
+            worst = worse.max(axis=1)
         columns.append(worst[:, None])
     return np.concatenate(columns, axis=1)
 
@@ -184,8 +188,10 @@ def _values(results: SolvedCases) -> tuple[np.ndarray, np.ndarray]:
     """
     design = results.design
     shape = design.meta["design_points"], design.meta["inner_samples"]
-    valid, goals = results.held.reshape(shape), goals_of_search(results)
-    values, known = [], valid.copy()
+    valid = results.holds.reshape(shape)
+    goals = goals_of_search(results)
+    values = []
+    known = valid.copy()
     for goal in goals:
         kind, output = judged_by(goal)
         if kind == "probability":
@@ -214,8 +220,8 @@ def _to_meet(results: SolvedCases) -> dict[str, Requirement]:
         for goal in goals_of_search(results)
         if judged_by(goal)[0] == "probability"
     }
-    wanted = requirements_of(results)
-    return {name: own for name, own in wanted.items() if own.in_shares or name not in chances}
+    required = requirements_of(results)
+    return {name: own for name, own in required.items() if own.in_shares or name not in chances}
 
 
 @made_once
@@ -224,15 +230,19 @@ def judges_of(results: SolvedCases) -> list[tuple[Required, CaseRanges]]:
     judges it.
     """
     own = Comparison.of(results)
-    wanted = _to_meet(results)
-    return [] if own is None else [pair for pair in own.judges if pair[0].output in wanted]
+    required = _to_meet(results)
+    if own is None:
+        return []
+    return [pair for pair in own.judges if pair[0].output in required]
 
 
 def life_of_search(results: SolvedCases) -> CaseRanges | None:
     """Return the life that orders designs with the same goals, with its range; None in a study
     without lives.
     """
-    return None if results.life is None else CaseRanges(results, results.life, True)
+    if results.life is None:
+        return None
+    return CaseRanges(results, results.life, True)
 
 
 @dataclass(frozen=True)
@@ -244,17 +254,17 @@ class Shares:
     required : the requirement
     sure, may : shares of the conditions that surely meet it, and that may meet it [1], shape
         (designs,)
-    wanted : share that is enough [1]
+    least : share that is enough [1]
     """
 
     required: Required
     sure: np.ndarray
     may: np.ndarray
-    wanted: float
+    least: float
 
     def enough(self, shares: np.ndarray) -> np.ndarray:
         """Return which shares are enough."""
-        return np.asarray(shares >= self.wanted - SHARE_ROUNDING)
+        return np.asarray(shares >= self.least - SHARE_ROUNDING)
 
 
 @made_once
@@ -269,12 +279,15 @@ def shares_of(results: SolvedCases, exact: bool = False) -> list[Shares]:
     enough = 1.0
     if any(judged_by(goal)[0] == "b10" for goal in goals_of_search(results)):
         enough = min(1.0, float(np.floor(0.9 * shape[1] + 1.0)) / shape[1])
-    found = []
+    shares = []
     for one, own in judges_of(results):
         sure, may = (hits.reshape(shape).mean(axis=1) for hits in own.meets(one, exact))
-        wanted = enough if np.isnan(one.probability) else one.probability
-        found.append(Shares(one, sure, may, wanted))
-    return found
+        if np.isnan(one.probability):
+            share = enough
+        else:
+            share = one.probability
+        shares.append(Shares(one, sure, may, share))
+    return shares
 
 
 def shortfall(results: SolvedCases, exact: bool = False) -> np.ndarray:
@@ -298,7 +311,7 @@ def shortfall(results: SolvedCases, exact: bool = False) -> np.ndarray:
         return np.zeros(count)
     met = np.all([own.enough(own.sure) for own in shares], axis=0)
     may = np.all([own.enough(own.may) for own in shares], axis=0)
-    lack = np.max([np.clip(own.wanted - own.sure, 0.0, 1.0) for own in shares], axis=0)
+    lack = np.max([np.clip(own.least - own.sure, 0.0, 1.0) for own in shares], axis=0)
     missing = 0.9 * lack + 0.09 * _life_gap(results) * (0.5 / results.design.meta["inner_samples"])
     return np.asarray(np.where(met, 0.0, np.where(may, 1.0, 2.0) + missing))
 
@@ -320,7 +333,7 @@ def _met(results: SolvedCases, output: str) -> np.ndarray:
     """
     if output in REGIMES:
         return np.asarray(results.regime == REGIMES.index(output))
-    return np.asarray(results.held & results.meets(output))
+    return np.asarray(results.holds & results.meets(output))
 
 
 def _over_conditions(raw: np.ndarray, good: np.ndarray, kind: str, way: str) -> np.ndarray:
@@ -334,7 +347,10 @@ def _over_conditions(raw: np.ndarray, good: np.ndarray, kind: str, way: str) -> 
     if kind == "mean":
         out[some] = np.mean(raw[some], axis=1, where=good[some])
     else:
-        worst, end = (np.min, np.inf) if way == "max" else (np.max, -np.inf)
+        if way == "max":
+            worst, end = np.min, np.inf
+        else:
+            worst, end = np.max, -np.inf
         out[some] = worst(np.where(good, raw, end)[some], axis=1)
     return out
 
@@ -353,7 +369,7 @@ def _reasons(results: SolvedCases, known: np.ndarray) -> dict[str, int]:
         name: int((results.valid & rows).sum())
         for name, rows in results.limits_in("exceeded").items()
     }
-    counts["no value of a goal"] = int((results.held & ~known).sum())
+    counts["no value of a goal"] = int((results.holds & ~known).sum())
     return {word: n for word, n in counts.items() if n}
 
 
@@ -387,7 +403,8 @@ def _normalised(costs: np.ndarray) -> np.ndarray:
         finite = values[np.isfinite(values)]
         if not finite.size:
             continue
-        size, sign = np.abs(finite), np.sign(finite[0])
+        size = np.abs(finite)
+        sign = np.sign(finite[0])
         if (np.sign(finite) == sign).all() and size.max() > 10 * size.min() > 0:
             values, finite = (sign * np.log(np.abs(v)) for v in (values, finite))
         low, high = finite.min(), finite.max()
@@ -410,7 +427,10 @@ def spread(costs: np.ndarray, count: int) -> np.ndarray:
 def optimum_of(results: SolvedCases) -> dict[str, Any] | None:
     """Return what a search found, from the attribute of its results; None for another study."""
     text = results.data.attrs.get(OPTIMUM)
-    return json.loads(text) if isinstance(text, str) else None
+    if not isinstance(text, str):
+        return None
+    optimum: dict[str, Any] = json.loads(text)
+    return optimum
 
 
 def choices_of(results: SolvedCases, number: int) -> dict[str, Any]:
@@ -443,7 +463,8 @@ def ends_of_goal(results: SolvedCases, goal: str) -> tuple[np.ndarray, np.ndarra
     if not is_life(output) or kind == "probability" or f"{output}_low" not in results.data:
         return None
     shape = results.design.meta["design_points"], results.design.meta["inner_samples"]
-    raw, valid = results.quantity(output)[0].astype(float), results.held.reshape(shape)
+    raw = results.quantity(output)[0].astype(float)
+    valid = results.holds.reshape(shape)
     ends = []
     for end in ("_low", "_high"):
         own = flat(results.data, f"{output}{end}", results.dims).astype(float)
@@ -463,7 +484,7 @@ def beyond_data(results: SolvedCases, goal: str) -> np.ndarray:
     if not is_life(output) or kind == "probability":
         return np.zeros(shape[0], dtype=bool)
     lives = results.quantity(output)[0].astype(float).reshape(shape)
-    counted = results.held.reshape(shape) & (
+    counted = results.holds.reshape(shape) & (
         (kind == "mean") | (lives <= goal_column(results, goal)[0][:, None])
     )
     return np.asarray((counted & beyond_sn_data(results, output).reshape(shape)).any(axis=1))

@@ -16,7 +16,8 @@ from trackroller.study.design.build import OF_SHELF
 from trackroller.study.design.levels import OF_MATERIALS
 from trackroller.study.outputs import flat
 
-CONTACT_RESULTS, WHOLE_RESULTS = shown("contact"), shown()
+CONTACT_RESULTS = shown("contact")
+WHOLE_RESULTS = shown()
 BODY_RESULTS = ("peak_stress", "peak_z", "life_cycles", "error_estimate", "fatigue_stress")
 PLAIN_RESULTS = (
     "regime",
@@ -42,7 +43,13 @@ def _columns(ds: xr.Dataset, dims: Sequence[str], names: Iterable[str]) -> dict[
     """Flatten those quantities that have one value a case, numbers as floats."""
     varying = [n for n in dict.fromkeys(names) if n in ds.variables and ds[n].ndim]
     flattened = {n: flat(ds, n, tuple(dims)) for n in varying if set(ds[n].dims) <= set(dims)}
-    return {n: v.astype(str if v.dtype.kind in "OSU" else float) for n, v in flattened.items()}
+    return {n: _texts_or_floats(values) for n, values in flattened.items()}
+
+
+def _texts_or_floats(values: np.ndarray) -> np.ndarray:
+    if values.dtype.kind in "OSU":
+        return values.astype(str)
+    return values.astype(float)
 
 
 def input_columns(ds: xr.Dataset, dims: Sequence[str]) -> dict[str, np.ndarray]:
@@ -132,9 +139,9 @@ def factor_names(
     varying = [
         name for name in design.factors if name in table and table[name].nunique(dropna=False) > 1
     ]
-    return (
-        [n for n in varying if n not in MATERIAL_FIELDS] if "material_pair" in varying else varying
-    )
+    if "material_pair" in varying:
+        return [n for n in varying if n not in MATERIAL_FIELDS]
+    return varying
 
 
 def base_values(ds: xr.Dataset, base: Mapping[str, Any]) -> dict[str, Any]:

@@ -12,7 +12,7 @@ import json
 from pathlib import Path
 from typing import Any
 
-from trackroller.results.looks import UNTIL, look
+from trackroller.results.interim_looks import UNTIL, look
 from trackroller.results.stored_study import solved_results
 from trackroller.study.cost import duration
 from trackroller.study.design.growth import doubled
@@ -39,7 +39,9 @@ class Growing:
 
     def __init__(self, study: Study, folder: StudyFolder, tell: Tell) -> None:
         assert study.config.until is not None
-        self.study, self.until, self.tell = study, study.config.until, tell
+        self.study = study
+        self.until = study.config.until
+        self.tell = tell
         self.folder = folder
         self.looks: list[dict[str, Any]] = []
 
@@ -51,37 +53,38 @@ class Growing:
             ledger = Ledger(StudyCases(self.study), self.folder)
             if (ledger.state_number < 0).any():
                 return ""
-            seen = look(solved_results(ledger))
-            self.looks.append(seen)
-            widest = ", ".join(f"{name} ± {_text(seen, name)}" for name in self.until.of)
-            self.tell(
-                f"look {len(self.looks)}: {seen['cases']} cases, widest 95 % interval: {widest}"
-            )
-            if unsure := seen.get("unsure"):
+            last_look = look(solved_results(ledger))
+            self.looks.append(last_look)
+            widest = ", ".join(f"{name} ± {_text(last_look, name)}" for name in self.until.of)
+            cases = f"{last_look['cases']} cases"
+            self.tell(f"look {len(self.looks)}: {cases}, widest 95 % interval: {widest}")
+            unsure = last_look.get("unsure")
+            if unsure:
                 self.tell(
                     f"wider than wanted at {len(unsure)} of {len(self.study.drawn.points)} "
                     "design points"
                 )
             larger = doubled(self.study, unsure)
-            if why := self._why(larger, ledger):
+            why = self._why(larger, ledger)
+            if why:
                 self.tell(f"stopped: {why}")
                 return why
             self.study = larger
 
     def _why(self, larger: Study, ledger: Ledger) -> str:
         """Return why the study stops at its last look, '' if it goes on with the larger sample."""
-        seen, until = self.looks[-1], self.until
-        widths = seen["half_width"].values()
-        if seen["empty"]:
-            return (
-                f"no case gives a valid {' or '.join(seen['empty'])}, so nothing is left to decide"
-            )
+        last_look = self.looks[-1]
+        until = self.until
+        widths = last_look["half_width"].values()
+        if last_look["empty"]:
+            names = " or ".join(last_look["empty"])
+            return f"no case gives a valid {names}, so nothing is left to decide"
         if self._is_decided():
             return "every share is clear of the share that the requirement wants"
         if all(width is not None and width <= until.half_width for width in widths):
             return f"the intervals asked for are narrower than ± {until.half_width:g}"
-        if seen["constant"]:
-            return f"{' and '.join(seen['constant'])} does not vary, so it has no index"
+        if last_look["constant"]:
+            return f"{' and '.join(last_look['constant'])} does not vary, so it has no index"
         many = larger.drawn.size
         if many > until.at_most:
             return f"the next step has {many} cases, and at_most is {until.at_most}"
@@ -100,18 +103,22 @@ class Growing:
         requirement of `until`.
         """
         decided = self.looks[-1].get("decided", {})
-        points = len(self.study.drawn.points) if self.study.config.method.points else 0
+        points = 0
+        if self.study.config.method.points:
+            points = len(self.study.drawn.points)
         return bool(points) and all(decided.get(name, 0) == points for name in self.until.of)
 
     def record(self, why: str) -> dict[str, str]:
         """Return the attribute of `study.nc` with the looks."""
-        asked = {"half_width": self.until.half_width, "replicates": self.until.replicates}
-        return {UNTIL: json.dumps(asked | {"stopped": why, "looks": self.looks})}
+        settings = {"half_width": self.until.half_width, "replicates": self.until.replicates}
+        return {UNTIL: json.dumps(settings | {"stopped": why, "looks": self.looks})}
 
 
-def _text(seen: dict[str, Any], name: str) -> str:
-    width = seen["half_width"][name]
-    return "unknown" if width is None else f"{width:.2g} ({seen['at'][name]})"
+def _text(look: dict[str, Any], name: str) -> str:
+    width = look["half_width"][name]
+    if width is None:
+        return "unknown"
+    return f"{width:.2g} ({look['at'][name]})"
 
 
 def grow_study(study: Study, results: Path | str = "results", **how: Any) -> Ledger:
@@ -159,7 +166,8 @@ def next_step(study: Study, results: Path | str, tell: Tell) -> dict[str, Any]:
         that are not solved.
     """
     growing = Growing(study, study_folder(study.name, results).create(), tell)
-    if why := growing.advance():
+    why = growing.advance()
+    if why:
         return {"stopped": why, "chunks": []}
     with working_ledger(growing.study, results, tell=tell) as ledger:
         return {"stopped": "", "chunks": ledger.open}

@@ -12,7 +12,7 @@ import numpy as np
 from trackroller.methods.b10 import log_b10, share
 from trackroller.methods.intervals import constant
 from trackroller.parameters import REGIMES
-from trackroller.results.labels import factor_name
+from trackroller.results.index_labels import factor_name
 from trackroller.results.robustness import material_deviations
 from trackroller.results.solved_cases import SolvedCases
 from trackroller.results.targets import hits_of, scattering_body
@@ -28,7 +28,10 @@ def looks_of(results: SolvedCases) -> dict[str, Any] | None:
     study.
     """
     text = results.data.attrs.get(UNTIL)
-    return json.loads(text) if isinstance(text, str) else None
+    if not isinstance(text, str):
+        return None
+    looks: dict[str, Any] = json.loads(text)
+    return looks
 
 
 def look(results: SolvedCases) -> dict[str, Any]:
@@ -48,9 +51,10 @@ def look(results: SolvedCases) -> dict[str, Any]:
         share is clear of the share that a requirement wants: their interval counts as 0. `unsure`
         numbers the design points with a wider interval than wanted (inner_outer).
     """
-    design, until = results.design, results.config.until
+    design = results.design
+    until = results.config.until
     assert until is not None
-    seen: dict[str, Any] = {
+    record: dict[str, Any] = {
         "cases": design.size,
         "half_width": {},
         "at": {},
@@ -62,33 +66,44 @@ def look(results: SolvedCases) -> dict[str, Any]:
     unsure = np.zeros(len(names), dtype=bool)
     inside = results.inside.any() or results.config.analysis.keep != ("rolling",)
     for name in until.of:
-        values, widths = (_of_points if design.method.points else _of_indices)(results, name)
+        if design.method.points:
+            values, widths = _of_points(results, name)
+        else:
+            values, widths = _of_indices(results, name)
         if np.isnan(values).all() or not (inside or statistic(name)[1] in REGIMES):
-            seen["empty"].append(name)
+            record["empty"].append(name)
             widths[:] = np.inf
         elif not design.method.points and constant(values):
-            seen["constant"].append(name)
+            record["constant"].append(name)
         widths = np.where(np.isnan(widths), np.inf, widths).reshape(-1, len(names)).max(axis=0)
         if design.method.points:
             decided = _decided(results, name, widths)
-            seen["decided"][name] = int(decided.sum())
+            record["decided"][name] = int(decided.sum())
             widths = np.where(decided, 0.0, widths)
-        widest, unsure = int(widths.argmax()), unsure | (widths > until.half_width)
-        seen["half_width"][name] = float(widths[widest]) if np.isfinite(widths[widest]) else None
-        seen["at"][name] = names[widest]
-    return seen | ({"unsure": np.flatnonzero(unsure).tolist()} if design.method.points else {})
+        widest = int(widths.argmax())
+        unsure = unsure | (widths > until.half_width)
+        record["half_width"][name] = None
+        if np.isfinite(widths[widest]):
+            record["half_width"][name] = float(widths[widest])
+        record["at"][name] = names[widest]
+    if design.method.points:
+        record["unsure"] = np.flatnonzero(unsure).tolist()
+    return record
 
 
 def _of_indices(results: SolvedCases, name: str) -> tuple[np.ndarray, np.ndarray]:
     """Return an output (n,) and the half widths of its headline indices; those of effects over the
     output's range.
     """
-    design, given = results.design, results.config.analysis
+    design = results.design
+    given = results.config.analysis
     y = outputs(
         results.data, design.factors, [name], given.keep, scale=given.scale, allowed=results.allowed
     )[0].values
     estimates = design.method.replicated(y, design, design.samples)
-    scale = float(np.nanmax(y) - np.nanmin(y)) if design.method.effects and not constant(y) else 1.0
+    scale = 1.0
+    if design.method.effects and not constant(y):
+        scale = float(np.nanmax(y) - np.nanmin(y))
     widths = [estimates[f"{index}_high"] - estimates[index] for index in design.method.narrowed]
     return y, np.concatenate(widths) / scale
 
@@ -99,14 +114,17 @@ def _of_points(results: SolvedCases, name: str) -> tuple[np.ndarray, np.ndarray]
     It is 0 at a point without a value in any case: more cases would not decide there.
     """
     design, (kind, output), own = results.design, statistic(name), material_deviations(results)
-    copies, points = int(design.meta["replicates"]), design.points
+    copies = int(design.meta["replicates"])
+    points = design.points
     if output in REGIMES:
         values = hits = (regimes(results.data, results.dims) == REGIMES.index(output)).astype(float)
     else:
         column = _natural_output(results, output)
-        values, scatter = results.with_breaks(column), own.get(scattering_body(output))
+        values = results.with_breaks(column)
+        scatter = own.get(scattering_body(output))
         if kind != "probability":
-            scatter = np.zeros(design.size) if scatter is None else scatter
+            if scatter is None:
+                scatter = np.zeros(design.size)
             halves = [
                 log_b10(values[r], scatter[r], np.arange(r.stop - r.start) % copies, copies)[1]
                 for r in points
@@ -132,11 +150,12 @@ def _shares(results: SolvedCases, hits: np.ndarray) -> tuple[np.ndarray, np.ndar
     """Return the share of hits at each design point and the half width of its interval, shape
     (points,) each.
     """
-    copies, points = int(results.design.meta["replicates"]), results.design.points
-    found = [
+    copies = int(results.design.meta["replicates"])
+    points = results.design.points
+    ends = [
         share(hits[rows], np.arange(rows.stop - rows.start) % copies, copies) for rows in points
     ]
-    shares, widths = np.array(found, dtype=float).T
+    shares, widths = np.array(ends, dtype=float).T
     return shares, widths
 
 

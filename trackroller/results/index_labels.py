@@ -72,22 +72,20 @@ def first_order_sums(result: xr.Dataset, drawn: bool) -> dict[str, Any]:
     factors are correlated, by sampling errors (the root of the sum of squares of the half widths),
     or because rows are left out: the remaining rows are no sample of independent factors.
     """
-    name = "S1" if "S1" in result else "first"
+    name = "first"
+    if "S1" in result:
+        name = "S1"
     if "main_share" in result or name not in result:
         return {}
     total = result[name].clip(min=0.0).sum("factor").values
     error = np.sqrt(
         (((result[f"{name}_high"] - result[f"{name}_low"]) / 2) ** 2).sum("factor").values
     )
-    tied = (
-        [str(n) for n in result["factor_name"].values[result["correlated"].values == 1]]
-        if "correlated" in result
-        else []
-    )
+    tied = []
+    if "correlated" in result:
+        tied = [str(n) for n in result["factor_name"].values[result["correlated"].values == 1]]
     rows = zip(total, error, result["used_share"].values, strict=True)
-    notes = np.array(
-        [_excess(*row, tied, drawn) if row[0] > 1.005 else "" for row in rows], dtype=object
-    )
+    notes = np.array([_excess(*row, tied, drawn) for row in rows], dtype=object)
     return {
         "first_order_sum": (
             "output",
@@ -103,9 +101,9 @@ def first_order_sums(result: xr.Dataset, drawn: bool) -> dict[str, Any]:
 
 
 def _excess(total: float, error: float, used: float, tied: list[str], drawn: bool) -> str:
-    """Return the reason why first-order indices add up to more than 100 %, see
-    `first_order_sums`.
-    """
+    """Return why first-order indices add up to more than 100 %; '' where they do not."""
+    if not total > 1.005:
+        return ""
     text = (
         f"The first-order indices add up to {100 * total:.0f} %, those of independent factors "
         "to 100 % at most: "
@@ -152,8 +150,11 @@ def treatment(regime: np.ndarray, keep: Iterable[str], allowed: np.ndarray | Non
         text += "how often these occur is a separate output, whose indices use all rows"
     else:
         text += "; no row left out for its regime"
-    kept = np.isin(regime, [REGIMES.index(name) for name in keep])
-    missed = 0 if allowed is None else int((kept & ~allowed).sum())
+    counted = np.isin(regime, [REGIMES.index(name) for name in keep])
+    if allowed is None:
+        missed = 0
+    else:
+        missed = int((counted & ~allowed).sum())
     if missed:
         text += f"; {missed:,} further rows miss a constraint and are left out of the same indices"
     return text
@@ -165,11 +166,9 @@ def correlated(design: Design) -> str:
         f"{factor_name(one)} and {factor_name(other)} are correlated (rank correlation {rho:.2f})"
         for one, other, rho in correlated_pairs(design)
     ]
-    return (
-        f"; {', '.join(warnings)}: the index of each includes the influence of both"
-        if warnings
-        else ""
-    )
+    if warnings:
+        return f"; {', '.join(warnings)}: the index of each includes the influence of both"
+    return ""
 
 
 def labelled(
@@ -233,7 +232,9 @@ def stacked(method: Method, results: list[Estimates], dims: tuple[str, ...]) -> 
     for name in results[0]:
         values = np.stack([r[name] for r in results])
         root = name.removesuffix("_low").removesuffix("_high").removesuffix("_course")
-        axes = ("output", "sample_size", "factor") if "_course" in name else dims[: values.ndim]
+        axes = dims[: values.ndim]
+        if "_course" in name:
+            axes = ("output", "sample_size", "factor")
         index = index_of(method, root)
         attrs = {"units": "1", "long_name": index.words + name[len(root) :].replace("_", " ")}
         if index.sized:

@@ -30,23 +30,34 @@ def not_judged(ds: xr.Dataset) -> list[str]:
     """
     if int(ds["regime"]) != _ROLLING:
         return []
-    flags = int(ds["validity"]) if "validity" in ds else 0
+    flags = 0
+    if "validity" in ds:
+        flags = int(ds["validity"])
     reasons = [words for name, words in OUTSIDE.items() if flags & validity_bit(name)]
-    return reasons + ["not converged"] * ("converged" in ds and int(ds["converged"]) != 1)
+    if "converged" in ds and int(ds["converged"]) != 1:
+        reasons.append("not converged")
+    return reasons
 
 
 def bodies_of(flag: str, by_body: bool) -> tuple[str, ...]:
     """Return the bodies that a flag is counted for: both, or '' for a flag of the pair or flags
     that no body has.
     """
-    return BODIES if by_body and VALIDITY[flag].of_body else ("",)
+    if by_body and VALIDITY[flag].of_body:
+        return BODIES
+    return ("",)
 
 
 def of_body(flag: str, body: str) -> str:
     """Name the body that a flag holds for, as the words of the flag go on; an empty text without a
     body.
     """
-    return f"{'at' if flag == 'half_space' else 'of'} the {body}" if body else ""
+    if body:
+        preposition = "of"
+        if flag == "half_space":
+            preposition = "at"
+        return f"{preposition} the {body}"
+    return ""
 
 
 @dataclass(frozen=True)
@@ -66,12 +77,11 @@ def flags_of(ds: xr.Dataset) -> list[Flag]:
     ds : xarray.Dataset
         Result of one case.
     """
-    bits, flags = int(ds["validity"]), []
-    by_body = (
-        dict(zip(ds["body"].values, ds["validity_body"].values, strict=True))
-        if "validity_body" in ds
-        else {}
-    )
+    bits = int(ds["validity"])
+    flags = []
+    by_body = {}
+    if "validity_body" in ds:
+        by_body = dict(zip(ds["body"].values, ds["validity_body"].values, strict=True))
     for name, flag in VALIDITY.items():
         # there is no life to extrapolate
         lifeless = name == "deep_life" and int(ds["regime"]) != _ROLLING
@@ -81,7 +91,9 @@ def flags_of(ds: xr.Dataset) -> list[Flag]:
             ]
             words = f"{flag.words} {of_body(name, ' and the '.join(own))}".rstrip()
             flags.append(Flag(name, f"{words[0].upper()}{words[1:]}.", flag.remedy))
-    residual = float(ds["energy_residual"]) if "energy_residual" in ds else 0.0
+    residual = 0.0
+    if "energy_residual" in ds:
+        residual = float(ds["energy_residual"])
     exact = "Solve it with contact_model: kalker."
     if residual > KNOWN_ERROR:
         text = f"Friction energy and power differ from the work put in by {100 * residual:.0f} %."
