@@ -22,8 +22,14 @@ from typing import Any
 import numpy as np
 
 from trackroller.damage.catalogue import FIELD as CATALOGUE
-from trackroller.damage.catalogue import LAWS, catalogue_km
-from trackroller.errors import Collector, InputError, check_names, checked_text, unknown_name
+from trackroller.damage.catalogue import LAWS, apply_stroke_factor, catalogue_km
+from trackroller.errors import (
+    Collector,
+    InputError,
+    check_names,
+    text_of,
+    unknown_name,
+)
 from trackroller.files import files_beside, find_beside, read_text
 from trackroller.numerics.numbers import number_in, number_or_nan
 from trackroller.numerics.plain import mapping_of
@@ -77,6 +83,7 @@ OF_LOADS = (*LOADS, "velocity")  # parameters of a roller that its carriage give
 SQUARE = 1e-6  # largest cosine between directions that count as perpendicular
 # of the distance: rollers of a pair press against each other if they are off their line by less
 IN_LINE = 1e-3
+LARGEST_RADIUS = 1e12  # of a curve of the track [mm]; beyond it, the track is straight
 _POINT = "three numbers [x, y, z] in mm: x forward, y left, z up"
 _AT = "Write at: [0, 0, 60]."
 
@@ -107,6 +114,9 @@ class CatalogueRoller:
     moment : float
         Permissible moment [N mm], which does not count here: the statics of a carriage knows no
         moment of a roller.
+    exponent, speed_factor, stroke_factor : float
+        Exponent of the life in place of that of the law, factor of the life for speed, and factor
+        of both permissible forces for short strokes [1]; NaN if not given.
     """
 
     radial_force: float
@@ -115,15 +125,24 @@ class CatalogueRoller:
     law: str = LAWS[0]
     offset: float = math.nan
     moment: float = math.nan
+    exponent: float = math.nan
+    speed_factor: float = math.nan
+    stroke_factor: float = math.nan
 
     def load_factor(self, radial: np.ndarray, axial: np.ndarray) -> np.ndarray:
         """Return the sum of the ratios of both forces [N] to their permissible values [1]."""
-        return np.abs(radial) / self.radial_force + np.abs(axial) / self.axial_force
+        ratios = np.abs(radial) / self.radial_force + np.abs(axial) / self.axial_force
+        return apply_stroke_factor(ratios, self.stroke_factor)
 
     def life(self, load_factor: np.ndarray) -> np.ndarray:
         """Return the life at load factors [1], in km."""
         return catalogue_km(
-            load_factor, np.asarray(self.basic_life), np.asarray(self.law), self.offset
+            load_factor,
+            np.asarray(self.basic_life),
+            np.asarray(self.law),
+            self.offset,
+            self.exponent,
+            self.speed_factor,
         )
 
 
@@ -391,11 +410,9 @@ def carriage_of(values: Mapping[str, Any]) -> Carriage:
     with wrong.part():
         _check_payloads(values["cases"], fields)
     with wrong.part():
-        fields["name"] = checked_text(str(values.get("name", "carriage")), "name")
+        fields["name"] = text_of(values.get("name"), "name", "carriage")
     with wrong.part():
-        fields["description"] = checked_text(
-            str(values.get("description", "")), "description", lines=True
-        )
+        fields["description"] = text_of(values.get("description"), "description", lines=True)
     wrong.check()
     return Carriage(**fields)
 
@@ -548,7 +565,7 @@ def _rollers(value: Any) -> tuple[MountedRoller, ...]:
     files: dict[object, Any] = {}
     for name, entry in value.items():
         with wrong.part("rollers", str(name)):
-            rollers.append(_roller(checked_text(str(name), "name of a roller"), entry, files))
+            rollers.append(_roller(_roller_name(name), entry, files))
     wrong.check()
     if not any(roller.locating for roller in rollers):
         remedy = "Write kind: locating for the rollers that guide the carriage along their axes."
@@ -808,9 +825,16 @@ def _with_share(case: LoadCase, share: float) -> LoadCase:
     return new
 
 
+def _roller_name(value: Any) -> str:
+    name = text_of(value, "name of a roller")
+    if not name:
+        raise InputError("name of a roller", None, "a name such as FL", "Write the name.")
+    return name
+
+
 def _load_case(value: Any, number: int) -> LoadCase:
     entry = _entries(value, f"cases[{number}]", CASE_FIELDS, "{name: run, share: 1, speed: 1 m/s}")
-    name = checked_text(str(entry.get("name", f"case {number}")), "name of a load case")
+    name = text_of(entry.get("name"), "name of a load case", f"case {number}")
     where = f"case '{name}'"
     wrong = Collector()
     fields = {}
@@ -833,7 +857,8 @@ def _angle(value: Any, where: str) -> float:
             return 0.0
         raise InputError(where, value, allowed, f"Write {value} % or {value} deg.", "has no unit")
     if parts[1] == "%":
-        return math.atan(float(parts[0]) / 100.0)
+        share = _number(parts[0], where, "-", "a slope in % or degrees")
+        return math.atan(share / 100.0)
     return math.radians(
         _number(value, where, "deg", "a slope in % or degrees, from -90 to 90", -90.0, 90.0)
     )
@@ -841,11 +866,12 @@ def _angle(value: Any, where: str) -> float:
 
 def _radius(value: Any, where: str) -> float:
     radius = number_or_nan(value, "mm", where)
-    if math.isnan(radius) or radius == 0:
+    is_straight = math.isinf(radius)
+    if not (0 < abs(radius) <= LARGEST_RADIUS or is_straight):
         raise InputError(
             where,
             value,
-            "a radius, > 0 to the left and < 0 to the right",
+            "a radius, > 0 to the left and < 0 to the right, at most 1e12 mm or inf",
             "Write curve_radius: 1.5 m.",
         )
     return radius

@@ -579,11 +579,12 @@ def doubts_of_rollers(whole: Carriage, ds: xr.Dataset) -> list[str]:
 
 def _doubted_ratings(roller: MountedRoller, radial: np.ndarray) -> Iterator[str]:
     """Yield a sentence for each rating of a maker's catalogue that is small beside the radial
-    forces (n,) [N].
+    forces (n,) [N], or unusual.
     """
     if roller.catalogue is None:
         return
-    rated = {name: getattr(roller.catalogue, name) for name in ("radial_force", "axial_force")}
+    names = ("radial_force", "axial_force", "basic_life")
+    rated = {name: getattr(roller.catalogue, name) for name in names}
     yield from ratings({"radial_force": radial, "catalogue": rated})
     if np.isfinite(roller.catalogue.moment):
         yield (

@@ -18,6 +18,7 @@ import numpy as np
 import pandas as pd
 
 from trackroller.carriage.file import CHANCE, carriage_of, written_out
+from trackroller.carriage.files import name_of_study
 from trackroller.errors import InputError, unknown_name
 from trackroller.files import files_beside
 from trackroller.numerics.numbers import finite_number
@@ -27,8 +28,8 @@ from trackroller.parameters.example import EXAMPLE
 from trackroller.results.load_ratio import EXACT, FORCES, LoadRatios, load_ratios
 from trackroller.results.mounting import Mounting, rollers_by_place
 from trackroller.results.results import Results
+from trackroller.results.run import run
 from trackroller.results.size_spectrum import VERDICTS, spectrum_table
-from trackroller.results.solving import run
 from trackroller.roller.aliases import OTHER_OPTIONS, with_options
 from trackroller.roller.duty import OVERROLLINGS
 from trackroller.roller.requirement import DEFAULT
@@ -252,10 +253,10 @@ def sizing_studies(
     studies = {}
     if life is not None:
         required = {**(keys.get("requirement") or {}), _life_of(keys): {"min": life}}
-        more: dict[str, Any] = {"requirement": required}
+        added: dict[str, Any] = {"requirement": required}
         if least:
-            more["pareto"] = {least: "min"}
-        studies["life"] = keys | more
+            added["pareto"] = {least: "min"}
+        studies["life"] = keys | added
     elif on_carriage:
         studies["life"] = keys
     if safety is not None:
@@ -348,7 +349,7 @@ def _keys_of(case: Path | str | Mapping[str, Any], shelf: Path | str) -> dict[st
             "Remove it: --shelf gives it.",
             "stands there already",
         )
-    keys["name"] = _name(str(keys.get("name", stem)), Path(shelf).stem)
+    keys["name"] = name_of_study(f"size-{keys.get('name', stem)}-{Path(shelf).stem}")
     keys["question"] = "decide"
     return _with_shelf(keys, shelf)
 
@@ -462,7 +463,7 @@ def _overloaded(keys: Mapping[str, Any], safety: str | float) -> dict[str, Any]:
         for name, value in keys.items()
         if name not in ("requirement", "pareto", "goals")
     }
-    return left | {"name": f"{keys['name']}-{OVERLOAD}", "base": base}
+    return left | {"name": name_of_study(f"{keys['name']}-{OVERLOAD}"), "base": base}
 
 
 def sizing_of(
@@ -586,8 +587,8 @@ def _without_unknown_lives(table: pd.DataFrame, results: Results) -> pd.DataFram
     ]
     text = (
         f"open: the life at {100 * chance:g} % failures is not known, because the database has no "
-        "scatter of "
-        f"{' and '.join(bare)}. Give scatter_in_cycles with the material, or leave the failures out"
+        f"scatter of {' and '.join(bare)}. Give scatter_in_cycles with the material, or leave the "
+        "failures out"
     )
     table = table.copy()
     table.loc[unknown, "verdict"] = VERDICTS[1]
@@ -603,26 +604,26 @@ def _with_overload(table: pd.DataFrame, results: Results, safety: float) -> pd.D
     lacks = np.zeros(len(table), dtype=bool)
     if "load_ratio" in table:
         lacks = (table["load_ratio"] < safety * (1.0 - EXACT)).to_numpy()
-    found = []
+    texts = []
     for place, name in enumerate(table.index):
         row = rows.loc[name]
         if row["exceeded"]:  # by a second model too, such as a catalogue
-            found.append(str(row["exceeded"]))
+            texts.append(str(row["exceeded"]))
         elif lacks[place]:
             ends, ratio = table.loc[name, ["load_ends", "load_ratio"]]
-            found.append(f"{ends} at {ratio:.3g} times the forces")
+            texts.append(f"{ends} at {ratio:.3g} times the forces")
         elif row["holds"] == row["of"]:
-            found.append("held")
+            texts.append("held")
         elif row["judged"] == row["of"]:
-            found.append("does not roll")
+            texts.append("does not roll")
         else:
-            found.append("not judged")
-    table = table.assign(overload=found)
-    held = table["overload"] == "held"
+            texts.append("not judged")
+    table = table.assign(overload=texts)
+    is_held = table["overload"] == "held"
     unknown = table["overload"] == "not judged"
-    verdict = np.where(held, table["verdict"], np.where(unknown, VERDICTS[1], VERDICTS[2]))
+    verdict = np.where(is_held, table["verdict"], np.where(unknown, VERDICTS[1], VERDICTS[2]))
     table["verdict"] = np.where(table["verdict"] == VERDICTS[2], VERDICTS[2], verdict)
-    added = [f"overload: {text}" if text not in ("held", "not judged") else "" for text in found]
+    added = [f"overload: {text}" if text not in ("held", "not judged") else "" for text in texts]
     both = zip(table["excluded_by"], added, strict=True)
     return table.assign(excluded_by=["; ".join(filter(None, pair)) for pair in both])
 
@@ -634,15 +635,15 @@ def _ranked(
     longer life.
     """
     place = [VERDICTS.index(word) for word in table["verdict"]]
-    wanted = np.zeros(len(table))
+    priority = np.zeros(len(table))
     unranked: tuple[str, ...] = ()
     if least:
-        wanted = table[least].to_numpy(dtype=float)
-        unranked = tuple(str(name) for name in table.index[np.isnan(wanted)])
+        priority = table[least].to_numpy(dtype=float)
+        unranked = tuple(str(name) for name in table.index[np.isnan(priority)])
     life = np.zeros(len(table))
     if "life_hours" in table:
         life = np.nan_to_num(table["life_hours"].to_numpy(dtype=float), nan=-1.0)
-    keys = (-life, np.where(np.isnan(wanted), np.inf, wanted), np.array(place))
+    keys = (-life, np.where(np.isnan(priority), np.inf, priority), np.array(place))
     order = np.lexsort(keys)
     table = table.iloc[order].reset_index()
     enough = table[(table["verdict"] == VERDICTS[0]) & ~table[ROLLER].isin(unranked)]

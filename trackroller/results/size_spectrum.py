@@ -168,17 +168,17 @@ def _rolls_over(own: Spectrum) -> bool:
 
 def _with_safety(table: pd.DataFrame, safety: float) -> pd.DataFrame:
     """Return the table with what becomes of each roller at the forces times the safety."""
-    found = []
+    texts = []
     for place in range(len(table)):
         row = table.iloc[place]
         if np.isnan(row["load_ratio"]):
-            found.append("not judged")
+            texts.append("not judged")
         elif row["load_ratio"] < safety * (1.0 - EXACT):
-            found.append(f"{row['load_ends']} at {row['load_ratio']:.3g} times the forces")
+            texts.append(f"{row['load_ends']} at {row['load_ratio']:.3g} times the forces")
         else:
-            found.append("held")
-    out = table.assign(overload=found)
-    for place, text in enumerate(found):
+            texts.append("held")
+    out = table.assign(overload=texts)
+    for place, text in enumerate(texts):
         name = out.index[place]
         if text == "not judged" and out.loc[name, "verdict"] == VERDICTS[0]:
             out.loc[name, "verdict"] = VERDICTS[1]

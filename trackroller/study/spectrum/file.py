@@ -29,7 +29,7 @@ import numpy as np
 
 from trackroller.damage import groups_of, others
 from trackroller.damage.sn_curve import PROBABILITIES
-from trackroller.errors import Collector, InputError, check_names, checked_text, nearest
+from trackroller.errors import Collector, InputError, check_names, nearest, text_of
 from trackroller.files import files_beside, find_beside, read_text
 from trackroller.numerics.numbers import number_in
 from trackroller.numerics.plain import mapping_of
@@ -221,11 +221,9 @@ class Spectrum:
             numbers = [key for key in fields["options"] if SOLVE_OPTIONS[key].kind == "number"]
             fields["options"] |= {key: getattr(checked, key) for key in numbers}
         with wrong.part():
-            fields["name"] = checked_text(str(values.get("name", "spectrum")), "name")
+            fields["name"] = text_of(values.get("name"), "name", "spectrum")
         with wrong.part():
-            fields["description"] = checked_text(
-                str(values.get("description", "")), "description", lines=True
-            )
+            fields["description"] = text_of(values.get("description"), "description", lines=True)
         wrong.check()
         if is_of_strokes(fields["duty"]):
             fields |= _by_strokes(fields["duty"], fields["blocks"])
@@ -403,7 +401,7 @@ def _block(entry: Any, base: Mapping[str, Any], number: int) -> Block:
             f"blocks[{number}]", entry, "a mapping such as {distance: 4000, radial_force: -300}"
         )
     entry = renamed(entry)
-    name = checked_text(str(entry.get("name") or f"block {number}"), "name of a block")
+    name = text_of(entry.get("name"), "name of a block", f"block {number}")
     where = f"block '{name}'"
     wrong = Collector()
     with wrong.part():
