@@ -22,14 +22,20 @@ from typing import Any
 import numpy as np
 
 from trackroller.damage.catalogue import FIELD as CATALOGUE
-from trackroller.damage.catalogue import LAWS, catalogue_km
-from trackroller.errors import Collector, InputError, check_names, text_of, unknown_name
+from trackroller.damage.catalogue import LAWS, apply_stroke_factor, catalogue_km
+from trackroller.errors import (
+    Collector,
+    InputError,
+    check_names,
+    text_of,
+    unknown_name,
+)
 from trackroller.files import files_beside, find_beside, read_text
 from trackroller.numerics.numbers import number_in, number_or_nan
 from trackroller.numerics.plain import mapping_of
 from trackroller.numerics.units import split_quantity
 from trackroller.parameters import MATERIAL_FIELDS
-from trackroller.roller.aliases import ALIASES
+from trackroller.roller.aliases import OTHER_OPTIONS, WRITTEN, with_options
 from trackroller.roller.case import Case
 from trackroller.roller.duty import (
     STROKES,
@@ -45,7 +51,7 @@ from trackroller.yaml_file import errors_by_line, parse_mapping
 
 FILE_FIELDS = (
     *("name", "description", "mass", "payloads", "drive", "rollers", "preload", "cases"),
-    *("distance", "duty"),
+    *("distance", "duty", "failure_probability"),
 )
 ROLLER_FIELDS = (
     "at",
@@ -72,6 +78,7 @@ CASE_FIELDS = (
     ),
 )
 KINDS = ("locating", "floating")
+CHANCE = "failure_probability"  # option that a carriage states for all of its rollers
 OF_LOADS = (*LOADS, "velocity")  # parameters of a roller that its carriage gives
 SQUARE = 1e-6  # largest cosine between directions that count as perpendicular
 # of the distance: rollers of a pair press against each other if they are off their line by less
@@ -107,6 +114,9 @@ class CatalogueRoller:
     moment : float
         Permissible moment [N mm], which does not count here: the statics of a carriage knows no
         moment of a roller.
+    exponent, speed_factor, stroke_factor : float
+        Exponent of the life in place of that of the law, factor of the life for speed, and factor
+        of both permissible forces for short strokes [1]; NaN if not given.
     """
 
     radial_force: float
@@ -115,15 +125,24 @@ class CatalogueRoller:
     law: str = LAWS[0]
     offset: float = math.nan
     moment: float = math.nan
+    exponent: float = math.nan
+    speed_factor: float = math.nan
+    stroke_factor: float = math.nan
 
     def load_factor(self, radial: np.ndarray, axial: np.ndarray) -> np.ndarray:
         """Return the sum of the ratios of both forces [N] to their permissible values [1]."""
-        return np.abs(radial) / self.radial_force + np.abs(axial) / self.axial_force
+        ratios = np.abs(radial) / self.radial_force + np.abs(axial) / self.axial_force
+        return apply_stroke_factor(ratios, self.stroke_factor)
 
     def life(self, load_factor: np.ndarray) -> np.ndarray:
         """Return the life at load factors [1], in km."""
         return catalogue_km(
-            load_factor, np.asarray(self.basic_life), np.asarray(self.law), self.offset
+            load_factor,
+            np.asarray(self.basic_life),
+            np.asarray(self.law),
+            self.offset,
+            self.exponent,
+            self.speed_factor,
         )
 
 
@@ -288,7 +307,7 @@ def load_carriage(source: Path | str | Mapping[str, Any]) -> Carriage:
     path = Path(source)
     text = read_text(path, "carriage file")
     values = parse_mapping(text, str(path))
-    with errors_by_line(text, aliases=ALIASES), files_beside(path):
+    with errors_by_line(text, aliases=WRITTEN), files_beside(path):
         return carriage_of({"name": path.stem} | values)
 
 
@@ -315,7 +334,7 @@ def written_out(source: Path | str | Mapping[str, Any], field: str = "carriage")
     if not isinstance(values, Mapping):
         path = find_beside(str(source), field)
         text = read_text(path, "carriage file")
-        with errors_by_line(text, file=str(path), aliases=ALIASES), files_beside(path):
+        with errors_by_line(text, file=str(path), aliases=WRITTEN), files_beside(path):
             values = {"name": path.stem} | parse_mapping(text, str(path))
             return written_out(values, field)
     whole = carriage_of(values)
@@ -351,7 +370,9 @@ def carriage_of(values: Mapping[str, Any]) -> Carriage:
     wrong = Collector()
     fields: dict[str, Any] = {}
     with wrong.part():
-        check_names("carriage: key", values, FILE_FIELDS)
+        values = with_options(values)
+    with wrong.part():
+        check_names("carriage: key", values, (*FILE_FIELDS, *OTHER_OPTIONS))
     for key, read in (
         ("mass", lambda value: _mass(value, "mass")),
         (
@@ -379,6 +400,9 @@ def carriage_of(values: Mapping[str, Any]) -> Carriage:
         if values.get("preload") is not None:
             fields["preloads"] = _preloads(values["preload"], fields["rollers"])
     with wrong.part():
+        if values.get(CHANCE) is not None:
+            fields["rollers"] = _with_chance(fields["rollers"], values[CHANCE])
+    with wrong.part():
         check_curves(fields["cases"], fields["rollers"])
     with wrong.part():
         if is_of_strokes(fields.get("duty")):
@@ -391,6 +415,29 @@ def carriage_of(values: Mapping[str, Any]) -> Carriage:
         fields["description"] = text_of(values.get("description"), "description", lines=True)
     wrong.check()
     return Carriage(**fields)
+
+
+def _with_chance(rollers: Sequence[MountedRoller], value: Any) -> tuple[MountedRoller, ...]:
+    """Return the rollers with the failure probability of their carriage; refuse a file of a roller
+    that states another one.
+    """
+    chance = number_in(value, CHANCE, "a share between 0 and 1, such as 5%", 1e-9, 1.0 - 1e-9, "-")
+    wrong = Collector()
+    out = []
+    for roller in rollers:
+        own = roller.options.get(CHANCE)
+        if own is not None and number_or_nan(own) != chance:
+            where = f"rollers.{roller.name}.roller.{CHANCE}"
+            remedy = f"Remove it there: the carriage states {chance:g} for all rollers."
+            wrong.errors.append(
+                InputError(where, own, "one failure probability", remedy, "is another one")
+            )
+        stated = {CHANCE: chance}
+        out.append(
+            replace(roller, options={**roller.options, **stated}, given={**roller.given, **stated})
+        )
+    wrong.check()
+    return tuple(out)
 
 
 def _by_strokes(
@@ -643,7 +690,7 @@ def _read_roller(value: Any, where: str) -> dict[str, Any]:
     path = find_beside(value, where)
     text = read_text(path, "roller file")
     given = parse_mapping(text, str(path))
-    with errors_by_line(text, file=str(path), aliases=ALIASES):
+    with errors_by_line(text, file=str(path), aliases=WRITTEN):
         case, options, beside = checked_case(given)
     return {"case": case, "options": options, "given": given, "required": _required(beside)}
 

@@ -83,6 +83,14 @@ RATINGS = {
 # ASSUME: kilometres at a load factor of 1, which catalogues state as 40 to 1000
 BASIC_LIFE = (10.0, 2e4)
 LARGER_UNITS = {"N": "kN", "N mm": "Nm"}
+# ASSUME: sizes [mm] and strengths [MPa] between which those of studs and axles lie
+STUD = {
+    "diameter": (2.0, 300.0),
+    "length": (1.0, 1000.0),
+    "yield_strength": (50.0, 2500.0),
+    "tensile_strength": (50.0, 3000.0),
+}
+SHORT = 0.5  # ASSUME: diameters of free length below which a stud is no beam
 # share of the radial force below which a rating is asked about; 1 for the others
 SMALL = {"axial_force": 0.02}
 # ASSUME: width of measured points over the radius of the guide; inches as mm are below, micrometres
@@ -133,6 +141,7 @@ def doubts(values: Mapping[str, Any], materials: Iterable[Material] = ()) -> lis
                 sentences += [sentence_of_unusual(name, number, PROPERTIES[name].unit, usual, kind)]
         sentences += [_exponent(material, name) for name in ("woehler_exponent", "second_exponent")]
     sentences += ratings(values)
+    sentences += _studs(values)
     guide_radii = _numbers(values.get("guide_profile_radius", EXAMPLE["guide_profile_radius"]))
     for name in ("guide_profile", "roller_profile"):
         radius = next((r for r in guide_radii if r > 0.0), math.nan)
@@ -242,6 +251,22 @@ def ratings(values: Mapping[str, Any]) -> list[str]:
         if isinstance(life, (int, float)):
             out.append(sentence_of_unusual("catalogue.basic_life", life, "km", BASIC_LIFE, ""))
     return [text for text in dict.fromkeys(out) if text]
+
+
+def _studs(values: Mapping[str, Any]) -> list[str]:
+    """Return sentences about studs of an unusual size or strength, and about short ones."""
+    sentences = []
+    for stud in _mappings(values.get("stud")):
+        for name, usual in STUD.items():
+            if name in stud:
+                unit = "MPa" if "strength" in name else "mm"
+                sentences.append(sentence_of_unusual(f"stud.{name}", stud[name], unit, usual, ""))
+        if stud["length"] < SHORT * stud["diameter"]:
+            sentences.append(
+                f"stud.length = {stud['length']:g} mm is less than half the diameter; the stress "
+                "of so short a stud is not that of a beam."
+            )
+    return sentences
 
 
 def _mappings(value: Any) -> list[dict[str, Any]]:

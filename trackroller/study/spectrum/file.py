@@ -36,7 +36,7 @@ from trackroller.numerics.plain import mapping_of
 from trackroller.parameters import OF_LIMITS, PARAMETERS
 from trackroller.parameters import OPTIONS as SOLVE_OPTIONS
 from trackroller.parameters.example import used_of
-from trackroller.roller.aliases import ALIASES, renamed
+from trackroller.roller.aliases import OTHER_OPTIONS, WRITTEN, renamed, with_options
 from trackroller.roller.case import FIELDS, Case
 from trackroller.roller.duty import (
     OVERROLLINGS,
@@ -191,7 +191,9 @@ class Spectrum:
         wrong = Collector()
         fields: dict[str, Any] = {}
         with wrong.part():
-            check_names("spectrum: key", values, FILE_FIELDS)
+            values = with_options(values)
+        with wrong.part():
+            check_names("spectrum: key", values, (*FILE_FIELDS, *OTHER_OPTIONS))
         with wrong.part():
             fields["blocks"], fields["by_share"] = _blocks(
                 values.get("blocks"), values.get("base") or {}
@@ -215,7 +217,9 @@ class Spectrum:
                 left_out = {"not_checked": others([*np.atleast_1d(values["limits"])])}
         with wrong.part():
             fields["options"] = left_out | {key: values[key] for key in OPTIONS if key in values}
-            Options(**fields["options"])  # checked before any case is solved
+            checked = Options(**fields["options"])  # before any case is solved
+            numbers = [key for key in fields["options"] if SOLVE_OPTIONS[key].kind == "number"]
+            fields["options"] |= {key: getattr(checked, key) for key in numbers}
         with wrong.part():
             fields["name"] = text_of(values.get("name"), "name", "spectrum")
         with wrong.part():
@@ -277,7 +281,7 @@ def load_spectrum(path: Path | str) -> Spectrum:
     path = Path(path)
     text = read_text(path, "load spectrum")
     values = parse_mapping(text, str(path))
-    with errors_by_line(text, aliases=ALIASES), files_beside(path):
+    with errors_by_line(text, aliases=WRITTEN), files_beside(path):
         return Spectrum.from_dict({"name": path.stem} | values)
 
 
