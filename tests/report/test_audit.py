@@ -118,6 +118,6 @@ def test_the_random_studies_hold_what_they_must():
     files = [random_file(seed) for seed in range(40)]
     pairs = list(itertools.chain(*(f["factors"].get("material_pair", {}).get("values", []) for f in files)))
     assert any("PA6" in pair for pair in pairs) and any("POM" in pair for pair in pairs)
-    for key in ("constraints", "analysis", "design"):
+    for key in ("constraints", "analysis", "method"):
         assert 0 < sum(key in f for f in files) < len(files)
     assert 0 < sum("guide_overrollings_per_hour" in f["base"] for f in files) < len(files)
