@@ -265,24 +265,36 @@ def of_worst_rollers(
         this case, -1 for a row without one. A roller that does not roll in a load case is the worst
         one. A row that the rollers do not hold has the regime lift-off, and its `reason` says why.
     """
-    names, rollers = np.unique(cases[ROLLER].values.astype(str), return_inverse=True)
-    group = cases[ROW].values * len(names) + rollers
-    kmh = 0.06 * cases["velocity"].values
-    lives = Lives(group, cases[SHARE].values, kmh, cases[HOURS].values, solved)
+    lives = _lives_of_rollers(cases, solved)
     row = cases[ROW].values[lives.first]
     order = np.lexsort((lives.rank, row))
     worst = order[np.unique(row[order], return_index=True)[1]]  # the first one of each row
     worst_case = np.full(design.size, -1)
     worst_case[row[worst]] = lives.ruling[worst]
-    has_worst = worst_case >= 0
     shown = lives.solved.isel(case=np.maximum(worst_case, 0)).copy(deep=True)
     for name, values in lives.summed.items():
         full = shown[name].values
         full[row[worst]] = values[worst]
         shown[name].values = full
     reasons = {int(i): text for i, text in json.loads(cases.attrs.get(REASONS, "{}")).items()}
-    _without_results(shown, ~has_worst, [reasons.get(i, "") for i in range(design.size)])
-    plain = build(config, design, materials)
+    _without_results(shown, worst_case < 0, [reasons.get(i, "") for i in range(design.size)])
+    plain = _with_worst_loads(build(config, design, materials), cases, worst_case)
+    return plain.assign_coords(case=worst_case), shown.assign_coords(case=worst_case)
+
+
+def _lives_of_rollers(cases: xr.Dataset, solved: xr.Dataset) -> Lives:
+    """Return the lives of all rollers of all rows over their load cases."""
+    names, rollers = np.unique(cases[ROLLER].values.astype(str), return_inverse=True)
+    group = cases[ROW].values * len(names) + rollers
+    kmh = 0.06 * cases["velocity"].values
+    return Lives(group, cases[SHARE].values, kmh, cases[HOURS].values, solved)
+
+
+def _with_worst_loads(plain: xr.Dataset, cases: xr.Dataset, worst_case: np.ndarray) -> xr.Dataset:
+    """Return the rows of a design with the parameters of the worst case of each row, and the names
+    of its roller and load case; -1 stands for a row without one.
+    """
+    has_worst = worst_case >= 0
     for name in (*PARAMETERS, *MATERIAL_FIELDS):
         if name in cases and not np.array_equal(cases[name].values, plain[name].values):
             values = cases[name].values[np.maximum(worst_case, 0)]
@@ -298,7 +310,7 @@ def of_worst_rollers(
         plain = plain.assign_coords(
             {f"worst_{name.removeprefix('carriage_')}": ("case", values, {"long_name": label})}
         )
-    return plain.assign_coords(case=worst_case), shown.assign_coords(case=worst_case)
+    return plain
 
 
 def _without_results(shown: xr.Dataset, rows: np.ndarray, reasons: list[str]) -> None:
