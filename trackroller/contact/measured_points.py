@@ -164,16 +164,22 @@ def _curvatures(x: np.ndarray, z: np.ndarray, apart: int) -> np.ndarray:
 
 
 def _changes(values: np.ndarray, least: float) -> list[float]:
-    """Return the changes of at least `least` between the places where values turn."""
+    """Return the heights between neighbouring extremes of a course; a turn back by less than
+    `least` is no extreme.
+    """
     changes: list[float] = []
-    start = extreme = float(values[0])
-    way = 0.0
+    last_extreme = float(values[0])
+    extreme = last_extreme
+    direction = 0.0  # 1 while the course rises, -1 while it falls, 0 before it has moved by `least`
     for value in values.tolist():
-        if way * (value - extreme) > 0.0:
+        if direction * (value - extreme) > 0.0:
             extreme = value
         elif abs(value - extreme) >= least:
-            changes += [abs(extreme - start)] if way else []
-            start, extreme, way = extreme, value, float(np.sign(value - extreme))
+            if direction != 0.0:
+                changes.append(abs(extreme - last_extreme))
+            last_extreme = extreme
+            direction = float(np.sign(value - extreme))
+            extreme = value
     return changes
 
 

@@ -214,12 +214,17 @@ def _with_points(cells: Sequence[str]) -> Sequence[str]:
 
 
 def _are_plain(cells: Sequence[str], signs: Collection[str]) -> bool:
-    """Return whether the numbers of a column are plain, which is seen at once; words are no
-    numbers.
+    """Return whether all cells of a column are numbers with at most one point, so that no cell has
+    to be read by itself.
+
+    The cells are searched as one text, which is fast. `signs` are the decimal signs of the column;
+    a point beside another one separates thousands.
     """
     text = "\n".join(cells)
-    points = "." not in text or set(signs) == {"."}
-    return points and not _NO_NUMBERS.search(text) and not re.search(r"\.\d*\.", text)
+    if "." in text and set(signs) != {"."}:
+        return False
+    has_two_points = re.search(r"\.\d*\.", text)
+    return not has_two_points and not _NO_NUMBERS.search(text)
 
 
 def _plain_or_refused(cell: str, signs: Collection[str]) -> str:

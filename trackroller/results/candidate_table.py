@@ -392,12 +392,20 @@ def _end_words(own: Comparison, case: np.ndarray, end: str) -> tuple[list[str], 
 
 
 def _conditions_with(own: Comparison, rows: np.ndarray) -> np.ndarray:
-    """Return the number of conditions of each candidate with one of some cases, shape
-    (candidates,).
+    """Count for each candidate the conditions that have at least one of the marked cases.
+
+    Parameters
+    ----------
+    rows : bool, shape (cases,)
+
+    Returns
+    -------
+    Numbers of conditions, shape (candidates,).
     """
-    pair = own.pairs[2]
-    hit = np.bincount(pair[rows & own.own], minlength=len(own.pairs[0])) > 0
-    return own.counted(hit)
+    candidate_of_pair, _, pair_of_case = own.pairs
+    marked = pair_of_case[rows & own.own]
+    has_case = np.bincount(marked, minlength=len(candidate_of_pair)) > 0
+    return own.counted(has_case)
 
 
 def _counts(own: Comparison) -> dict[str, Any]:

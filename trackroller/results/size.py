@@ -34,7 +34,7 @@ from trackroller.roller.aliases import OTHER_OPTIONS, with_options
 from trackroller.roller.duty import OVERROLLINGS
 from trackroller.roller.requirement import DEFAULT
 from trackroller.study.design.carriage_cases import common_values
-from trackroller.study.file.config import IN_STUDY, NAME
+from trackroller.study.file.config import IN_STUDY
 from trackroller.study.file.load import load_study
 from trackroller.study.file.shelf import (
     ROLLER,
@@ -436,14 +436,6 @@ def _with_failures(keys: Mapping[str, Any], failures: str | float) -> dict[str, 
             places[place] = {**entry, "roller": roller}
         out["carriage"] = whole | {"rollers": places}
     return out
-
-
-def _name(case: str, shelf: str) -> str:
-    """Return the name of the study of a case and a shelf, which names its folder."""
-    name = "-".join(("size", case, shelf))[:50].rstrip(".")
-    if NAME.fullmatch(name) and ".." not in name:
-        return name
-    return "size"
 
 
 def _overloaded(keys: Mapping[str, Any], safety: str | float) -> dict[str, Any]:

@@ -390,44 +390,42 @@ def _named(design: Any) -> Any:
         design = design.rename({name: ALIASES[name] for name in short})
     # it is refused above
     design = design.drop_vars([name for name in short if name in design.variables])
-    known = {*FIELDS}
+    known = {*FIELDS, *OPTIONS, "case"}
+    known |= {dim for name in FIELDS if name in design.variables for dim in design[name].dims}
     attributes = design.attrs
     if of_study:
         known |= {*design.coords}
         attributes = {}
-    along = {
-        "case",
-        *(dim for name in FIELDS if name in design.variables for dim in design[name].dims),
-    }
     for name in map(str, design.variables):
         with wrong.part():
-            if name in OPTIONS and name not in design.coords:
-                remedy = f"Write ds.set_coords('{name}'), or give {name} to tr.solve."
-                raise InputError(
-                    name,
-                    "a variable",
-                    "an option of each case is a coordinate along 'case'",
-                    remedy,
-                )
-            if name not in known and name not in OPTIONS and name not in along:
-                raise _unknown(name, design.coords)
-            if name in FIELDS and set(design[name].dims) - {"case"}:
-                raise InputError(name, tuple(design[name].dims), *_along_case(design[name].dims))
-    for name in map(str, attributes):
+            _check_variable(design, name, known)
+    for name, value in attributes.items():
         with wrong.part():
-            if name in (*FIELDS, *ALIASES, *RADII, "material_pair"):
-                remedy = f"Write ds.assign({name}={design.attrs[name]!r})."
-                raise InputError(
-                    name, "an attribute", "a parameter is a variable of the data set", remedy
-                )
-            if name in OPTIONS:
-                remedy = (
-                    f"Give it to the call: tr.solve(ds, {name}={design.attrs[name]!r}), and "
-                    "remove the attribute."
-                )
-                raise InputError(name, "an attribute", "an argument of tr.solve", remedy)
+            _check_attribute(str(name), value)
     wrong.check()
     return design
+
+
+def _check_variable(design: Any, name: str, known: Container[Hashable]) -> None:
+    """Refuse a variable that is neither a parameter along `case` nor an option as a coordinate."""
+    if name in OPTIONS and name not in design.coords:
+        remedy = f"Write ds.set_coords('{name}'), or give {name} to tr.solve."
+        allowed = "an option of each case is a coordinate along 'case'"
+        raise InputError(name, "a variable", allowed, remedy)
+    if name not in known:
+        raise _unknown(name, design.coords)
+    if name in FIELDS and set(design[name].dims) - {"case"}:
+        raise InputError(name, tuple(design[name].dims), *_along_case(design[name].dims))
+
+
+def _check_attribute(name: str, value: Any) -> None:
+    """Refuse an attribute that gives a parameter or an option."""
+    if name in (*FIELDS, *ALIASES, *RADII, "material_pair"):
+        remedy = f"Write ds.assign({name}={value!r})."
+        raise InputError(name, "an attribute", "a parameter is a variable of the data set", remedy)
+    if name in OPTIONS:
+        remedy = f"Give it to the call: tr.solve(ds, {name}={value!r}), and remove the attribute."
+        raise InputError(name, "an attribute", "an argument of tr.solve", remedy)
 
 
 def _unknown(name: str, coordinates: Container[Hashable]) -> InputError:

@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     from trackroller.carriage.file import Carriage
     from trackroller.materials import MaterialDatabase
     from trackroller.methods import Design
+    from trackroller.roller.case import Case
     from trackroller.study.file.config import StudyFile
 
 ROW = "design_row"
@@ -96,74 +97,67 @@ def expanded(
         of the travel, and hours that the whole carriage travels for a km. The attribute `REASONS`
         says why a row has no cases.
     """
-    places, reasons = _loads(design, whole)
-    number = places["roller"]
-    shares = np.array([case.share for case in whole.cases])
+    loads, reasons = _loads(design, whole)
     parts = []
     order = []
-    hours = []
     for j, roller in enumerate(whole.rollers):
-        own = np.flatnonzero(number == j)
-        if not len(own) or roller.case is None:
-            continue
-        rows = places["row"][own]
-        given = {name: values[rows] for name, values in design.columns.items()}
-        base = {
-            name: v for name, v in roller.case.as_dict().items() if v is not None and v != ""
-        } | config.base
-        columns, friction = columns_of(base, given, len(own), materials)
-        for name in LOADS:
-            columns[name] = places[name][own]
-        velocity = columns["velocity"].astype(float)
-        speed = places["speed"][own]
-        hours.append(hours_per_km(shares, places["speeds"][own], velocity))
-        columns["velocity"] = np.where(np.isnan(speed), velocity, 60 * speed)
-        if np.isfinite(whole.stroke):
-            columns[OVERROLLINGS] = overrollings_per_hour(
-                places["passes"][own], columns["velocity"]
-            )
-        parts.append(dataset_of(columns, given.get("material_pair"), {}, friction))
-        order.append(own)
+        own = np.flatnonzero(loads["roller"] == j)
+        if len(own) and roller.case is not None:
+            own_loads = {name: values[own] for name, values in loads.items()}
+            parts.append(_cases_of_roller(config, design, materials, whole, roller.case, own_loads))
+            order.append(own)
     if not parts:
+        allowed = "a carriage that its rollers hold in a row of the design"
         first = next(iter(reasons.values()), "no roller carries load")
-        raise InputError(
-            "carriage",
-            whole.name,
-            "a carriage that its rollers hold in a row of the design",
-            "",
-            first,
-        )
+        raise InputError("carriage", whole.name, allowed, "", first)
     sort = np.argsort(np.concatenate(order))
-    cases = xr.concat(
-        [part.drop_vars("case") for part in parts], "case", combine_attrs="override"
-    ).isel(case=sort)
-    words = {"long_name": "case number", "units": "1"}
-    coords: dict[str, Any] = {
-        "case": ("case", np.arange(len(sort)), words),
-        ROW: ("case", places["row"], {"long_name": "row of the design", "units": "1"}),
-        ROLLER: (
-            "case",
-            _names([r.name for r in whole.rollers], number),
-            {"long_name": "roller of the carriage"},
-        ),
-        LOAD_CASE: (
-            "case",
-            _names([case.name for case in whole.cases], places["load_case"]),
-            {"long_name": "load case of the carriage"},
-        ),
-        SHARE: (
-            "case",
-            shares[places["load_case"]],
-            {"long_name": "share of the travel", "units": "1"},
-        ),
-        HOURS: (
-            "case",
-            np.concatenate(hours)[sort],
-            {"long_name": "hours of travel for a km", "units": "h km-1"},
-        ),
-    }
+    cases = xr.concat(parts, "case", combine_attrs="override").isel(case=sort)
+    coords = _places_of_cases(whole, loads) | {HOURS: cases[HOURS].variable}
     attrs = {"study_name": config.name, "seed": config.seed, REASONS: json.dumps(reasons)}
-    return marked(cases.assign_coords(coords).assign_attrs(attrs), config)
+    cases = cases.drop_vars(HOURS).assign_coords(coords).assign_attrs(attrs)
+    return marked(cases, config)
+
+
+def _cases_of_roller(
+    config: StudyFile,
+    design: Design,
+    materials: MaterialDatabase,
+    whole: Carriage,
+    case: Case,
+    loads: Mapping[str, np.ndarray],
+) -> xr.Dataset:
+    """Return the cases of one roller under its loads in all rows, without their numbers."""
+    base = {
+        name: v for name, v in case.as_dict().items() if v is not None and v != ""
+    } | config.base
+    given = {name: values[loads["row"]] for name, values in design.columns.items()}
+    columns, friction = columns_of(base, given, len(loads["row"]), materials)
+    for name in LOADS:
+        columns[name] = loads[name]
+    shares = np.array([case.share for case in whole.cases])
+    velocity = columns["velocity"].astype(float)
+    hours = hours_per_km(shares, loads["speeds"], velocity)
+    columns["velocity"] = np.where(np.isnan(loads["speed"]), velocity, 60 * loads["speed"])
+    if np.isfinite(whole.stroke):
+        columns[OVERROLLINGS] = overrollings_per_hour(loads["passes"], columns["velocity"])
+    cases = dataset_of(columns, given.get("material_pair"), {}, friction).drop_vars("case")
+    words = {"long_name": "hours of travel for a km", "units": "h km-1"}
+    return cases.assign_coords({HOURS: ("case", hours, words)})
+
+
+def _places_of_cases(whole: Carriage, loads: Mapping[str, np.ndarray]) -> dict[str, Any]:
+    """Return number, row, roller, load case and share of the travel of all cases."""
+    rollers = _names([roller.name for roller in whole.rollers], loads["roller"])
+    load_cases = _names([case.name for case in whole.cases], loads["load_case"])
+    shares = np.array([case.share for case in whole.cases])[loads["load_case"]]
+    numbers = np.arange(len(shares))
+    return {
+        "case": ("case", numbers, {"long_name": "case number", "units": "1"}),
+        ROW: ("case", loads["row"], {"long_name": "row of the design", "units": "1"}),
+        ROLLER: ("case", rollers, {"long_name": "roller of the carriage"}),
+        LOAD_CASE: ("case", load_cases, {"long_name": "load case of the carriage"}),
+        SHARE: ("case", shares, {"long_name": "share of the travel", "units": "1"}),
+    }
 
 
 def _names(names: list[str], numbers: np.ndarray) -> np.ndarray:
@@ -271,24 +265,36 @@ def of_worst_rollers(
         this case, -1 for a row without one. A roller that does not roll in a load case is the worst
         one. A row that the rollers do not hold has the regime lift-off, and its `reason` says why.
     """
-    names, rollers = np.unique(cases[ROLLER].values.astype(str), return_inverse=True)
-    group = cases[ROW].values * len(names) + rollers
-    kmh = 0.06 * cases["velocity"].values
-    lives = Lives(group, cases[SHARE].values, kmh, cases[HOURS].values, solved)
+    lives = _lives_of_rollers(cases, solved)
     row = cases[ROW].values[lives.first]
     order = np.lexsort((lives.rank, row))
     worst = order[np.unique(row[order], return_index=True)[1]]  # the first one of each row
     worst_case = np.full(design.size, -1)
     worst_case[row[worst]] = lives.ruling[worst]
-    has_worst = worst_case >= 0
     shown = lives.solved.isel(case=np.maximum(worst_case, 0)).copy(deep=True)
     for name, values in lives.summed.items():
         full = shown[name].values
         full[row[worst]] = values[worst]
         shown[name].values = full
     reasons = {int(i): text for i, text in json.loads(cases.attrs.get(REASONS, "{}")).items()}
-    _without_results(shown, ~has_worst, [reasons.get(i, "") for i in range(design.size)])
-    plain = build(config, design, materials)
+    _without_results(shown, worst_case < 0, [reasons.get(i, "") for i in range(design.size)])
+    plain = _with_worst_loads(build(config, design, materials), cases, worst_case)
+    return plain.assign_coords(case=worst_case), shown.assign_coords(case=worst_case)
+
+
+def _lives_of_rollers(cases: xr.Dataset, solved: xr.Dataset) -> Lives:
+    """Return the lives of all rollers of all rows over their load cases."""
+    names, rollers = np.unique(cases[ROLLER].values.astype(str), return_inverse=True)
+    group = cases[ROW].values * len(names) + rollers
+    kmh = 0.06 * cases["velocity"].values
+    return Lives(group, cases[SHARE].values, kmh, cases[HOURS].values, solved)
+
+
+def _with_worst_loads(plain: xr.Dataset, cases: xr.Dataset, worst_case: np.ndarray) -> xr.Dataset:
+    """Return the rows of a design with the parameters of the worst case of each row, and the names
+    of its roller and load case; -1 stands for a row without one.
+    """
+    has_worst = worst_case >= 0
     for name in (*PARAMETERS, *MATERIAL_FIELDS):
         if name in cases and not np.array_equal(cases[name].values, plain[name].values):
             values = cases[name].values[np.maximum(worst_case, 0)]
@@ -304,7 +310,7 @@ def of_worst_rollers(
         plain = plain.assign_coords(
             {f"worst_{name.removeprefix('carriage_')}": ("case", values, {"long_name": label})}
         )
-    return plain.assign_coords(case=worst_case), shown.assign_coords(case=worst_case)
+    return plain
 
 
 def _without_results(shown: xr.Dataset, rows: np.ndarray, reasons: list[str]) -> None:

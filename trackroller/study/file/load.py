@@ -358,8 +358,10 @@ def _checked_study(
     with wrong.part():
         config = checked_keys(data)
     if wrong.errors:
+        # unknown materials are told beside wrong keys: otherwise they would be told one run later
+        base = _mapping(data.get("base"))
+        factors = _mapping(data.get("factors"))
         with wrong.part():
-            base, factors = (_mapping(data.get(key)) for key in ("base", "factors"))
             named_materials(base, factors, database or load_database())
         wrong.check()
     study = complete(Study(config, path, database, inputs))
