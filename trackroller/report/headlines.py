@@ -206,7 +206,6 @@ def _cannot_tell(answer: Answer) -> str:
 
 
 CAUSES = {
-    "chance": "no material has a life at this failure probability",
     "model": "the model does not judge every condition of a candidate",
     "conditions": "candidates share no condition",
     "materials": "a material lacks the life that others have",
@@ -605,11 +604,6 @@ def _unknown_hours(answer: Answer) -> list[str]:
     """Say whose hours are not known; they count for nothing then."""
     head = answer.headline
     clauses = [f"the hours of the {head['unknown']} are not known"] if head["unknown"] else []
-    if head["unrated"]:
-        whose = "" if len(head["unrated"]) > 1 else f" of the {head['unrated'][0]}"
-        clauses.append(
-            f"fatigue{whose} at {percent(answer.facts['probability'])} failed is not known"
-        )
     return clauses
 
 

@@ -52,7 +52,7 @@ def answer_how_sure(results: SolvedCases) -> Answer:
     kind = "share" if own.drawn else "count"
     if not own.ranges.judged[own.own].any():
         kind = "cannot_tell"
-        told |= {"why": own.why_unjudged}
+        told |= {"why": "model"}
     return Answer(
         question="how sure",
         kind=kind,
