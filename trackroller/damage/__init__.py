@@ -14,6 +14,7 @@ from trackroller.damage import (
     heat,
     multiaxial,
     own,
+    pressure_line,
     rating,
     shakedown,
     static,
@@ -23,7 +24,18 @@ from trackroller.damage import (
 from trackroller.damage.limit import Limit
 from trackroller.errors import InputError, check_names
 
-_FILES = (static, fatigue, rating, bearing, catalogue, shakedown, heat, wear, multiaxial)
+_FILES = (
+    static,
+    fatigue,
+    pressure_line,
+    rating,
+    bearing,
+    catalogue,
+    shakedown,
+    heat,
+    wear,
+    multiaxial,
+)
 LIMITS: dict[str, Limit] = {file.LIMIT.name: file.LIMIT for file in _FILES}
 
 

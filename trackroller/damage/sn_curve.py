@@ -105,6 +105,22 @@ def _of_line(points: Any) -> np.ndarray:
     )
 
 
+def log_deviates(failure_probability: ArrayLike) -> np.ndarray:
+    """Return by which power of T_N a life at a failure probability differs from the median life.
+
+    The life is log-normal (DIN 50100:2016): u/2.563 with the standard normal deviate u.
+
+    Examples
+    --------
+    >>> log_deviates([0.1, 0.5, 0.9]).round(12).tolist()
+    [-0.5, 0.0, 0.5]
+    """
+    # heavy, and most curves hold for a failure probability of 50 %
+    from scipy.special import ndtri
+
+    return np.asarray(ndtri(np.asarray(failure_probability, dtype=float)) / DEVIATES_10_TO_90)
+
+
 def typical_scatter(place: ArrayLike, failure_probability: float) -> np.ndarray:
     """Return T_N at a place in the range of `TYPICAL_SCATTER` [1].
 
@@ -331,11 +347,8 @@ class SNCurve:
         _, limit, _, knee = self._points
         if not np.any(np.asarray(self.failure_probability) != 0.5):
             return limit, knee
-        # heavy, and most curves hold for a failure probability of 50 %
-        from scipy.special import ndtri
-
         t_n, t_s = self.scatter_ranges
-        deviate = ndtri(np.asarray(self.failure_probability, dtype=float)) / DEVIATES_10_TO_90
+        deviate = log_deviates(self.failure_probability)
         fall = t_s**deviate
         # The curve moves along with the strength. If T_N is larger than this move gives, it also
         # moves in cycles.

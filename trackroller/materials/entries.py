@@ -12,6 +12,7 @@ from trackroller.damage.own import check_fields
 from trackroller.errors import Collector, InputError, check_names, checked_text, unknown_name
 from trackroller.materials.energy_wear import FIELD as ENERGY_WEAR
 from trackroller.materials.material import UNNAMED, Material, contradictions
+from trackroller.materials.pressure_line import with_line_of_hardness
 from trackroller.materials.properties import ALTERNATIVES, PROPERTIES, REQUIRED, Value, check_number
 from trackroller.materials.sn_curve import (
     CURVE,
@@ -186,6 +187,7 @@ class EntryParser:
             like = name
         base = known.get(like)
         records, points = self._with_curve(where, entry, given, base)
+        records = with_line_of_hardness(records, where)
         missing = [key for key in REQUIRED if key not in records]
         if missing:
             remedy = "Give these values, or write `like: NAME` to take them from another material."
