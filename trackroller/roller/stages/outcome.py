@@ -60,9 +60,11 @@ def solved_of(
     """Return cases, materials and results as the limits receive them."""
     fields = [field.name for field in dataclasses.fields(table.roller)]
     names = [name for name in fields if name not in TEXTS or name == "sn_points"]
+    cases = {name: getattr(table, name) for name in (*PARAMETERS, *MAPPING_FIELDS)}
+    if options.wear_law == "energy":  # with another law a table of the materials serves nothing
+        cases[WEAR_TABLE.name] = table.loss_tables
     return SolvedRollers(
-        {name: getattr(table, name) for name in (*PARAMETERS, *MAPPING_FIELDS)}
-        | {WEAR_TABLE.name: table.loss_tables},
+        cases,
         {
             name: np.array([getattr(body, name) for body in (table.roller, table.guide)]).T
             for name in names
