@@ -11,7 +11,7 @@ import yaml
 
 import trackroller as tr
 from trackroller.report.headlines import headline_of
-from trackroller.results.places import places_of
+from trackroller.results.subgroups import places_of
 from trackroller.roller.requirement import Requirement
 
 LIFE = "pair_life_to_first_limit_hours"

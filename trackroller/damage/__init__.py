@@ -18,6 +18,7 @@ from trackroller.damage import (
     rating,
     shakedown,
     static,
+    stud,
     verdict,
     wear,
 )
@@ -35,6 +36,7 @@ _FILES = (
     heat,
     wear,
     multiaxial,
+    stud,
 )
 LIMITS: dict[str, Limit] = {file.LIMIT.name: file.LIMIT for file in _FILES}
 

@@ -36,6 +36,13 @@ WARNINGS = {  # code -> what it means
 STATES = ("met", "open", "missed", "none")
 
 
+def yes_or_blank(true: bool) -> str:
+    """Return the cell of a column that marks some rows: 'yes', or '' where it does not hold."""
+    if true:
+        return "yes"
+    return ""
+
+
 @dataclass(frozen=True)
 class Column:
     """A column of the table of an answer.
