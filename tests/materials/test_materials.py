@@ -22,7 +22,7 @@ from trackroller.materials import (
     load_database,
 )
 from trackroller.materials.file import BUILTIN_FILE, MATERIALS, build_database
-from trackroller.materials.properties import OF_LIMITS, REQUIRED
+from trackroller.materials.properties import MARKS, OF_LIMITS, REQUIRED
 from trackroller.materials.tables import friction_rows, material_details, material_rows
 from trackroller.roller.case import Case, to_table
 
@@ -190,6 +190,44 @@ def test_every_builtin_value_has_unit_source_and_mark():
         for name in filter(material.__contains__, OF_LIMITS):
             low, high = material[name].get("range", (0, 1))
             assert low < high and ("range" in material[name] or name in ("rolling_cycles", "rolling_exponent"))
+
+
+def test_every_builtin_value_says_how_it_was_taken_from_its_source(db):
+    records = [record for name in db.names() for record in db.material(name).records.values()]
+    records += [record for levels in db.friction_table.values() for record in levels.values()]
+    records += [record for classes in db.wear_table.values() for record in classes.values()]
+    assert len(records) > 400
+    for record in records:
+        assert record.mark in MARKS, record
+        assert (record.mark == "guess") == ("no source named" in record.source), record
+        assert record.mark != "guess" or record.placeholder
+        if "second hand" in record.source:
+            assert record.mark == "second hand", record
+    sources = yaml.safe_load(BUILTIN_FILE.read_text(encoding="utf-8"))
+    marked = [name for names in sources["marks"].values() for name in names]
+    assert sorted(marked) == sorted(sources["sources"])  # each source once
+    guesses = [record for record in records if record.placeholder]
+    assert len(guesses) < 0.65 * len(records)
+    rows = {row["field"]: row["mark"] for row in material_details(db, "C45")}
+    assert (rows["youngs_modulus"], rows["fatigue_limit_torsion"], rows["rolling_pressure"]) == (
+        "table",
+        "guess",
+        "formula",
+    )
+
+
+def test_a_mark_of_a_user_is_checked(user):
+    text = "sources: {own: tests of March}\nmarks: {table: [own]}\n"
+    own = load_database(user(text + "materials: {POM: {youngs_modulus: {value: 2900, source: own}}}"))
+    assert own.material("POM").records["youngs_modulus"].mark == "table"
+    for wrong, message in (
+        ("marks: {printed: [own]}", "'printed' is not known"),
+        ("marks: {table: [other]}", "'other' is not known"),
+        ("marks: {table: own}", "a list of names of sources"),
+        ("materials: {POM: {youngs_modulus: {value: 2900, mark: printed}}}", "'printed' is not known"),
+    ):
+        with pytest.raises(InputError, match=message):
+            load_database(user("sources: {own: tests of March}\n" + wrong))
 
 
 def test_friction_by_material_material_object_and_family(db):

@@ -59,7 +59,8 @@ def with_line_of_hardness(records: Mapping[str, Value], where: str) -> dict[str,
     ends = np.sort(pressure_of_hardness(out["hardness"].value))
     low, high = float(ends[0]), float(ends[1])
     pressure = float(np.sqrt(low * high))
-    line = Value(pressure, "MPa", BY_HARDNESS, True, "by hardness", origin, (low, high))
+    span = (low, high)
+    line = Value(pressure, "MPa", BY_HARDNESS, True, "by hardness", origin, span, "formula")
     exact = replace(line, placeholder=False, note="", range=None, unit="-")
     out["rolling_pressure"] = line
     out["rolling_cycles"] = replace(exact, value=CYCLES)
