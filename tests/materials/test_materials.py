@@ -162,6 +162,16 @@ def test_wear_of_a_plastic_on_steel_asks_for_a_measurement(db, body):
     assert guess.note == "on 42CrMo4+QT-100, measure" and guess.range is not None
 
 
+@pytest.mark.parametrize(("body", "rates"), [("POM-H", (2.5e-7, 7.5e-7)), ("PA66-dry", (2.5e-7, 1.3e-6))])
+def test_wear_of_plastics_on_steel_holds_the_standard_test(db, body, rates):
+    """Depths an hour [m/h] at 0.0875 MPa m/s, which is 315 MPa m an hour: k is the depth over pressure and travel."""
+    record = db.on(body, "C45").records["wear_coefficient"]
+    measured = [1e3 * rate / (0.0875 * 3600) for rate in rates]  # mm over MPa m is mm3/(N m)
+    assert record.range[0] <= measured[0] and measured[1] <= record.range[1]
+    assert measured[0] <= record.value <= measured[1] * 1.01
+    assert record.source.startswith("ASTM D3702") and record.placeholder and record.mark == "derived"
+
+
 def test_every_builtin_material_solves(db):
     case = {"guide_material": "42CrMo4+QT-40", "radial_force": -20, "axial_force": 0, "motor_force": 0}
     cases = [Case(**case, roller_material=name, friction_coefficient="typical") for name in db.names()]
