@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import trackroller as tr
+from trackroller.damage.pressure_line import pressure_of_hardness
 from trackroller.damage.rating import contacts_to_limit, static_pressure
 from trackroller.errors import InputError
 from trackroller.materials import load_database
@@ -102,12 +103,16 @@ def test_placeholders_are_one_warning_for_a_material_and_a_row_for_each_value():
     part = placeholders_part(ds)
     rows = part.table[part.table["limit"] != ""]
     found = [(row.material, row.limit, row.value, row.low, row.high, row.units) for row in rows.itertuples()]
+    line = tuple(float(f"{end:g}") for end in pressure_of_hardness(215.0))
     assert found == [
+        ("1.7225-normalised", "pressure line", "rolling_pressure", *line, "MPa"),
         ("1.7225-normalised", "rating", "hardness", 200.0, 240.0, "HB"),
         ("1.7225-normalised", "shakedown", "yield_strength", 400.0, 550.0, "MPa"),
     ]
     (caution,) = guess_cautions(part)
-    assert caution.where == "1.7225-normalised: 2 values; rating and shakedown rest on them; see its notes"
+    assert caution.where == (
+        "1.7225-normalised: 3 values; pressure line, rating and shakedown rest on them; see its notes"
+    )
 
 
 def test_a_warning_counts_the_guesses_of_a_material_and_the_table_has_its_notes():

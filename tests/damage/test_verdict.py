@@ -13,6 +13,7 @@ from trackroller.cli.main import app
 from trackroller.damage import LIMITS, limits_of, others
 from trackroller.damage import judged as judged_limits
 from trackroller.damage.limit import Limit, SolvedRollers, Verdict
+from trackroller.damage.sn_curve import TYPICAL_SCATTER
 from trackroller.damage.verdict import ENDS, STATES, states, verdict
 from trackroller.errors import InputError
 from trackroller.parameters import BODIES, FIRST_TO_FAIL, REGIMES
@@ -139,14 +140,55 @@ def test_the_data_set_tells_the_first_limit_in_flags():
     assert hours == pytest.approx(ds.roller_life_hours.values) and ds.attrs["limits_notes"] == ""
 
 
-def test_another_failure_probability_needs_the_scatter_of_the_material():
+def test_another_failure_probability_takes_the_scatter_of_the_material_or_the_typical_one():
     case = {"motor_force": 0, "guide_overrollings_per_hour": 500}
     scattered = {"like": "1.7225-normalised", "scatter_in_cycles": 4.0}
     options = {"outputs": ("life", "limits"), "contact_model": "sliding", "failure_probability": 0.1}
     ds = tr.solve(tr.Case(**case, roller_material=scattered), **options)
-    hours = ds.life_hours_by_limit.sel(limit="fatigue")
-    assert hours.sel(body="roller") == pytest.approx(float(ds.roller_life_hours) / 2.0, rel=1e-12)  # 4^-1/2
-    assert np.isnan(hours.sel(body="guide")) and "has no scatter_in_cycles" in ds.attrs["limits_notes"]
+    ends = [ds[f"life_hours_by_limit{end}"].sel(limit="fatigue") for end in ("", "_low", "_high")]
+    for hours in ends:  # a known scatter gives one life
+        assert hours.sel(body="roller") == pytest.approx(float(ds.roller_life_hours) / 2.0, rel=1e-12)  # 4^-1/2
+    for hours, scatter in zip(ends, (10.0, 16.1, 5.2), strict=True):
+        assert hours.sel(body="guide") == pytest.approx(float(ds.guide_life_hours) / scatter**0.5, rel=1e-12)
+    told = "placeholders of material '1.7225-normalised': scatter_in_cycles (typical of S-N tests and of bearings"
+    assert told in ds.attrs["limits_notes"] and "expected from 5.2 to 16.1" in ds.attrs["limits_notes"]
+    # the stress that the fatigue limit allows falls with the scatter of the strength, T_N^(1/k)
+    k = tr.load_database().material("1.7225-normalised").woehler_exponent
+    used = float(ds.utilisation.sel(limit="fatigue", body="guide"))
+    median = tr.solve(tr.Case(**case, roller_material=scattered), **options | {"failure_probability": 0.5})
+    assert used == pytest.approx(float(median.utilisation.sel(limit="fatigue", body="guide")) * 10 ** (0.5 / k))
+    assert (
+        median.life_hours_by_limit_low.sel(limit="fatigue") == median.life_hours_by_limit.sel(limit="fatigue")
+    ).all()
+    assert "scatter_in_cycles" not in median.attrs["limits_notes"]
+
+
+@pytest.mark.parametrize(("probability", "worse", "better"), [(0.05, 16.1, 5.2), (0.9, 5.2, 16.1)])
+def test_the_typical_scatter_moves_with_the_placeholders(probability, worse, better):
+    """A given place of the placeholders gives one life; without it the life has the range between both ends."""
+    from scipy.stats import norm
+
+    case = {"motor_force": 0, "guide_overrollings_per_hour": 500}
+    options = {"outputs": ("life", "limits"), "contact_model": "sliding", "failure_probability": probability}
+    places = {-1.0: worse, 0.0: 10.0, 0.5: 10 + 0.5 * (better - 10), 1.0: better}
+    deviates = norm.ppf(probability) / (norm.ppf(0.9) - norm.ppf(0.1))
+    for place, scatter in places.items():
+        ds = tr.solve(tr.Case(**case, placeholder_position=place), **options)
+        lives = [ds[f"life_hours_by_limit{end}"].sel(limit="fatigue") for end in ("", "_low", "_high")]
+        expected = float(ds.roller_life_hours) * scatter**deviates
+        assert [float(one.sel(body="roller")) for one in lives] == pytest.approx([expected] * 3, rel=1e-9)
+    free = tr.solve(tr.Case(**case), **options)
+    low, high = (
+        float(free[f"life_hours_by_limit{end}"].sel(limit="fatigue", body="roller")) for end in ("_low", "_high")
+    )
+    median = float(free.roller_life_hours)
+    assert [low / median, high / median] == pytest.approx([worse**deviates, better**deviates], rel=1e-9)
+
+
+def test_the_typical_scatter_is_that_of_its_sources():
+    least, value, most = TYPICAL_SCATTER
+    assert most == pytest.approx((np.log(10) / np.log(10 / 9)) ** (1 / (10 / 9)), rel=3e-3)  # Weibull slope 10/9
+    assert value == pytest.approx(np.median([5.2, 6.8, 10.0, 10.8, most])) and least == 5.2
 
 
 def test_nothing_is_computed_that_was_not_asked_for():

@@ -22,7 +22,7 @@ from trackroller.materials import (
     load_database,
 )
 from trackroller.materials.file import BUILTIN_FILE, MATERIALS, build_database
-from trackroller.materials.properties import OF_LIMITS, REQUIRED
+from trackroller.materials.properties import MARKS, OF_LIMITS, REQUIRED
 from trackroller.materials.tables import friction_rows, material_details, material_rows
 from trackroller.roller.case import Case, to_table
 
@@ -162,6 +162,16 @@ def test_wear_of_a_plastic_on_steel_asks_for_a_measurement(db, body):
     assert guess.note == "on 42CrMo4+QT-100, measure" and guess.range is not None
 
 
+@pytest.mark.parametrize(("body", "rates"), [("POM-H", (2.5e-7, 7.5e-7)), ("PA66-dry", (2.5e-7, 1.3e-6))])
+def test_wear_of_plastics_on_steel_holds_the_standard_test(db, body, rates):
+    """Depths an hour [m/h] at 0.0875 MPa m/s, which is 315 MPa m an hour: k is the depth over pressure and travel."""
+    record = db.on(body, "C45").records["wear_coefficient"]
+    measured = [1e3 * rate / (0.0875 * 3600) for rate in rates]  # mm over MPa m is mm3/(N m)
+    assert record.range[0] <= measured[0] and measured[1] <= record.range[1]
+    assert measured[0] <= record.value <= measured[1] * 1.01
+    assert record.source.startswith("ASTM D3702") and record.placeholder and record.mark == "derived"
+
+
 def test_every_builtin_material_solves(db):
     case = {"guide_material": "42CrMo4+QT-40", "radial_force": -20, "axial_force": 0, "motor_force": 0}
     cases = [Case(**case, roller_material=name, friction_coefficient="typical") for name in db.names()]
@@ -182,10 +192,52 @@ def test_every_builtin_value_has_unit_source_and_mark():
     for value in values:
         assert {"value", "unit", "source", "placeholder"} <= set(value)
         assert value["placeholder"] in (True, False)
-        assert value["placeholder"] == ("no source named" in value["source"])
+        # a guess has no source, or a note that says what was measured instead
+        has_source = "no source named" not in value["source"]
+        assert has_source or value["placeholder"]
+        assert not (has_source and value["placeholder"]) or value["note"]
     for material in data["materials"].values():
-        for low, high in (material[name]["range"] for name in OF_LIMITS if name in material):
-            assert low < high
+        for name in filter(material.__contains__, OF_LIMITS):
+            low, high = material[name].get("range", (0, 1))
+            assert low < high and ("range" in material[name] or name in ("rolling_cycles", "rolling_exponent"))
+
+
+def test_every_builtin_value_says_how_it_was_taken_from_its_source(db):
+    records = [record for name in db.names() for record in db.material(name).records.values()]
+    records += [record for levels in db.friction_table.values() for record in levels.values()]
+    records += [record for classes in db.wear_table.values() for record in classes.values()]
+    assert len(records) > 400
+    for record in records:
+        assert record.mark in MARKS, record
+        assert (record.mark == "guess") == ("no source named" in record.source), record
+        assert record.mark != "guess" or record.placeholder
+        if "second hand" in record.source:
+            assert record.mark == "second hand", record
+    sources = yaml.safe_load(BUILTIN_FILE.read_text(encoding="utf-8"))
+    marked = [name for names in sources["marks"].values() for name in names]
+    assert sorted(marked) == sorted(sources["sources"])  # each source once
+    guesses = [record for record in records if record.placeholder]
+    assert len(guesses) < 0.65 * len(records)
+    rows = {row["field"]: row["mark"] for row in material_details(db, "C45")}
+    assert (rows["youngs_modulus"], rows["fatigue_limit_torsion"], rows["rolling_pressure"]) == (
+        "table",
+        "guess",
+        "formula",
+    )
+
+
+def test_a_mark_of_a_user_is_checked(user):
+    text = "sources: {own: tests of March}\nmarks: {table: [own]}\n"
+    own = load_database(user(text + "materials: {POM: {youngs_modulus: {value: 2900, source: own}}}"))
+    assert own.material("POM").records["youngs_modulus"].mark == "table"
+    for wrong, message in (
+        ("marks: {printed: [own]}", "'printed' is not known"),
+        ("marks: {table: [other]}", "'other' is not known"),
+        ("marks: {table: own}", "a list of names of sources"),
+        ("materials: {POM: {youngs_modulus: {value: 2900, mark: printed}}}", "'printed' is not known"),
+    ):
+        with pytest.raises(InputError, match=message):
+            load_database(user("sources: {own: tests of March}\n" + wrong))
 
 
 def test_friction_by_material_material_object_and_family(db):

@@ -60,14 +60,13 @@ materials:
 """
 
 
-def test_failures_need_the_scatter_of_the_material(shelf, tmp_path, monkeypatch):
+def test_failures_take_the_scatter_of_the_material_or_the_typical_one(shelf, tmp_path, monkeypatch):
     """T_N is N_90/N_10, so that the life at 10 % failures is the median one over its root, if fatigue alone ends it."""
     monkeypatch.chdir(tmp_path)
     unknown = tr.size(CASE | QUICK, shelf, life=2000, failures="10%", least="price")
-    assert unknown.least == "" and set(unknown.table["verdict"]) == {"open"}
-    assert unknown.table["excluded_by"].str.contains("no scatter of .*1.7225-normalised").all()
+    low = unknown.table.set_index("roller")["life_hours"]  # by the upper end of the typical scatter
     (tmp_path / "config").mkdir()
-    (tmp_path / "config" / "materials.yaml").write_text(MATERIALS)  # the remedy
+    (tmp_path / "config" / "materials.yaml").write_text(MATERIALS)
     text = (
         shelf.read_text().replace("1.7225-normalised", "soft steel").replace("1.7225-quenched-tempered", "hard steel")
     )
@@ -76,6 +75,7 @@ def test_failures_need_the_scatter_of_the_material(shelf, tmp_path, monkeypatch)
     median = tr.size(case, shelf, life=2000).table.set_index("roller")
     tenth = tr.size(case, shelf, life=2000, failures="10%", least="price")
     lives = tenth.table.set_index("roller")["life_hours"]
+    assert low.to_dict() == pytest.approx((lives * 2.0 / 16.1**0.5).to_dict(), rel=1e-9)
     assert (lives * 2.0).to_dict() == pytest.approx(median["life_hours"].to_dict(), rel=1e-9)
     assert tenth.least != ""
 
@@ -111,7 +111,9 @@ def test_no_limit_is_exceeded_at_the_forces_times_the_safety(shelf):
     found = tr.size(CASE | QUICK, shelf, safety=30).table.set_index("roller")
     for row in ROWS:
         result = alone(row, factor=30.0)
-        most = result["utilisation"].drop_sel(limit="fatigue").max().item()  # fatigue ends a life, not at once
+        most = (
+            result["utilisation"].drop_sel(limit=["fatigue", "pressure_line"]).max().item()
+        )  # they end a life, not at once
         name = row.split(";")[0]
         assert (found.loc[name, "overload"] == "held") == (most <= 1.0)
         assert (found.loc[name, "verdict"] == "enough") == (most <= 1.0)

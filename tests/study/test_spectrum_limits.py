@@ -167,7 +167,7 @@ def test_every_limit_is_checked_whose_inputs_are_given():
     """Without the key `limits`; the ends of the range are those of the wear coefficient."""
     ds = solve_spectrum(Spectrum.from_dict({"blocks": [LOADED], "base": BASE, "contact_model": "sliding"}))
     known = [name for name in ds.limit.values if (ds.limit_state.sel(limit=name) > 0).any()]
-    assert known == ["static", "fatigue", "rating", "shakedown", "wear"]
+    assert known == ["static", "fatigue", "pressure_line", "rating", "shakedown", "wear"]
     value, low, high = (ds[f"life_shifts_by_limit{end}"].sel(limit="wear").values for end in ENDS)
     assert (low < 0.5 * value).all() and (2.0 * value < high).all()
     assert float(ds.pair_life_to_first_limit_shifts_low) <= float(ds.pair_life_to_first_limit_shifts)

@@ -14,6 +14,7 @@ from trackroller.damage import (
     heat,
     multiaxial,
     own,
+    pressure_line,
     rating,
     shakedown,
     static,
@@ -24,7 +25,19 @@ from trackroller.damage import (
 from trackroller.damage.limit import Limit
 from trackroller.errors import InputError, check_names
 
-_FILES = (static, fatigue, rating, bearing, catalogue, shakedown, heat, wear, multiaxial, stud)
+_FILES = (
+    static,
+    fatigue,
+    pressure_line,
+    rating,
+    bearing,
+    catalogue,
+    shakedown,
+    heat,
+    wear,
+    multiaxial,
+    stud,
+)
 LIMITS: dict[str, Limit] = {file.LIMIT.name: file.LIMIT for file in _FILES}
 
 

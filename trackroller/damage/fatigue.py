@@ -19,7 +19,7 @@ from trackroller.damage.limit import (
     worst,
 )
 from trackroller.damage.pair import first_failure
-from trackroller.damage.sn_curve import SNCurve
+from trackroller.damage.sn_curve import SNCurve, typical_scatter
 from trackroller.numerics.variable import ESTIMATE, LARGEST, LIFE, SMALLEST
 
 # results of `multiaxial` that enter the S-N curve by a life criterion; of the ratios to a limit, 1
@@ -150,15 +150,36 @@ def life(solved: SolvedRollers) -> Values:
 def verdict(solved: SolvedRollers, results: Values) -> Verdict:
     """Return the utilisation of the fatigue limit and the life at the failure probability, (n,
     body).
+
+    Where a material gives no scatter, the life is a range: its ends are those of the typical
+    scatter. A given place of the placeholders holds for this scatter, too.
     """
     p = solved.options["failure_probability"]
-    curve = curve_of(solved).changed(failure_probability=p)
     stress = amplitude(solved)
-    known = curve.scatters | (p == 0.5)
-    living = known & ~_without_life(solved)[:, None, :]
+    overloaded = _overloaded(solved)
+    if p == 0.5:
+        curve = curve_of(solved)
+        return Verdict(
+            worst(stress / curve.knee[0]), _hours_to_failure(solved, curve, stress), overloaded
+        )
+    given = solved.cases["placeholder_position"][:, None, None]
+    used = []
+    hours = []
+    for end in (0.0, -1.0, 1.0):
+        place = np.where(np.isnan(given), end, given)
+        curve = curve_of(solved).assuming(typical_scatter(place, p)).changed(failure_probability=p)
+        used.append(worst(stress / curve.knee[0]))
+        hours.append(_hours_to_failure(solved, curve, stress))
+    return Verdict(used[0], hours[0], overloaded, life_low=hours[1], life_high=hours[2])
+
+
+def _hours_to_failure(solved: SolvedRollers, curve: SNCurve, stress: np.ndarray) -> np.ndarray:
+    """Return the hours to the first failure of each body by an S-N curve, (n, body); NaN without a
+    fatigue life.
+    """
     hours = curve.life_cycles(stress) / solved.overrollings_per_hour[:, None, :]
-    utilisation = worst(np.where(known, stress / curve.knee[0], np.nan))
-    return Verdict(utilisation, -worst(-np.where(living, hours, np.nan)), _overloaded(solved))
+    living = ~_without_life(solved)[:, None, :]
+    return -worst(-np.where(living, hours, np.nan))
 
 
 LIMIT = Limit(

@@ -29,6 +29,13 @@ GIVEN_SLOPE = (
     "unlimited life"
 )
 PROBABILITIES = (0.1, 0.5, 0.9)
+# Low end, value and high end of T_N = N_90/N_10 where a material gives no scatter [1]. Five values:
+# 5.2, 6.8, 10.0 and 10.8, two public sets of S-N tests of steel evaluated in two ways each (pyLife,
+# github.com/boschresearch/pylife, demos/data/woehler and tests/materialdata/woehler), and 16.1 of
+# ball bearings, whose lives have the Weibull slope 10/9 (ISO 281). The value is the middle one.
+# ASSUME: other materials scatter alike. Tests in rolling contact may scatter more: Tallian, McCool,
+# J. Lubr. Technol. 100 (1978) 147-154, estimate slopes down to 0.4.
+TYPICAL_SCATTER = (5.2, 10.0, 16.1)
 # standard deviations of a normal distribution from 10 % to 90 %
 DEVIATES_10_TO_90 = 2.5631031310892007
 
@@ -96,6 +103,53 @@ def _of_line(points: Any) -> np.ndarray:
         ],
         axis=1,
     )
+
+
+def log_deviates(failure_probability: ArrayLike) -> np.ndarray:
+    """Return by which power of T_N a life at a failure probability differs from the median life.
+
+    The life is log-normal (DIN 50100:2016): u/2.563 with the standard normal deviate u.
+
+    Examples
+    --------
+    >>> log_deviates([0.1, 0.5, 0.9]).round(12).tolist()
+    [-0.5, 0.0, 0.5]
+    """
+    # heavy, and most curves hold for a failure probability of 50 %
+    from scipy.special import ndtri
+
+    return np.asarray(ndtri(np.asarray(failure_probability, dtype=float)) / DEVIATES_10_TO_90)
+
+
+def typical_scatter(place: ArrayLike, failure_probability: float) -> np.ndarray:
+    """Return T_N at a place in the range of `TYPICAL_SCATTER` [1].
+
+    Parameters
+    ----------
+    place : array_like
+        -1 for the end that gives the shorter life, 0 for the value, 1 for the other end; linear
+        between them.
+    failure_probability : float
+        Failure probability of the life [1]. Below 0.5 more scatter gives a shorter life.
+
+    Returns
+    -------
+    numpy.ndarray
+        T_N of the shape of `place`.
+
+    Examples
+    --------
+    >>> typical_scatter([-1, 0, 1], 0.1).tolist()
+    [16.1, 10.0, 5.2]
+    """
+    least, value, most = TYPICAL_SCATTER
+    worse = most
+    better = least
+    if failure_probability > 0.5:
+        worse = least
+        better = most
+    at = np.asarray(place, dtype=float)
+    return np.asarray(value + np.abs(at) * (np.where(at < 0, worse, better) - value))
 
 
 @dataclass(frozen=True)
@@ -210,6 +264,12 @@ class SNCurve:
         """Return the curve with other values for some of its fields."""
         return replace(self, **values)
 
+    def assuming(self, scatter: ArrayLike) -> SNCurve:
+        """Return the curve with a scatter of the life T_N [1] where its own is not known."""
+        return self.changed(
+            scatter_cycles=np.where(self.scatters, _known(self.scatter_cycles), scatter)
+        )
+
     @property
     def _points(self) -> tuple[np.ndarray, ...]:
         values = (self.tensile_strength, self.fatigue_limit, self.n_rm, self.n_k)
@@ -287,11 +347,8 @@ class SNCurve:
         _, limit, _, knee = self._points
         if not np.any(np.asarray(self.failure_probability) != 0.5):
             return limit, knee
-        # heavy, and most curves hold for a failure probability of 50 %
-        from scipy.special import ndtri
-
         t_n, t_s = self.scatter_ranges
-        deviate = ndtri(np.asarray(self.failure_probability, dtype=float)) / DEVIATES_10_TO_90
+        deviate = log_deviates(self.failure_probability)
         fall = t_s**deviate
         # The curve moves along with the strength. If T_N is larger than this move gives, it also
         # moves in cycles.

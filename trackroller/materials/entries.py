@@ -12,7 +12,15 @@ from trackroller.damage.own import check_fields
 from trackroller.errors import Collector, InputError, check_names, checked_text, unknown_name
 from trackroller.materials.energy_wear import FIELD as ENERGY_WEAR
 from trackroller.materials.material import UNNAMED, Material, contradictions
-from trackroller.materials.properties import ALTERNATIVES, PROPERTIES, REQUIRED, Value, check_number
+from trackroller.materials.pressure_line import with_line_of_hardness
+from trackroller.materials.properties import (
+    ALTERNATIVES,
+    MARKS,
+    PROPERTIES,
+    REQUIRED,
+    Value,
+    check_number,
+)
 from trackroller.materials.sn_curve import (
     CURVE,
     FREE,
@@ -36,7 +44,8 @@ SOURCE_OF = {  # by each number of a line, the value of `FREE` that it rests on
 }
 STRENGTH = "tensile_strength"
 TEXTS = ("family", "description", "like", "note")
-VALUE_KEYS = ("value", "unit", "source", "placeholder", "note", "range")
+VALUE_KEYS = ("value", "unit", "source", "placeholder", "note", "range", "mark")
+NO_SOURCE = "no source named"  # in the source of a guess
 NUMBERS = PROPERTIES | ALTERNATIVES
 HARDNESS = "hardness"  # key of an entry of the wear list: the hardness for which it holds
 _HARDNESS = replace(PROPERTIES[HARDNESS], open_lower=False, open_upper=False)
@@ -56,9 +65,18 @@ class EntryParser:
         Name of the file that each value keeps as its origin.
     sources : mapping of str to str
         Full references by their short names.
+    marks : mapping of str to str
+        Marks of `MARKS` by the short names of sources.
     """
 
-    def __init__(self, prefix: str, origin: str, sources: Mapping[str, str]) -> None:
+    def __init__(
+        self,
+        prefix: str,
+        origin: str,
+        sources: Mapping[str, str],
+        marks: Mapping[str, str] | None = None,
+    ) -> None:
+        self.marks = marks or {}
         self.prefix = prefix
         self.origin = origin
         self.sources = sources
@@ -128,7 +146,24 @@ class EntryParser:
             source = self.source(str(entry["source"]))
         note = str(entry.get("note") or "")
         span = self.range(prop, entry.get("range"), where, number, unit)
-        return Value(number, prop.unit, source, placeholder, note, self.origin, span)
+        mark = self.mark(entry, field)
+        return Value(number, prop.unit, source, placeholder, note, self.origin, span, mark)
+
+    def mark(self, entry: Mapping[Any, Any], field: str) -> str:
+        """Return how a value was taken from its source: as the entry says, otherwise by the mark of
+        the weakest of its sources; an empty text where neither says it.
+        """
+        given = entry.get("mark")
+        if given is not None:
+            check_names(f"{field}.mark", [given], MARKS)
+            return str(given)
+        source = str(entry.get("source", ""))
+        if NO_SOURCE in source:
+            return "guess"
+        marks = [self.marks.get(name, "") for name in source.split(", ")]
+        if not all(marks):
+            return ""
+        return max(marks, key=list(MARKS).index)
 
     def range(
         self, prop: Parameter, given: Any, where: str, number: float, unit: str
@@ -186,6 +221,7 @@ class EntryParser:
             like = name
         base = known.get(like)
         records, points = self._with_curve(where, entry, given, base)
+        records = with_line_of_hardness(records, where)
         missing = [key for key in REQUIRED if key not in records]
         if missing:
             remedy = "Give these values, or write `like: NAME` to take them from another material."

@@ -16,13 +16,20 @@ from trackroller.errors import Collector, InputError, check_names
 from trackroller.files import MATERIALS, read_text
 from trackroller.materials.database import MaterialDatabase
 from trackroller.materials.entries import EntryParser
+from trackroller.materials.properties import MARKS
 from trackroller.yaml_file import errors_by_line, parse_yaml
 
 BUILTIN_FILE = Path(__file__).with_name("materials.yaml")
 DEFAULT_USER_FILE = Path("config") / "materials.yaml"
 BUILTIN = "built-in"
 FITS = "fits"  # folder beside the user's materials file: posteriors of its fitted materials
-SECTIONS: dict[str, type] = {"sources": dict, "materials": dict, "friction": list, "wear": list}
+SECTIONS: dict[str, type] = {
+    "sources": dict,
+    "marks": dict,
+    "materials": dict,
+    "friction": list,
+    "wear": list,
+}
 
 
 def find_user_file(argument: Path | str | None = None) -> Path | None:
@@ -152,7 +159,10 @@ def _checked(data: Any, file: str, over: MaterialDatabase | None) -> MaterialDat
     wear = dict(over.wear_table) if over else {}
     origin = file if over is None else Path(file).name
     sources = {str(k): " ".join(str(v).split()) for k, v in sections["sources"].items()}
-    parser = EntryParser("materials.", origin, sources)
+    marks: dict[str, str] = {}
+    with wrong.part("marks"):
+        marks = _marks_of_sources(sections["marks"], sources)
+    parser = EntryParser("materials.", origin, sources, marks)
     for name, entry in sections["materials"].items():
         known = len(wrong.errors)
         with wrong.part("materials", str(name)):
@@ -175,6 +185,24 @@ def _checked(data: Any, file: str, over: MaterialDatabase | None) -> MaterialDat
     if over:
         files = (*over.files, file)
     return MaterialDatabase(materials, friction, files, wear)
+
+
+def _marks_of_sources(given: dict[Any, Any], sources: dict[str, str]) -> dict[str, str]:
+    """Return the mark of each source from the lists of sources by mark.
+
+    Raises
+    ------
+    InputError
+        If a mark or a source is not known.
+    """
+    check_names("marks: mark", given, MARKS)
+    marks: dict[str, str] = {}
+    for mark, names in given.items():
+        if not isinstance(names, list):
+            raise InputError(f"marks.{mark}", names, "a list of names of sources")
+        check_names(f"marks.{mark}: source", names, sources)
+        marks |= dict.fromkeys(names, str(mark))
+    return marks
 
 
 def _without(classes: Mapping[Any, Any], key: Any) -> dict[Any, Any]:

@@ -98,13 +98,23 @@ ALTERNATIVES: dict[str, Parameter] = {p.name: p for p in _ALTERNATIVES}
 REQUIRED = tuple(p.name for p in _PROPERTIES if not p.allow_missing)
 
 
+MARKS = {  # how a number was taken from its source, the best one first
+    "table": "printed in the source",
+    "formula": "computed by a formula of the source",
+    "derived": "computed from other values, as the source says",
+    "second hand": "from an abstract, a digest, or the table of another author",
+    "guess": "no source",
+}
+
+
 @dataclass(frozen=True)
 class Value:
     """A property or a friction coefficient: number, unit, source, note, and the file that defines
     it (`origin`).
 
     `placeholder` is True if the number is a guess without a source. `range` then holds the bounds
-    between which the true number is expected, if they are given.
+    between which the true number is expected, if they are given. `mark` is one of `MARKS` and says
+    how the number was taken from its source; it is empty where a user's file does not say it.
     """
 
     value: float
@@ -114,6 +124,7 @@ class Value:
     note: str = ""
     origin: str = ""
     range: tuple[float, float] | None = None
+    mark: str = ""
 
 
 def check_number(prop: Parameter, value: Any, where: str, unit: str = "") -> float:

@@ -298,4 +298,6 @@ def _refuse_apart(name: str, value: float, follows: float, where: str) -> None:
 
 
 def _derived(value: float, source: Value, note: str) -> Value:
-    return Value(value, "-", source.source, source.placeholder, note, source.origin)
+    return Value(
+        value, "-", source.source, source.placeholder, note, source.origin, mark=source.mark
+    )

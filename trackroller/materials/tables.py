@@ -121,6 +121,7 @@ def _row(name: str, symbol: str, record: Value) -> dict[str, str]:
         "unit": record.unit,
         "source": record.source,
         "placeholder": "placeholder" if record.placeholder else "",
+        "mark": record.mark,
         "note": record.note
         or ("" if record.range is None else "expected from {:g} to {:g}".format(*record.range)),
         "origin": record.origin,

@@ -219,7 +219,6 @@ def _cannot_tell(answer: Answer) -> str:
 
 
 CAUSES = {
-    "chance": "no material has a life at this failure probability",
     "model": "the model does not judge every condition of a candidate",
     "conditions": "candidates share no condition",
     "materials": "a material lacks the life that others have",
@@ -655,14 +654,6 @@ def _unknown_hours(answer: Answer) -> list[str]:
     clauses = []
     if head["unknown"]:
         clauses = [f"the hours of the {head['unknown']} are not known"]
-    if head["unrated"]:
-        if len(head["unrated"]) > 1:
-            whose = ""
-        else:
-            whose = f" of the {head['unrated'][0]}"
-        clauses.append(
-            f"fatigue{whose} at {percent(answer.facts['probability'])} failed is not known"
-        )
     return clauses
 
 

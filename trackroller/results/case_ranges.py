@@ -126,7 +126,6 @@ class CaseRanges:
         masks = [
             ("value not known", np.isnan(self.value)),
             ("fatigue not known", results.without_fatigue & is_life(self.output[0])),
-            ("fatigue not known", np.isnan(self.value) & self._without_chance),
             *((f"limit {name}", rows) for name, rows in results.limits_in("exceeded").items()),
             ("yields", results.flagged("yield")),
             ("breaks", results.flagged("static")),
@@ -141,13 +140,6 @@ class CaseRanges:
         for word, rows in masks:  # the last one counts
             out[rows] = word
         return out
-
-    @property
-    def _without_chance(self) -> bool:
-        """Return whether the output is a life at a failure probability for which no material has
-        scatter.
-        """
-        return self.results.without_chance and of_first_limit(self.output[0])
 
     @cached_property
     def holds(self) -> np.ndarray:

@@ -315,15 +315,6 @@ class Comparison:
         uses = np.unique(self.pairs[1][self.all_in_pair(self.ranges.holds)])
         return np.asarray(self.own & ~np.isin(self.use, uses))
 
-    @property
-    def why_unjudged(self) -> str:
-        """Return why cases are not judged: `chance` without a life at the failure probability asked
-        for, or `model`.
-        """
-        if self.results.without_chance:
-            return "chance"
-        return "model"
-
     # what meets the requirement
 
     def met(

@@ -48,7 +48,7 @@ class Decision:
     kind : see `trackroller.results.answer.Answer`
     order : all candidates, the best one first
     named : candidates that the headline names
-    why : of `cannot_tell`: `model`, `chance`, `conditions` or `materials`
+    why : of `cannot_tell`: `model`, `conditions` or `materials`
     measure : what to measure, see `Turning`
     """
 
@@ -185,7 +185,7 @@ class Decider:
         judged = self.table["judged"].to_numpy() == self.table["of"].to_numpy()
         known = [number for number in among if judged[number]]
         if not known:
-            return Decision("cannot_tell", order, [], self.own.why_unjudged)
+            return Decision("cannot_tell", order, [], "model")
         leader = known[0]
         order = [leader, *(n for n in order if n != leader)]
         if states_of(self.own, self.table, exact=True)[leader] != "open":
@@ -209,7 +209,7 @@ class Decider:
         if not len(pool):
             unknown = (~judged & (table["holds"] == 0)).any() and (table["holds"] == 0).all()
             if unknown:
-                return Decision("cannot_tell", order, [], own.why_unjudged)
+                return Decision("cannot_tell", order, [], "model")
             return Decision("none", order, [])
         if not own.rankable:
             return Decision("cannot_tell", order, [], "materials")

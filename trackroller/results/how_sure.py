@@ -54,7 +54,7 @@ def answer_how_sure(results: SolvedCases) -> Answer:
         kind = "share"
     if not own.ranges.judged[own.own].any():
         kind = "cannot_tell"
-        head |= {"why": own.why_unjudged}
+        head |= {"why": "model"}
     return Answer(
         question="how sure",
         kind=kind,

@@ -5,9 +5,8 @@ Keys of `Answer.headline`: `low`, `high` (life to the first limit [h]), `ends` (
 that may come first), `body`, `extrapolated`, `guessed`, `unknown` (body whose hours are not known),
 `exceeded` and `broken` (lists of {limit, body, use [1], hours}, the worst one first), `open` (list
 of {limit, body}), `axial_low`, `axial_high`, `motor_low`, `motor_high` (forces between which the
-roller rolls [N]), `not_judged` (reasons), `unrated` (bodies whose life by fatigue is not known at
-the failure probability, because their materials have no scatter), `states` (of each requirement:
-`met`, `open` or `missed`), `state` (of all of them; '' without a requirement).
+roller rolls [N]), `not_judged` (reasons), `states` (of each requirement: `met`, `open` or
+`missed`), `state` (of all of them; '' without a requirement).
 """
 
 from __future__ import annotations
@@ -284,7 +283,6 @@ def _headline(
         "extrapolated": False,
         "guessed": False,
         "unknown": unknown_body,
-        "unrated": _unrated(ds),
         "broken": [_use(one) for one in own if one.breaks],
         "exceeded": [_use(one) for one in over],
         "open": [
@@ -305,20 +303,6 @@ def _headline(
         "extrapolated": first.beyond,
         "guessed": any(margin.guessed for margin in first.margins),
     }
-
-
-def _unrated(ds: xr.Dataset) -> list[str]:
-    """Return the bodies without a life by fatigue at the failure probability, because the scatter
-    is not known.
-    """
-    if "limit_state" not in ds or REGIMES[int(ds["regime"])] in STOPPED:
-        return []
-    lacks = [
-        one.material
-        for one in lacks_of(ds)
-        if (one.limit, one.name) == ("fatigue", "scatter_in_cycles")
-    ]
-    return [body for body in BODIES if material_name(ds, body) in lacks]
 
 
 def _states(ds: xr.Dataset, first: First | None, required: Sequence[Required]) -> dict[str, Any]:
@@ -345,8 +329,6 @@ def _state_of(ds: xr.Dataset, first: First | None, required: Required) -> str:
             state = shorter
         else:
             state = {"missed": "missed"}.get(shorter, "open")
-    if state == "met" and _unrated(ds):
-        return "open"
     return state
 
 

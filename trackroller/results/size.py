@@ -23,7 +23,6 @@ from trackroller.errors import InputError, unknown_name
 from trackroller.files import files_beside
 from trackroller.numerics.numbers import finite_number
 from trackroller.numerics.plain import mapping_of
-from trackroller.parameters import BODIES
 from trackroller.parameters.example import EXAMPLE
 from trackroller.results.load_ratio import EXACT, FORCES, LoadRatios, load_ratios
 from trackroller.results.mounting import Mounting, rollers_by_place
@@ -556,10 +555,7 @@ def _with_life(table: pd.DataFrame, results: Results) -> pd.DataFrame:
 
 def _without_unknown_lives(table: pd.DataFrame, results: Results) -> pd.DataFrame:
     """Return the table with open verdicts where no life is known at the failure probability that is
-    asked for.
-
-    Without scatter the S-N curve of a material gives the median life alone, which answers another
-    question.
+    asked for; the median life answers another question.
     """
     chance = float(results.data.attrs.get("failure_probability", 0.5))
     answer = results.answer
@@ -570,18 +566,7 @@ def _without_unknown_lives(table: pd.DataFrame, results: Results) -> pd.DataFram
     lacking = np.array(_by_roller(results, results.without_fatigue.astype(float))) > 0
     lacking |= table["ends"].str.endswith("not known").to_numpy()
     unknown = (lacking & (table["verdict"] != VERDICTS[2]).to_numpy()) | by_median
-    used = dict.fromkeys(
-        name for body in BODIES for name in np.unique(results.material(body)).tolist()
-    )
-    known = [results.study.materials.material(name) for name in used]
-    bare = [
-        one.name for one in known if one.scatter_in_cycles is None and one.scatter_in_stress is None
-    ]
-    text = (
-        f"open: the life at {100 * chance:g} % failures is not known, because the database has no "
-        f"scatter of {' and '.join(bare)}. Give scatter_in_cycles with the material, or leave the "
-        "failures out"
-    )
+    text = f"open: the life at {100 * chance:g} % failures is not known"
     table = table.copy()
     table.loc[unknown, "verdict"] = VERDICTS[1]
     table.loc[unknown, "excluded_by"] = text

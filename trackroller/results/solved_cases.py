@@ -322,21 +322,10 @@ class SolvedCases:
         the pair where the hours of the guide are known in a case, and that of the roller where they
         are not.
         """
-        if self.without_chance:
-            return None
         for column, words, unit in (FIRST_LIMIT, *self.fatigue_lives):
             if column in self.table and (self.table[column] > 0).any():
                 return column, words, unit
         return None
-
-    @cached_property
-    def without_chance(self) -> bool:
-        """Return whether no case has a life at the failure probability that the study asks for.
-
-        The lives by the S-N curve hold at 50 % and do not take its place.
-        """
-        differs = float(self.data.attrs.get("failure_probability", 0.5)) != 0.5
-        return differs and FIRST_LIMIT[0] in self.table and not self.knows(FIRST_LIMIT[0])
 
     @property
     def fatigue_lives(self) -> tuple[tuple[str, str, str], ...]:
@@ -443,9 +432,7 @@ class SolvedCases:
         """Return the cases without a life by fatigue that other materials have for the same body,
         shape (n,).
 
-        Their life to the first limit is one by fewer limits, and compares with no other. At a
-        failure probability other than 0.5 no life by fatigue of a material without scatter is
-        known.
+        Their life to the first limit is one by fewer limits, and compares with no other.
         """
         out = np.zeros(len(self.table), dtype=bool)
         if FIRST_LIMIT[0] not in self.table or "fatigue" not in self.data["limit"].values:
@@ -520,7 +507,7 @@ class SolvedCases:
         limit is of no use if another limit comes first. Other targets are judged by the result that
         they name, and so are all of a study without the life to the first limit.
         """
-        if self.life != FIRST_LIMIT and not self.without_chance:
+        if self.life != FIRST_LIMIT:
             return {}
         named = [
             n for n, ends in self.config.requirement.items() if n in OF_PAIR and ends.only_least

@@ -17,6 +17,7 @@ import numpy as np
 
 from trackroller.damage import fields_of, judged, limits_of
 from trackroller.damage.limit import SN_SCATTER, Limit, SolvedRollers, missing
+from trackroller.damage.sn_curve import TYPICAL_SCATTER
 from trackroller.damage.wear import TABLE as WEAR_TABLE
 from trackroller.materials.energy_wear import FIELD as ENERGY_WEAR
 from trackroller.materials.material import UNNAMED
@@ -43,6 +44,15 @@ _VALUE = re.compile(
     r"(?P<name>\w+) \((?:(?P<note>.+?), )??"
     r"(?:expected from (?P<low>\S+) to (?P<high>[^\s)]+)(?: (?P<units>.+?))?|no range is "
     r"given)\)(?=, \w+ \(|$)"
+)
+
+
+# name, note and range of the scatter of a material that gives none
+TYPICAL = (
+    "scatter_in_cycles",
+    "typical of S-N tests and of bearings",
+    TYPICAL_SCATTER[0],
+    TYPICAL_SCATTER[2],
 )
 
 
@@ -196,11 +206,22 @@ def notes_on_limits(table: CaseTable, options: Options) -> list[str]:
                 for name, guess in guessed
                 if name in required and np.any(required[name] & of)
             ]
-            if used:
-                out.append(
-                    placeholder_line([Placeholder.of(limit.name, material, *one) for one in used])
-                )
+            placeholders = [
+                Placeholder.of(limit.name, material, name, guess) for name, guess in used
+            ]
+            if np.any(_typical_scatter(limit, solved) & of):
+                placeholders.append(Placeholder(limit.name, material, *TYPICAL))
+            if placeholders:
+                out.append(placeholder_line(placeholders))
     return list(dict.fromkeys(out))
+
+
+def _typical_scatter(limit: Limit, solved: SolvedRollers) -> np.ndarray:
+    """Return where a limit takes the typical scatter, because its material gives none, (n, 2)."""
+    materials = solved.materials
+    unknown = np.isnan(materials["scatter_in_cycles"]) & np.isnan(materials["scatter_in_stress"])
+    off_median = solved.options["failure_probability"] != 0.5
+    return np.asarray(unknown & (off_median and limit.distribution == SN_SCATTER))
 
 
 def _lacks(limit: Limit, solved: SolvedRollers, names: Mapping[str, np.ndarray]) -> Iterator[Lack]:
@@ -219,11 +240,7 @@ def _lacks(limit: Limit, solved: SolvedRollers, names: Mapping[str, np.ndarray])
         column = solved.cases.get(name)
         if column is not None and missing(column).any():
             yield Lack(limit.name, name, remedy=_remedy_of_field(name))
-    values = list(limit.required_of(solved))
-    if limit.distribution == SN_SCATTER and solved.options["failure_probability"] != 0.5:
-        # The scatter of the strength gives that of the life.
-        values.append(("scatter_in_cycles", np.isnan(solved.materials["scatter_in_stress"])))
-    for name, here in values:
+    for name, here in limit.required_of(solved):
         unknown = np.isnan(solved.materials[name]) & here
         materials = np.concatenate([names[body][unknown[:, i]] for i, body in enumerate(BODIES)])
         for material in dict.fromkeys(materials):

@@ -61,7 +61,7 @@ def solved_of(
     fields = [field.name for field in dataclasses.fields(table.roller)]
     names = [name for name in fields if name not in TEXTS or name == "sn_points"]
     cases = {name: getattr(table, name) for name in (*PARAMETERS, *MAPPING_FIELDS)}
-    if options.wear_law == "energy":  # else a law of the materials would ask for wear
+    if options.wear_law == "energy":  # with another law a table of the materials serves nothing
         cases[WEAR_TABLE.name] = table.loss_tables
     return SolvedRollers(
         cases,

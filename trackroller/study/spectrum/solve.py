@@ -19,7 +19,7 @@ import xarray as xr
 from trackroller.damage import LIMITS, fatigue, miner, verdict
 from trackroller.damage.limit import skidding
 from trackroller.damage.pair import first_failure
-from trackroller.damage.sn_curve import CONVENTIONS, SNCurve
+from trackroller.damage.sn_curve import CONVENTIONS, SNCurve, typical_scatter
 from trackroller.materials import load_database
 from trackroller.parameters import BODIES, PARAMETERS
 from trackroller.roller.case import Case, to_table
@@ -127,7 +127,7 @@ def damage_per_shift(
     living : numpy.ndarray of bool
         Where a body has a fatigue life, (block, contact, body).
     probability : float
-        Failure probability [1]. For values other than 0.5, a material without scatter gives NaN.
+        Failure probability [1]. For values other than 0.5, a curve without scatter gives NaN.
     """
     life = np.full(stress.shape, np.nan)
     for i, curve in enumerate(bodies):
@@ -206,9 +206,13 @@ def _damage(
     variables |= _loads(spectrum, database)
     if "limit" in solved.coords:
         chance = spectrum.options.get("failure_probability", 0.5)
-        variables |= by_limit(
-            spectrum, solved, damage_per_shift(stress, cycles, bodies, living, chance)[1], breaks
-        )
+        by_curve = {}
+        for end, place in zip(verdict.ENDS, (0.0, -1.0, 1.0), strict=True):
+            if case.placeholder_position is not None:
+                place = case.placeholder_position
+            scattering = [curve.assuming(typical_scatter(place, chance)) for curve in bodies]
+            by_curve[end] = damage_per_shift(stress, cycles, scattering, living, chance)[1]
+        variables |= by_limit(spectrum, solved, by_curve, breaks)
     if "fatigue_stress" in solved:
         variables["fatigue_stress"] = (_BCB, stress, dict(solved["fatigue_stress"].attrs))
     if any(curve.scatters.any() for curve in bodies):
@@ -331,8 +335,18 @@ def cases_of(spectrum: Spectrum, overrollings: np.ndarray) -> list[Case]:
     return cases
 
 
+def _of_worse_track(damage: np.ndarray) -> np.ndarray:
+    """Return the damage of the track with more of it, (block, body), from (block, contact, body)
+    [1].
+    """
+    unknown = np.isnan(damage.sum(axis=0))  # such a track counts before a known one
+    counted = unknown == unknown.any(axis=0)
+    worst = np.argmax(np.where(counted, np.nansum(damage, axis=0), -1.0), axis=0)
+    return np.asarray(np.take_along_axis(damage, worst[None, None], axis=1)[:, 0])
+
+
 def by_limit(
-    spectrum: Spectrum, solved: xr.Dataset, by_curve: np.ndarray, breaks: np.ndarray
+    spectrum: Spectrum, solved: xr.Dataset, by_curve: dict[str, np.ndarray], breaks: np.ndarray
 ) -> dict[str, Any]:
     """Return damage, utilisation and shifts of each limit, and the first limit of each body.
 
@@ -342,8 +356,9 @@ def by_limit(
         The load spectrum.
     solved : xarray.Dataset
         Its solved blocks with the group `limits`.
-    by_curve : numpy.ndarray
-        Damage of each track by the S-N curve per shift, (block, contact, body) [1].
+    by_curve : dict of str to numpy.ndarray
+        Damage of each track by the S-N curve per shift, (block, contact, body) [1], by the ends of
+        `verdict.ENDS`.
     breaks : numpy.ndarray of bool
         Where a body breaks at once, (block, body).
 
@@ -359,11 +374,6 @@ def by_limit(
         for name in ("utilisation", *(f"life_hours_by_limit{end}" for end in verdict.ENDS))
     )
     travel = np.array([block.hours for block in spectrum.blocks])[:, None, None]
-    unknown = np.isnan(by_curve.sum(axis=0))  # such a track counts before a known one
-    worst = np.argmax(
-        np.where(unknown == unknown.any(axis=0), np.nansum(by_curve, axis=0), -1.0), axis=0
-    )
-    of_fatigue = np.take_along_axis(by_curve, worst[None, None], axis=1)[:, 0]
     most = np.max(np.where(travel > 0, used, 0.0), axis=0)
     # D_crit belongs to Miner's rule of the S-N curve; other limits are reached at a sum of 1
     is_fatigue = np.array([limit.name == "fatigue" for limit in limits])
@@ -395,7 +405,7 @@ def by_limit(
     for end, lives in zip(verdict.ENDS, lives_of_blocks, strict=True):
         damage = miner.block_damage(travel, lives)
         for i in (i for i, limit in enumerate(limits) if limit.name == "fatigue"):
-            damage[:, i] = of_fatigue
+            damage[:, i] = _of_worse_track(by_curve[end])
         shifts = critical * miner.repetitions_to_failure(damage.sum(axis=0))
         first, which = (
             one[0]
