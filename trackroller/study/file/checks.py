@@ -173,11 +173,11 @@ def cross_check(study: Study) -> None:
     if not config.method.proposes and config.method.observed != (config.table is not None):
         remedy = "Write 'table: cases.csv' too, with your file."
         if config.table:
-            remedy = "Write 'design: table' too."
+            remedy = "Write 'method: table' too."
         raise InputError(
             "table",
             config.table,
-            "design: table and the path of a CSV or Excel file together",
+            "method: table and the path of a CSV or Excel file together",
             remedy,
         )
     config.method.check(study.parsed)
@@ -251,7 +251,7 @@ def _check_roles(study: Study) -> None:
     if config.roles and config.method.observed:
         factors = study.drawn.columns
     if config.roles:
-        check_roles(config.roles, factors, config.design)
+        check_roles(config.roles, factors, config.method_name)
 
 
 def _check_parts(study: Study) -> None:
@@ -280,8 +280,8 @@ def _check_groups(
     names = list(free)
     grouped = set()
     if not config.method.grouped:
-        allowed = f"design {listing(those_with('grouped'), 'or')}, not {config.design}"
-        raise InputError("analysis.groups", list(groups), allowed, "Take design: saltelli.")
+        allowed = f"method {listing(those_with('grouped'), 'or')}, not {config.method_name}"
+        raise InputError("analysis.groups", list(groups), allowed, "Take method: saltelli.")
     for group, members in groups.items():
         where = f"analysis.groups.{group}"
         if group in specs:
@@ -307,9 +307,9 @@ def _check_category(config: Any, name: str, free: Mapping[str, Factor]) -> None:
     by_group = "groups" in config.method.takes and bool(config.analysis.groups)
     if not config.method.conditional or by_group:
         if by_group:
-            own = f"{config.design} with analysis.groups"
+            own = f"{config.method_name} with analysis.groups"
         else:
-            own = config.design
+            own = config.method_name
         raise InputError(
             where, name, f"design {listing(those_with('conditional'), 'or')}, not {own}"
         )
@@ -326,7 +326,7 @@ def _check_correlations(study: Study) -> None:
     drawn.
     """
     config = study.config
-    check_design(config.rank_correlations, config.design)
+    check_design(config.rank_correlations, config.method_name)
     random = {n: f for n, f in study.parsed.items() if f.kind != "expression"}
     copula(config.rank_correlations, {n: f for n, f in random.items() if config.method.random(f)})
 
@@ -457,7 +457,7 @@ def check_geometry(study: Study) -> None:
     else:
         levels = [_ends(study, name) for name in GEOMETRY]
         if math.prod(map(len, levels)) > MAX_CASES:
-            raise InputError("design", "grid of the geometry", f"at most {MAX_CASES} cases")
+            raise InputError("method", "grid of the geometry", f"at most {MAX_CASES} cases")
         rows = np.array(list(itertools.product(*levels)), dtype=float)
         problem = geometry_problem({name: rows[:, i] for i, name in enumerate(GEOMETRY)})
     if problem is not None:
