@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import errno
 
+import numpy as np
 import pandas as pd
 import pytest
 import yaml
@@ -34,6 +35,53 @@ def test_a_sign_that_a_terminal_obeys_is_refused_and_shown_escaped(sign):
     assert named.encode("ascii").decode("unicode_escape") in sign
     text = f"lift {sign}".replace(named.encode("ascii").decode("unicode_escape"), "")
     assert checked_text(text, "name") == text, "the remedy works"
+
+
+ALIKE = ["a\u200b", "\ufeffa", "so\xadft", "a\u2060b", "a\u200d", "a\ufe0f", "\u3164", "\u2800", "\U000e0041a"]
+
+
+@pytest.mark.parametrize(("value", "shown"), [(np.float64(2.5), "2.5"), (np.array([1.0, 2.0]), "[1.0, 2.0]")])
+def test_a_message_shows_numbers_without_names_of_the_library(value, shown):
+    assert f"slip = {shown} is" in str(InputError("slip", value, "a number"))
+
+
+@pytest.mark.parametrize("text", [*ALIKE, "\u0301a", "a \u0308", "   ", "\u3000"])
+def test_a_name_that_does_not_show_whole_is_refused_and_the_remedy_works(text):
+    with pytest.raises(InputError, match=r"an invisible character|without its letter|blanks") as caught:
+        checked_text(text, "name")
+    if text.isspace():
+        assert "Write a name" in str(caught.value)
+        return
+    code = str(caught.value).split("Remove the character ")[1].rstrip(".")
+    mended = text.replace(code.encode("ascii").decode("unicode_escape"), "") or "name"
+    assert checked_text(mended.rstrip(), "name")
+
+
+@pytest.mark.parametrize("text", ["e\u0301", "می‌خواهم", "नमस्‍ते", "👨‍👩‍👧", "⚠\ufe0f"])
+def test_letters_of_several_characters_stay(text):
+    assert checked_text(text, "name") == text
+
+
+@pytest.mark.parametrize("value", [None, ""])
+def test_an_empty_name_is_one_that_was_not_given(value):
+    cart = load_carriage(CART | {"name": value, "description": value, "cases": [{"name": value}]})
+    assert (cart.name, cart.description, cart.cases[0].name) == ("carriage", "", "case 1")
+    spectrum = Spectrum.from_dict(SPECTRUM | {"name": value, "blocks": [{"name": value, "distance": 10}]})
+    assert (spectrum.name, spectrum.blocks[0].name) == ("spectrum", "block 1")
+
+
+@pytest.mark.parametrize("value", [True, 1.5, ["a"], {"a": 1}, np.ones(2)])
+@pytest.mark.parametrize("key", ["name", "description", "cases"])
+def test_a_name_is_a_text(key, value):
+    given = [{"name": value}] if key == "cases" else value
+    with pytest.raises(InputError, match=r"a text, or a whole number\. Put the text in quotes"):
+        load_carriage(CART | {key: given})
+
+
+@pytest.mark.parametrize("name", ["", None])
+def test_a_roller_has_a_name(name):
+    with pytest.raises(InputError, match="name of a roller is missing"):
+        load_carriage(CART | {"rollers": {name: ROLLER}})
 
 
 @pytest.mark.parametrize("text", ["Förderer 7", "滑车", "a b\u00a0c", "µm ± 3 °", "=1+1", "العربة"])
@@ -88,7 +136,7 @@ def test_texts_of_files_are_checked(tmp_path, place):
 @pytest.mark.parametrize("table", ["label,velocity\nrun\x1b[2J,60\nb,70\n", "lab\x1bel,velocity\na,60\nb,70\n"])
 def test_labels_of_tables_are_checked(tmp_path, table):
     (tmp_path / "t.csv").write_text(table)
-    (tmp_path / "s.yaml").write_text("{name: s, design: table, table: t.csv, outputs: [forces]}")
+    (tmp_path / "s.yaml").write_text("{name: s, method: table, table: t.csv, outputs: [forces]}")
     done = trackroller("plan", "s.yaml", cwd=tmp_path, code=2)
     line = 1 if "lab\x1bel" in table else 2
     assert f"t.csv, line {line}" in done.stderr and "\x1b" not in done.stdout + done.stderr
@@ -145,7 +193,7 @@ def test_a_table_that_was_written_has_the_same_names_when_it_is_read(tmp_path, m
     add_material(tmp_path / "config/materials.yaml", name, like="PA6")
     table = pd.DataFrame({"label": [name, "b"], "roller_material": ["PA6", name], "velocity": [60.0, 70.0]})
     path = write_cases(table, tmp_path / f"t.{ending}")
-    study = {"name": "s", "design": "table", "table": path.name, "outputs": ["forces"], "contact_model": "sliding"}
+    study = {"name": "s", "method": "table", "table": path.name, "outputs": ["forces"], "contact_model": "sliding"}
     read = tr.load_study(study).drawn.columns
     assert read["label"].tolist() == [name, "b"] and read["roller_material"].tolist() == ["PA6", name]
 
@@ -173,7 +221,7 @@ def test_the_study_of_a_carriage_keeps_names_of_rollers_cases_and_materials(tmp_
 
 def test_a_formula_in_a_table_is_refused_and_a_name_with_an_apostrophe_is_taken(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    study = {"name": "s", "design": "table", "table": "t.csv", "outputs": ["forces"]}
+    study = {"name": "s", "method": "table", "table": "t.csv", "outputs": ["forces"]}
     (tmp_path / "t.csv").write_text("label,velocity\n=1+1,60\nb,70\n")
     with pytest.raises(InputError, match=r"this is a formula\. Write its value; if it is a name, write ' before it"):
         tr.load_study(study)

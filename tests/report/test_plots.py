@@ -27,8 +27,8 @@ from trackroller.report.figures.panels import CLASSES, capped
 from trackroller.report.figures.sensitivity import morris_plane
 from trackroller.report.figures.study import OF_CASES, draw_all
 from trackroller.report.numbers import level_text, number, rounded
-from trackroller.results.columns import at_surface
-from trackroller.results.groups import spaced_by_ratio
+from trackroller.results.case_columns import at_surface
+from trackroller.results.factor_levels import spaced_by_ratio
 from trackroller.results.sensitivity import analyse
 
 ALL = {
@@ -186,7 +186,7 @@ EFFECTS = {
     "name": "effects",
     "contact_model": "sliding",
     "outputs": ["forces"],
-    "design": "morris",
+    "method": "morris",
     "factors": {"friction_coefficient": {"uniform": [0.05, 0.3]}, "axial_force": {"uniform": [0, 40]}},
     "analysis": {"outputs": ["normal_force_1"]},
 }

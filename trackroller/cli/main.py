@@ -310,11 +310,11 @@ def carriage(
 @command("trackroller.cli.shelf", "print_shelf")
 def shelf(
     file: Annotated[
-        Path,
+        Path | None,
         typer.Argument(
             help="table of rollers, bearings or guides (CSV, .xlsx)", show_default=False
         ),
-    ],
+    ] = None,
     of: Annotated[
         str, typer.Option("--of", help="what a row is: roller, bearing or guide")
     ] = "roller",
@@ -322,6 +322,9 @@ def shelf(
         Path | None, typer.Option("--case", help="case whose rail and values the rows are put to")
     ] = None,
     settings: Annotated[list[str] | None, typer.Option("--set", help=SET_HELP)] = None,
+    example: Annotated[
+        bool, typer.Option("--example", help="print a table to start from, or write it to FILE")
+    ] = False,
 ) -> None:
     """Show the rows of a shelf and check them: names, units, values, and whether they fit the
     rail.
@@ -332,7 +335,10 @@ def shelf(
 def size(  # noqa: PLR0913 - one argument for each option of the command
     case: Annotated[
         Path,
-        typer.Argument(help="case or study file (YAML) with loads, rail, duty", show_default=False),
+        typer.Argument(
+            help="case, carriage, spectrum or study file (YAML) with loads, rail, duty",
+            show_default=False,
+        ),
     ],
     shelf: Annotated[Path, typer.Option("--shelf", help="table of rollers", show_default=False)],
     life: Annotated[
@@ -346,6 +352,12 @@ def size(  # noqa: PLR0913 - one argument for each option of the command
     ] = None,
     least: Annotated[
         str | None, typer.Option("--least", help="column of the shelf, such as price")
+    ] = None,
+    each: Annotated[
+        bool, typer.Option("--each", help="each place of a carriage takes its own roller")
+    ] = False,
+    out: Annotated[
+        Path | None, typer.Option("-o", "--out", help="with --each: write this carriage (.yaml)")
     ] = None,
     results: Results = Path("results"),
     as_json: Annotated[bool, typer.Option("--json", help="print JSON")] = False,

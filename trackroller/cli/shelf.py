@@ -6,39 +6,60 @@ from __future__ import annotations
 
 import json
 import math
+import os
+import shlex
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from trackroller.cli.case import case_of
-from trackroller.cli.usage import print_doubts
+from trackroller.cli.case import YAML, read_case, writable, write_yaml_file
+from trackroller.cli.usage import print_doubts, print_line
+from trackroller.damage import limit_word
 from trackroller.damage.bearing import FIELD as BEARING
 from trackroller.damage.catalogue import FIELD as CATALOGUE
+from trackroller.damage.stud import FIELD as STUD
 from trackroller.errors import InputError
-from trackroller.files import files_beside
-from trackroller.numerics.units import PLAIN
-from trackroller.parameters import PARAMETERS
+from trackroller.files import files_beside, write_text
+from trackroller.report.sizing import head_of, lead_of, notes_of, shown
 from trackroller.report.terminal import print_table, print_text
-from trackroller.study.design.entries import SHELVES, SIZES
+from trackroller.study.design.entries import SHELVES
 from trackroller.study.design.levels import entries, in_words
 from trackroller.study.file.load import parse_study
-from trackroller.study.file.shelf import ROLLER, base_of_case, with_rows, without_overridden
+from trackroller.study.file.shelf import ROLLER, base_beside_shelf, with_rows, without_overridden
+from trackroller.study.file.shelf_example import EXAMPLE
 from trackroller.study.file.study import Study
 from trackroller.study.store.crate import write_crate
 from trackroller.study.store.ledger import study_folder
 
 if TYPE_CHECKING:
+    from trackroller.results.mounting import Mounting
+    from trackroller.results.results import Results
     from trackroller.results.size import Sizing
 
 
-def print_shelf(file: Path, of: str, case: Path | None, settings: list[str] | None) -> None:
+def print_shelf(
+    file: Path | None,
+    of: str,
+    case: Path | None,
+    settings: list[str] | None,
+    example: bool = False,
+) -> None:
     """Print the rows of a shelf after all checks of a study: `of` says of what, a case gives rail
-    and empty cells.
+    and empty cells. With `example`, print a shelf to start from, or write it to `file`.
     """
+    if example:
+        _write_example(file)
+        return
+    if file is None or not file.exists():
+        remedy = (
+            "Check the path, or write one to start from: trackroller shelf --example rollers.csv"
+        )
+        wrong = "is not given" if file is None else "does not exist"
+        raise InputError("shelf", str(file or ""), "the path of a table of rollers", remedy, wrong)
     if of not in SHELVES:
         raise InputError("--of", of, ", ".join(SHELVES), "Choose one of them.")
     study = shelf_study(file, of, case, settings)
     factor = study.parsed[of]
-    heads = ["name", *(_head(name, factor.units) for name in factor.beside)]
+    heads = ["name", *(head_of(name, factor.units) for name in factor.beside)]
     rows = []
     for i, level in enumerate(factor.levels):
         values = [_cell(name, column[i]) for name, column in factor.beside.items()]
@@ -48,6 +69,22 @@ def print_shelf(file: Path, of: str, case: Path | None, settings: list[str] | No
     print_doubts(study.doubts())
 
 
+def _write_example(file: Path | None) -> None:
+    """Write or print the example of a shelf; a file that is there stays."""
+    if file is None:
+        print(EXAMPLE, end="")
+        return
+    if file.suffix.lower() != ".csv" or os.path.lexists(file):
+        wrong = ""
+        if os.path.lexists(file):
+            wrong = "is there already"
+        allowed = "a new file whose name ends in .csv"
+        raise InputError("shelf", str(file), allowed, "Give another name.", wrong)
+    write_text(writable(file), EXAMPLE)
+    then = f"trackroller shelf {shlex.quote(str(file))}"
+    print_line(f"{file} is written. Write your rollers into it, then: {then}")
+
+
 def print_size(  # noqa: PLR0913 - one argument for each option of the command
     case: Path,
     shelf: Path,
@@ -55,11 +92,19 @@ def print_size(  # noqa: PLR0913 - one argument for each option of the command
     failures: str | None,
     safety: str | None,
     least: str | None,
+    each: bool,
+    out: Path | None,
     results: Path,
     as_json: bool,
     quiet: bool,
 ) -> int:
-    """Print which rollers of a shelf are enough, and return the exit code: 0 if one is."""
+    """Print which rollers of a shelf are enough, and return the exit code: 0 if one is.
+
+    With `each`, `out` receives the carriage file with the roller of each place.
+    """
+    target = None
+    if out is not None:
+        target = _target(out, each)
     from trackroller.results.size import size  # heavy: analysis
 
     sizing = size(
@@ -69,56 +114,75 @@ def print_size(  # noqa: PLR0913 - one argument for each option of the command
         failures=failures,
         safety=safety,
         least=least,
+        each=each,
         results=results,
         progress=not quiet,
     )
-    solved = [own for own in (sizing.results, sizing.overload) if own is not None]
-    for own in solved:
+    for own in _studies_of(sizing):
         write_crate(study_folder(own.study.name, results).root)
+    is_met = bool(sizing.least)
+    if sizing.mounting is not None:
+        is_met = sizing.mounting.enough
+    if target is not None and sizing.mounting is not None and sizing.mounting.enough:
+        write_yaml_file(target, sizing.mounting.carriage)
     if as_json:
         print(json.dumps(sizing.to_dict(), ensure_ascii=False, allow_nan=False))
-        return int(not sizing.least)
-    print_text(_first_sentence(sizing))
-    if sizing.open_and_less:
-        print_text(
-            f"open, and less: {', '.join(sizing.open_and_less)}. A finer accuracy or better values "
-            "decide"
-        )
-    if sizing.unranked:
-        print_text(f"{', '.join(sizing.unranked)}: no {sizing.least_of}, and so not ranked by it")
-    units = {**solved[0].study.parsed[ROLLER].units, "life_hours": "h"}
-    heads = [_head(str(name), units) for name in sizing.table]
-    print_table(
-        heads, [[_shown(value) for value in row] for row in sizing.table.itertuples(index=False)]
-    )
-    for own in solved:
+        return int(not is_met)
+    _print_sizing(sizing, target)
+    return int(not is_met)
+
+
+def _print_sizing(sizing: Sizing, target: Path | None) -> None:
+    """Print the least roller, the table of rollers, their load ratios, and the places of a
+    carriage.
+    """
+    print_text(lead_of(sizing))
+    for sentence in notes_of(sizing):
+        print_text(sentence)
+    rows = [[shown(value) for value in row] for row in sizing.table.itertuples(index=False)]
+    print_table([head_of(str(name), sizing.units) for name in sizing.table], rows)
+    if sizing.ratios is not None:
+        _print_ratios(sizing)
+    if sizing.mounting is not None:
+        _print_mounting(sizing.mounting, target)
+    for own in _studies_of(sizing):
         print_text(f"study {own.study.name}: trackroller report {own.study.name} writes its page")
-    return int(not sizing.least)
 
 
-def _first_sentence(sizing: Sizing) -> str:
-    """Return which roller to take, in one sentence."""
-    if not sizing.least:
-        return "No roller of the shelf is surely enough."
-    row = sizing.table.set_index(ROLLER).loc[sizing.least]
-    parts = []
-    if sizing.least_of:
-        parts.append(f"{sizing.least_of} {row[sizing.least_of]:g}")
-    if "life_ratio" in row:
-        parts.append(f"{row['life_ratio']:.3g} times the required life")
-    if "overload" in row:
-        parts.append("within all limits at the forces times the safety")
-    number = int((sizing.table["verdict"] == "enough").sum())
-    return f"{sizing.least} is the least of {number} that are enough: {', '.join(parts)}."
+def _studies_of(sizing: Sizing) -> list[Results]:
+    """Return the solved studies of a sizing."""
+    return [own for own in (sizing.results, sizing.overload) if own is not None]
 
 
-def _shown(value: Any) -> str:
-    """Return a value of the table of rollers as text."""
-    if isinstance(value, float):
-        if math.isnan(value):
-            return "–"
-        return f"{value:.4g}"
-    return str(value) or "–"
+def _target(out: Path, each: bool) -> Path:
+    """Return the path of the carriage file, checked before anything is solved."""
+    if not each:
+        raise InputError("--out", str(out), "a file beside --each", "Add --each, or leave it out.")
+    if out.suffix.lower() not in YAML:
+        raise InputError("--out", str(out), "a name that ends in .yaml", "Give another name.")
+    return writable(out)
+
+
+def _print_mounting(mounting: Mounting, target: Path | None) -> None:
+    """Print the roller of each place of a carriage."""
+    if mounting.enough:
+        print_text("each place with its own roller, solved together:")
+    else:
+        print_text("No rollers are enough together; these are at their place alone:")
+    heads = [head_of(str(name), {}) for name in mounting.table]
+    rows = [[shown(value) for value in row] for row in mounting.table.itertuples(index=False)]
+    print_table(heads, rows)
+    if target is not None and mounting.enough:
+        print_text(f"{target}: the carriage with these rollers")
+
+
+def _print_ratios(sizing: Sizing) -> None:
+    """Print what all forces of the case may be multiplied by until each limit is reached."""
+    assert sizing.ratios is not None
+    table = sizing.ratios.table.reindex(sizing.table[ROLLER])
+    print_text("all forces may be multiplied by, until a limit is at 100 %:")
+    rows = [[name, *map(shown, row)] for name, *row in table.itertuples()]
+    print_table([ROLLER, *(limit_word(str(name)) for name in table)], rows)
 
 
 def shelf_study(file: Path, of: str, case: Path | None, settings: list[str] | None) -> Study:
@@ -127,8 +191,7 @@ def shelf_study(file: Path, of: str, case: Path | None, settings: list[str] | No
     """
     base: dict[str, Any] = {}
     if case is not None or settings:
-        given, _, _ = case_of(case, settings)
-        base = base_of_case(given)
+        base, _, _ = read_case(case, settings, base_beside_shelf)
     with files_beside(file):
         keys, places = with_rows(
             {"name": "shelf", "base": base, "factors": {of: {"file": file.name}}}
@@ -137,22 +200,10 @@ def shelf_study(file: Path, of: str, case: Path | None, settings: list[str] | No
         return parse_study(without_overridden(keys, of))
 
 
-def _head(name: str, units: Any) -> str:
-    """Return the head of a column with its unit."""
-    unit = units.get(name, "")
-    if name in PARAMETERS:
-        unit = PARAMETERS[name].unit
-    elif name in SIZES:
-        unit = "mm"
-    if unit in PLAIN:
-        return name
-    return f"{name} [{unit}]"
-
-
 def _cell(name: str, value: Any) -> str:
     """Return a value of a row as text."""
     if value is None or value == "" or (isinstance(value, float) and math.isnan(value)):
         return "–"
-    if name in (BEARING.name, CATALOGUE.name):
+    if name in (BEARING.name, CATALOGUE.name, STUD.name):
         return entries(json.loads(value))
     return in_words(name, value)

@@ -135,7 +135,7 @@ def write_page(path: Path, text: str) -> Path:
 
 
 def _browser() -> str | None:
-    return next((found for name in _BROWSERS if (found := shutil.which(name))), None)
+    return next(filter(None, map(shutil.which, _BROWSERS)), None)
 
 
 def _print(text: str, path: Path) -> None:
@@ -143,11 +143,14 @@ def _print(text: str, path: Path) -> None:
     with tempfile.TemporaryDirectory(
         prefix="trackroller-print-", ignore_cleanup_errors=True
     ) as place:
-        page, made = Path(place, "page.html"), Path(place, "page.pdf")
+        page = Path(place, "page.html")
+        pdf = Path(place, "page.pdf")
         page.write_text(text, encoding="utf-8")
         # root has no sandbox
-        alone = ["--no-sandbox"] if getattr(os, "geteuid", lambda: 1)() == 0 else []
-        own = [f"--user-data-dir={place}/profile", f"--print-to-pdf={made}", page.as_uri()]
+        alone = []
+        if getattr(os, "geteuid", lambda: 1)() == 0:
+            alone = ["--no-sandbox"]
+        own = [f"--user-data-dir={place}/profile", f"--print-to-pdf={pdf}", page.as_uri()]
         try:
             subprocess.run(
                 [str(_browser()), *_PRINT, *alone, *own],
@@ -155,7 +158,7 @@ def _print(text: str, path: Path) -> None:
                 timeout=_PATIENCE,
                 check=True,
             )
-            shutil.copyfile(made, path)
+            shutil.copyfile(pdf, path)
         except (subprocess.SubprocessError, OSError) as exc:
             raise WorkError(
                 f"{_browser()} does not print the page: {exc}. Give a name that ends in .html."

@@ -13,11 +13,11 @@ import xarray as xr
 from trackroller.errors import InputError
 from trackroller.results import SHOWN
 from trackroller.results.answer import Answer
-from trackroller.results.by_tests import ByTests, by_tests_of
 from trackroller.results.candidates import Candidates, candidates_of
 from trackroller.results.how_it_behaves import answer_how_it_behaves
+from trackroller.results.lives_by_tests import ByTests, by_tests_of
 from trackroller.results.pareto import pareto, study_pareto
-from trackroller.results.questions import answer_of
+from trackroller.results.questions import answer_of_study
 from trackroller.results.sensitivity import analysis_of, indices_of
 from trackroller.results.solved_cases import SolvedCases
 from trackroller.results.summary import summary_of
@@ -91,11 +91,11 @@ class Results(SolvedCases):
             If the study has another design.
         """
         if not self.design.method.points:
-            remedy = "Take indices() for this study, or give the study design: inner_outer."
+            remedy = "Take indices() for this study, or give the study method: inner_outer."
             raise InputError(
-                "design",
+                "method",
                 self.design.method.name,
-                "design inner_outer, which has design points",
+                "method inner_outer, which has design points",
                 remedy,
             )
         return self.indices()
@@ -122,8 +122,9 @@ class Results(SolvedCases):
         """
         if objectives is None and constraints is None:
             return study_pareto(self)
-        limits = self.config.constraints if constraints is None else constraints
-        return pareto(self, objectives or self.goals, limits)
+        if constraints is None:
+            constraints = self.config.constraints
+        return pareto(self, objectives or self.goals, constraints)
 
     def candidates(self, free: tuple[str, ...] = ()) -> Candidates | None:
         """Return the combinations of choices, each judged over its conditions.
@@ -150,7 +151,7 @@ class Results(SolvedCases):
         Answer or None
             See `trackroller.results.answer.Answer`; None for a search that did not come to its end.
         """
-        return answer_of(self)
+        return answer_of_study(self)
 
     @property
     def by_tests(self) -> ByTests | None:
@@ -159,8 +160,8 @@ class Results(SolvedCases):
         Returns
         -------
         ByTests or None
-            See `trackroller.results.by_tests.ByTests`; None without a material that was fitted to
-            tests.
+            See `trackroller.results.lives_by_tests.ByTests`; None without a material that was
+            fitted to tests.
         """
         return by_tests_of(self)
 
@@ -189,11 +190,11 @@ class Results(SolvedCases):
             return pd.DataFrame()
         if not candidates.comparable:
             remedy = (
-                "Give the choices as lists and the conditions as distributions with design: "
+                "Give the choices as lists and the conditions as distributions with method: "
                 "inner_outer."
             )
             raise InputError(
-                "design", self.design.method.name, "designs that share their conditions", remedy
+                "method", self.design.method.name, "designs that share their conditions", remedy
             )
         if not candidates.ranks:
             remedy = "Add life to outputs, and run the study again."

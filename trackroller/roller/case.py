@@ -118,9 +118,9 @@ class Case(_Numbers):
     placeholder_position : float or None
         Place of the placeholders of materials in their ranges: -1 the worse end, 0 the value, 1 the
         better end [1]. Without it, lives have the range between the ends.
-    bearing, catalogue, wear_table : mapping or None
-        Bearing inside the roller, limits of a maker's catalogue, and table of the energy law of
-        wear; see "Parameters, options and results".
+    bearing, catalogue, wear_table, stud : mapping or None
+        Bearing inside the roller, limits of a maker's catalogue, table of the energy law of wear,
+        and stud or axle that carries the roller; see "Parameters, options and results".
 
     Attributes
     ----------

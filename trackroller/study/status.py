@@ -221,11 +221,11 @@ def plan_rows(study: Study, status: Status) -> list[tuple[str, str]]:
     seconds = status.seconds_left + START
     threads = thread_count()
     source = "measured" if status.measured else "estimated"
-    pages = seconds_of_report(study.config.design, status.total)
+    pages = seconds_of_report(study.config.method_name, status.total)
     grows = study.config.until is not None or study.config.method.proposes
     small = bool(parts) and not grows and seconds_on(threads, seconds) < SHORT
     rows = [
-        ("study", f"{study.name} ({study.config.design})"),
+        ("study", f"{study.name} ({study.config.method_name})"),
         ("cases", f"{status.total}, {status.done} of them solved already"),
         *_growth_rows(study),
     ]

@@ -9,7 +9,7 @@ from trackroller.environment import leave_out
 leave_out("dask", "pint")  # before xarray asks for them
 
 from trackroller.cli.workflow import log_to
-from trackroller.results.growing import next_step
+from trackroller.results.sample_growth import next_step
 from trackroller.study.file.load import load_study
 from trackroller.study.store.put import put_text
 
