@@ -86,8 +86,9 @@ def test_a_state_of_just_so_many_cases_counts_as_rare():
 def test_the_rate_of_several_models_is_that_of_their_times_together(monkeypatch):
     """A study with a quick and a slow model takes the time of both: the rate is the harmonic mean."""
     models = {"contact_model": {"values": ["sliding", "kalker"]}}
-    study = SimpleNamespace(factors=models, options={}, friction_laws=[None])
-    monkeypatch.setattr(cost, "rate", lambda options, law: {"sliding": 100.0, "kalker": 1.0}[options["contact_model"]])
+    study = SimpleNamespace(factors=models, options={}, friction_laws=[None], config=SimpleNamespace(base={}))
+    rates = {"sliding": 100.0, "kalker": 1.0}
+    monkeypatch.setattr(cost, "rate", lambda options, law, fields: rates[options["contact_model"]])
     assert cost.study_rate(study) == pytest.approx(2 / (1 / 100 + 1 / 1))
 
 

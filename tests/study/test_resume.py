@@ -200,11 +200,11 @@ class Stopped(BaseException):
 
 
 def test_stopped_run_keeps_its_complete_chunks_and_tells_progress_within_a_chunk(tmp_path, solved):
-    data = changed(friction_coefficient=np.linspace(0.05, 0.4, 14).tolist()) | {"chunk_size": 210}
+    data = changed(friction_coefficient=np.linspace(0.05, 0.4, 30).tolist()) | {"chunk_size": 300}
     steps: list[tuple[int, int]] = []
 
     def solver(design, database=None, **options):
-        if sum(solved().values()) >= 250:
+        if sum(solved().values()) >= 500:
             raise Stopped
         block = fake_solver.solve(design)
         block["regime"][:2] = chunks.FAILED
@@ -212,9 +212,9 @@ def test_stopped_run_keeps_its_complete_chunks_and_tells_progress_within_a_chunk
 
     with pytest.raises(Stopped):
         run_study(parse_study(data), tmp_path, solver=solver, progress=lambda *counts: steps.append(counts))
-    assert steps == [(64, 2), (146, 2), (64, 2)]
+    assert steps == [(64, 2), (236, 2), (256, 2)], "the second chunk begins with the block at which the first ended"
     _, ds, _ = run(data, tmp_path)
-    assert sum(n - 1 for n in solved().values()) == 64, "the block that was solved in the chunk that was stopped"
+    assert sum(n - 1 for n in solved().values()) == 256, "the block that was solved in the chunk that was stopped"
     assert np.isfinite(ds["normal_force"]).all()
 
 

@@ -143,7 +143,7 @@ def test_a_script_tells_an_error_of_the_work_in_one_line(tmp_path, error, lines)
 @pytest.mark.slow
 def test_an_empty_folder_gets_the_default_study(tmp_path):
     told = snakemake(tmp_path, "-n")
-    assert {"design", "solve", "gather", "sensitivity", "figures", "report", "crate"} == set(started(told)) - {
+    assert {"design", "solve", "gather", "sensitivity", "report"} == set(started(told)) - {
         "all",
         "study",
     }
@@ -234,10 +234,10 @@ def test_the_comparison_of_contact_models_is_a_study_like_any_other(place, targe
         assert started(told) == ["contact_models"]
     else:
         study = ROOT / "validation" / "config" / "contact_models.yaml"
-        assert {"figures", "report"} <= set(started(snakemake(place, "-n", "--config", f"study={study}")))
+        assert {"sensitivity", "report"} <= set(started(snakemake(place, "-n", "--config", f"study={study}")))
 
 
 def test_a_users_run_holds_no_rule_of_the_validation(place):
     rules = set(snakemake(place, "--list-rules").split())
     assert not rules & {"extremes", "tradeoff", "paper", "contact_models", "benchmark"}
-    assert {"design", "solve", "gather", "sensitivity", "figures", "report"} <= rules
+    assert {"design", "solve", "gather", "sensitivity", "report"} <= rules

@@ -25,8 +25,7 @@ ALLOCATIONS = 100_000
 def run() -> None:
     """Import the command line and run it; Ctrl-C during the import ends in one sentence, too."""
     gc.set_threshold(ALLOCATIONS)
-    if sys.argv[1:2] == ["solve"]:
-        leave_out("dask", "pint")  # xarray imports them where it can
+    leave_out("dask", "pint")  # xarray imports them where it can
     try:
         # read before the line is parsed: the import registers the limits
         if ALLOW_CODE in sys.argv:

@@ -24,13 +24,13 @@ LEVELS = ("preview", "standard", "reference")
 FILE = Path(__file__).with_name("costs.json")
 # Seconds of one core of a complete case in sliding at standard, on a quiet machine of two cores.
 # The measured costs are ratios to this case.
-YARDSTICK = 1.9e-3
+YARDSTICK = 0.95e-3
 
 
 @cache
-def _ratios() -> Any:
+def measured_costs() -> Any:
     """Return the measured costs of forces and of peaks, by friction law, contact model and rung,
-    and shares of rungs.
+    those of limits, and shares of rungs.
 
     Each cost is a ratio to `YARDSTICK`.
     """
@@ -59,7 +59,7 @@ class Cost:
     @classmethod
     def measured(cls, name: str, friction: str = "models") -> Cost:
         """Return the cost of a built-in model from the ratios of `validation.tradeoff`."""
-        ratios = _ratios()
+        ratios = measured_costs()
         spent = [[YARDSTICK * ratio for ratio in ratios[friction][name][level]] for level in LEVELS]
         shares = {
             quantity: {float(tolerance): tuple(own) for tolerance, own in by_tolerance.items()}
@@ -154,6 +154,8 @@ class ModelDeclaration:
         Measured cost; orders of magnitude.
     falling : Cost, optional
         Measured cost where friction depends on the slip speed; by default `cost`.
+    film : Cost, optional
+        Measured cost with a film between the bodies; by default `cost`.
     source : str
         Digest of the source of a model from outside, which `register` adds for the identity of its
         cases.
@@ -174,7 +176,16 @@ class ModelDeclaration:
     cheaper: str = ""
     cost: Cost = Cost()
     falling: Cost | None = None
+    film: Cost | None = None
     source: str = ""
+
+    def cost_of(self, friction_falls: bool, has_film: bool) -> Cost:
+        """Return the cost of a case by its friction and its film."""
+        if friction_falls:
+            return self.falling or self.cost
+        if has_film:
+            return self.film or self.cost
+        return self.cost
 
     def check(self, option: str, value: str) -> None:
         """Refuse a word of `normal` or `slip_terms` that the model does not serve."""
@@ -222,6 +233,7 @@ _BUILT_IN = (
         cheaper="kalker_table",
         cost=Cost.measured("kalker"),
         falling=Cost.measured("kalker", "falling"),
+        film=Cost.measured("kalker", "films"),
     ),
     ModelDeclaration(
         "kalker_table",

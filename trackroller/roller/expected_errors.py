@@ -2,11 +2,7 @@
 
 from __future__ import annotations
 
-import functools
-import json
 from collections.abc import Mapping
-from dataclasses import dataclass
-from importlib import resources
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -19,6 +15,7 @@ from trackroller.parameters import OPTIONS
 from trackroller.parameters.accuracy import PEAK_OUTPUTS, RUNGS, settings_of
 from trackroller.parameters.contact_models import DECLARED
 from trackroller.roller.dataset import solved_by
+from trackroller.roller.measured_errors import Levels, measured
 from trackroller.roller.options import model_in_use
 
 if TYPE_CHECKING:
@@ -27,7 +24,6 @@ if TYPE_CHECKING:
     from trackroller.roller.case_table import CaseTable
     from trackroller.roller.options import Options
 
-FILE = "expected_errors.json"  # measured errors by contact model, rung and quantity
 _QUANTITY_OF = {
     "normal_force": "normal_force",
     "lateral_force": "friction_force",
@@ -44,25 +40,6 @@ _QUANTITY_OF = {
 }
 # other quantities: to themselves
 _RELATIVE_TO = {"friction_force": "mu F_N", "spin_moment": "mu F_N sqrt(a b)"}
-
-
-@dataclass(frozen=True)
-class Levels:
-    """Measured relative errors over the sample of designs: percentiles, and `bound`, which 99 % of
-    all cases keep.
-    """
-
-    median: float
-    p95: float
-    p99: float
-    bound: float
-
-
-@functools.cache
-def _measured() -> Any:
-    return json.loads(
-        resources.files("trackroller.roller").joinpath(FILE).read_text(encoding="utf-8")
-    )
 
 
 def is_rung(options: Options) -> bool:
@@ -128,8 +105,8 @@ def ratio_error(accuracy: str, contact_model: str, quantity: str = "life") -> fl
 
 def _calibration(accuracy: str, contact_model: str) -> dict[str, Any]:
     """Return what was measured of the told errors of a rung; nothing if it was not."""
-    measured: dict[str, Any] = _measured()["told"].get(contact_model, {}).get(accuracy, {})
-    return measured
+    calibration: dict[str, Any] = measured()["told"].get(contact_model, {}).get(accuracy, {})
+    return calibration
 
 
 def expected_errors(options: Options, contact_model: str, plain: bool) -> dict[str, Levels]:
@@ -148,7 +125,7 @@ def expected_errors(options: Options, contact_model: str, plain: bool) -> dict[s
         return {}
     errors = CLASSES[contact_model].errors()
     if not errors and is_rung(options):
-        errors = _measured()["models"].get(contact_model, {}).get(options.settings.name, {})
+        errors = measured()["models"].get(contact_model, {}).get(options.settings.name, {})
     # its life alone was measured
     published = options.life_criterion == OPTIONS["life_criterion"].default
     return {name: Levels(*levels) for name, levels in errors.items() if published or name != "life"}

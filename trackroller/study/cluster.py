@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from trackroller.environment import SAFE_PATH
+from trackroller.environment import SAFE_PATH, take_in
 from trackroller.errors import InputError, WorkError
 from trackroller.files import cores
 from trackroller.study.cost import rate
@@ -59,6 +59,7 @@ def workers(scheduler: str, tell: Tell = unheard) -> Iterator[Executor]:
 
 
 def _client(scheduler: str) -> Any:
+    take_in("dask")
     try:
         import dask  # slow to import
         from distributed import Client

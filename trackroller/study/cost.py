@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from itertools import product
 from typing import TYPE_CHECKING, Any
 
@@ -11,7 +11,12 @@ from trackroller.damage import verdict
 from trackroller.methods import METHODS
 from trackroller.parameters import OPTIONS
 from trackroller.parameters.accuracy import PEAK_OUTPUTS, tolerance_of
-from trackroller.parameters.contact_models import DECLARED, SOLVED_PATCHES
+from trackroller.parameters.contact_models import (
+    DECLARED,
+    SOLVED_PATCHES,
+    YARDSTICK,
+    measured_costs,
+)
 from trackroller.study.design.entries import OPTION_FACTORS
 
 if TYPE_CHECKING:
@@ -33,23 +38,35 @@ _BYTES = {
     "subsurface": 1_500_000,
 }
 _BYTES_OF_A_LIMIT = 150
-# s; the limits of forces take no time
-_PATCH_LIMITS = {"shakedown": 0.012, "heat": 0.004, "multiaxial": 0.06}
+# share of the processor time of solving that threads divide among them; measured on random designs
+# without limits of patches
+SHARED = 0.7
+_FILM = "layer_flexibility"
+_WITH_HEAT = "limits with heat"  # what was measured for cases that give the fields of heat
+_HEATED = {"heat_transfer_coefficient", "cooled_area"}  # fields of a case, which few cases give
 
 
-def rate(options: Mapping[str, Any], friction_law: Any = None) -> float:
-    """Return the expected cases a second on one core for keyword arguments of `solve` and a
-    friction law of a case.
+def rate(
+    options: Mapping[str, Any], friction_law: Any = None, fields: Collection[str] = ()
+) -> float:
+    """Return the expected cases a second on one core.
+
+    Parameters
+    ----------
+    options : mapping
+        Keyword arguments of `solve`.
+    friction_law : str or mapping, optional
+        Friction law of a case.
+    fields : collection of str
+        Fields that a case gives and that are not 0; a film and the fields of the limit of heat take
+        time.
     """
     accuracy = options.get("accuracy", "standard")
     groups = set(options.get("outputs", ("forces",)))
     model = options.get("contact_model", OPTIONS["contact_model"].default)
     peaks = bool(groups & PEAK_OUTPUTS)
     tolerance = tolerance_of(accuracy, groups)
-    if law_of(friction_law).is_constant:
-        cost = DECLARED[model].cost
-    else:
-        cost = DECLARED[model].falling or DECLARED[model].cost
+    cost = DECLARED[model].cost_of(not law_of(friction_law).is_constant, _FILM in fields)
     if options.get("normal") == "halfspace":
         cost = SOLVED_PATCHES
     if tolerance is not None:
@@ -61,26 +78,55 @@ def rate(options: Mapping[str, Any], friction_law: Any = None) -> float:
         seconds += _TRACTIONS
     if "subsurface" in groups:
         seconds += _SUBSURFACE
-    if verdict.GROUP in groups and "shakedown" not in options.get("not_checked", ()):
-        # the materials of the database have what it needs; heat needs fields that few cases give
-        groups.add("shakedown")
-    seconds += sum(_PATCH_LIMITS.get(group, 0.0) for group in groups)
-    return 1.0 / seconds
+    return 1.0 / (seconds + _seconds_of_limits(groups, options.get("not_checked", ()), fields))
 
 
-def study_rate(study: Study) -> float:
-    """Return the expected cases a second of a study, in which model, normal problem and friction
-    may be factors.
+def _seconds_of_limits(
+    groups: Collection[str], not_checked: Collection[str], fields: Collection[str]
+) -> float:
+    """Return the expected time of the limits of a case on one core; those of forces take none."""
+    ratios: dict[str, float] = measured_costs()["limits"]
+    spent = sum(ratio for name, ratio in ratios.items() if name in groups and name != verdict.GROUP)
+    if verdict.GROUP in groups:
+        heats = set(fields) >= _HEATED and not {"heat"} & {*groups, *not_checked}
+        shakes = not {"shakedown"} & {*groups, *not_checked}
+        # the materials of the database have what shakedown needs
+        if shakes:
+            spent += ratios[verdict.GROUP]
+        if heats:
+            spent += max(ratios[_WITH_HEAT] - ratios[verdict.GROUP], 0.0)
+    return YARDSTICK * spent
+
+
+def study_rate(study: Study, accuracy: str | None = None) -> float:
+    """Return the expected cases a second of a study, in which model, normal problem, friction and
+    film may be factors, at its own accuracy or on another rung.
     """
+    stated = study.options
+    if accuracy is not None:
+        stated = stated | {"accuracy": accuracy}
     varied = {
         name: spec["values"] for name, spec in study.factors.items() if name in OPTION_FACTORS
     }
     options = [
-        study.options | dict(zip(varied, values, strict=True))
-        for values in product(*varied.values())
+        stated | dict(zip(varied, values, strict=True)) for values in product(*varied.values())
     ]
-    several = [rate(*each) for each in product(options, study.friction_laws)]
+    given = {name for name, value in study.config.base.items() if value} | set(study.factors)
+    films = study.factors.get(_FILM, {}).get("values", [_FILM in given])
+    several = []
+    for one, law, film in product(options, study.friction_laws, films):
+        fields = given - {_FILM}
+        if film:
+            fields = given | {_FILM}
+        several.append(rate(one, law, fields))
     return len(several) / sum(1.0 / each for each in several)
+
+
+def seconds_on(cores: int, seconds: float) -> float:
+    """Return the time [s] that a process with so many threads takes for what takes one core
+    `seconds`.
+    """
+    return seconds * (1.0 - SHARED + SHARED / cores)
 
 
 def seconds_of_report(design: str, cases: int) -> float:

@@ -5,7 +5,6 @@ stopped.
 from __future__ import annotations
 
 import contextlib
-import functools
 import json
 from collections.abc import Iterator
 from dataclasses import dataclass, field
@@ -18,7 +17,7 @@ import xarray as xr
 
 from trackroller.files import interrupts_wait_for_files, locked
 from trackroller.study.cluster import workers
-from trackroller.study.solve_chunk import Executor, Solver, solve_chunk, solve_here
+from trackroller.study.solve_chunk import Executor, LocalExecutor, Solver, solve_chunk
 from trackroller.study.store import chunks
 from trackroller.study.store.fingerprint import StudyCases
 from trackroller.study.store.folder import Count, StudyFolder, Tell, unheard
@@ -74,7 +73,7 @@ class Runner:
     def executor(self) -> Executor:
         """Return what solves a list of cases; workers start with the first list."""
         if self.scheduler is None:
-            return functools.partial(solve_here, solver=self.solver)
+            return LocalExecutor(self.solver)
         return self._until_end.enter_context(workers(self.scheduler, self.tell))
 
     @contextlib.contextmanager
@@ -169,11 +168,12 @@ def solve_study(study: Study, started: Count = unheard, progress: Count = unhear
     )
     started(len(group), 0)
     blocks = []
+    executor = LocalExecutor()
     for number, settings in enumerate(options):
         part = cases.isel(case=np.flatnonzero(group == number)).assign_attrs(
             options=json.dumps(settings)
         )
-        for block in solve_here(part, study.materials):
+        for block in executor(part, study.materials):
             blocks.append(block)
             progress(*chunks.counts(block))
     solved = chunks.join(blocks).sel(case=cases["case"].values)

@@ -8,6 +8,7 @@ import json
 import logging
 import time
 from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -23,6 +24,7 @@ from trackroller.study.store.input_files import check_inputs
 
 log = logging.getLogger("trackroller")
 BLOCK_SECONDS = 3.0  # between two steps of the progress bar
+FIRST_BLOCK = 64
 SMALLEST_BLOCK = 16
 LARGEST_BLOCK = 8192
 Solver = Callable[..., Any]
@@ -67,7 +69,7 @@ def solve_cases(
     Returns
     -------
     xarray.Dataset
-        Results of the cases, with the `seconds` that solving took as attribute.
+        Results of the cases, with the `seconds` of processor time that solving took as attribute.
 
     Raises
     ------
@@ -80,7 +82,7 @@ def solve_cases(
         from trackroller.roller.solver import solve
 
         solver = solve
-    started = time.perf_counter()
+    started = time.process_time()
     options = json.loads(cases.attrs["options"])
     blocks: list[xr.Dataset] = []
     pending = [cases]
@@ -105,7 +107,7 @@ def solve_cases(
                 ]
             else:
                 blocks.append(chunks.failure(names, _reason(exc)))
-    return chunks.join(blocks).assign_attrs(seconds=time.perf_counter() - started)
+    return chunks.join(blocks).assign_attrs(seconds=time.process_time() - started)
 
 
 def _reason(exc: Exception) -> str:
@@ -117,18 +119,37 @@ def _reason(exc: Exception) -> str:
     return f"{type(exc).__name__}: {text}"[:200]
 
 
-def solve_here(
-    cases: xr.Dataset, database: MaterialDatabase | None, solver: Solver | None = None
-) -> Iterator[xr.Dataset]:
-    """Solve cases in this process, in blocks of about `BLOCK_SECONDS`."""
-    start = 0
-    size = 64
-    while start < cases.sizes["case"]:
-        begun = time.perf_counter()
-        yield solve_cases(cases.isel(case=slice(start, start + size)), database, solver)
-        start += size
-        spent = max(time.perf_counter() - begun, 1e-3)
-        size = min(max(int(size * min(4.0, BLOCK_SECONDS / spent)), SMALLEST_BLOCK), LARGEST_BLOCK)
+@dataclass
+class LocalExecutor:
+    """Solves lists of cases in this process, in blocks of about `BLOCK_SECONDS`.
+
+    A list begins with the size of block at which the list before it has ended.
+
+    Parameters
+    ----------
+    solver : callable, optional
+        Replaces `trackroller.solve`.
+    """
+
+    solver: Solver | None = None
+    size: int = FIRST_BLOCK
+
+    def __call__(
+        self, cases: xr.Dataset, database: MaterialDatabase | None
+    ) -> Iterator[xr.Dataset]:
+        """Yield the solved blocks of a list of cases."""
+        start = 0
+        while start < cases.sizes["case"]:
+            begun = time.perf_counter()
+            block = cases.isel(case=slice(start, start + self.size))
+            solved = solve_cases(block, database, self.solver)
+            spent = max(time.perf_counter() - begun, 1e-3)
+            start += self.size
+            count = block.sizes["case"]
+            enough = int(count * min(4.0, BLOCK_SECONDS / spent))
+            if count == self.size or enough < self.size:
+                self.size = min(max(enough, SMALLEST_BLOCK), LARGEST_BLOCK)
+            yield solved
 
 
 def solve_chunk(
@@ -136,7 +157,7 @@ def solve_chunk(
     name: str,
     database: MaterialDatabase | None = None,
     *,
-    executor: Executor = solve_here,
+    executor: Executor | None = None,
     tell: Tell = log.warning,
     progress: Count = unheard,
     inputs: Reads | None = None,
@@ -153,8 +174,8 @@ def solve_chunk(
     database : MaterialDatabase, optional
         The materials; the built-in ones and the user's by default.
     executor : callable
-        Solves the cases of a list and yields blocks: `solve_here`, or the dask workers of
-        `cluster`.
+        Solves the cases of a list and yields blocks: a `LocalExecutor` (default), or the dask
+        workers of `cluster`.
     tell : callable
         Receives one line for each event that the user should read.
     progress : callable
@@ -183,7 +204,7 @@ def solve_chunk(
             _check_unchanged(folder, cases, database)
             started = time.perf_counter()
             blocks = []
-            for block in executor(cases, database):
+            for block in (executor or LocalExecutor())(cases, database):
                 blocks.append(block)
                 progress(*chunks.counts(block))
             spent = time.perf_counter() - started

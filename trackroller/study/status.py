@@ -5,6 +5,7 @@ the time left.
 from __future__ import annotations
 
 import contextlib
+import math
 from collections import Counter
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -13,9 +14,22 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from rich.filesize import decimal
 
+from trackroller.contact.friction_laws import law_of
 from trackroller.errors import InputError, nearest
-from trackroller.parameters import REGIMES
-from trackroller.study.cost import START, bytes_a_case, duration, seconds_of_report, study_rate
+from trackroller.numerics.numbers import rounded_up
+from trackroller.numerics.threads import thread_count
+from trackroller.parameters import OPTIONS, REGIMES
+from trackroller.parameters.accuracy import tolerance_of
+from trackroller.parameters.contact_models import EXACTNESS, LEVELS, measured_costs
+from trackroller.roller.measured_errors import errors_of_rung
+from trackroller.study.cost import (
+    START,
+    bytes_a_case,
+    duration,
+    seconds_of_report,
+    seconds_on,
+    study_rate,
+)
 from trackroller.study.design.growth import as_planned
 from trackroller.study.design.levels import in_words
 from trackroller.study.file.load import load_study
@@ -29,8 +43,11 @@ from trackroller.study.store.manifest import why_altered
 if TYPE_CHECKING:
     from trackroller.study.file.study import Study
 
-# s on two cores; a shorter study waits longer for the workers of a cluster than it gains by them
+# s here; a shorter study waits longer for the workers of a cluster than it gains by them
 SHORT = 600.0
+# quantities whose errors a plan states beside the time of a rung
+SHOWN = {"normal_force": "F_N", "peak_stress": "peak stress", "life": "life"}
+LEAST_ERROR = 1e-6  # smaller errors are shown as this one
 
 
 @dataclass
@@ -202,11 +219,11 @@ def plan_rows(study: Study, status: Status) -> list[tuple[str, str]]:
     else:
         size = f"up to {chunk} cases"
     seconds = status.seconds_left + START
+    threads = thread_count()
     source = "measured" if status.measured else "estimated"
-    times = f"{duration(seconds)} on one core, {duration(seconds / 2)} on two"
     pages = seconds_of_report(study.config.method_name, status.total)
     grows = study.config.until is not None or study.config.method.proposes
-    small = bool(parts) and not grows and seconds / 2 < SHORT
+    small = bool(parts) and not grows and seconds_on(threads, seconds) < SHORT
     rows = [
         ("study", f"{study.name} ({study.config.method_name})"),
         ("cases", f"{status.total}, {status.done} of them solved already"),
@@ -216,12 +233,81 @@ def plan_rows(study: Study, status: Status) -> list[tuple[str, str]]:
         rows.append(("unused", status.unused))
     if parts:
         rows.append(("chunks", f"{parts} of {size}; each is saved once it is solved"))
-    rows.append(("time", f"{times} ({source} cases/s: {status.speed:.3g})"))
+    rows.append(("time", f"{_times(seconds, threads)} ({source} cases/s: {status.speed:.3g})"))
+    rows += _accuracy_rows(study, status)
     if small:
-        rows.append(("cluster", f"not needed: {duration(seconds / 2)} on two cores"))
+        rows.append(("cluster", f"not needed: {duration(seconds_on(threads, seconds))} here"))
     rows.append(("report", f"{duration(pages)} more on one core, for analysis, figures and page"))
     rows.append(("disk", f"about {decimal(status.total * bytes_a_case(study.config.outputs))}"))
     return rows
+
+
+def _times(seconds: float, threads: int) -> str:
+    """Return in words what takes so many seconds of one core: there, and with all threads of `run`
+    and of the workflow.
+    """
+    if threads == 1:
+        return f"{duration(seconds)} on one core"
+    alone = f"{duration(seconds_on(threads, seconds))} by trackroller run with {threads} threads"
+    together = f"{duration(seconds / threads)} by snakemake --cores {threads}"
+    return f"{duration(seconds)} on one core, {alone}, {together}"
+
+
+def _accuracy_rows(study: Study, status: Status) -> list[tuple[str, str]]:
+    """Return time and measured error of each rung of accuracy, and what a tolerance flags.
+
+    The times are in the ratio of the estimates where the speed was measured.
+    """
+    chosen = study.options.get("accuracy", OPTIONS["accuracy"].default)
+    per_estimate = status.speed / study_rate(study)
+    rows = []
+    model = _model_with_known_errors(study)
+    for rung in LEVELS:
+        seconds = status.missing / (per_estimate * study_rate(study, rung)) + START
+        parts = [f"{rung}: {duration(seconds)} on one core"]
+        if rung == chosen:
+            parts[0] += ", this study"
+        errors = errors_of_rung(model, rung)
+        parts += [
+            f"{word} {_percent(errors[name].p95)}" for name, word in SHOWN.items() if name in errors
+        ]
+        rows.append(("accuracy", ", ".join(parts)))
+    if model:
+        text = "numerical, which 95 % of random designs keep"
+        if model != EXACTNESS[0]:
+            text = f"{text}; the error of {model} as a model comes on top"
+        rows.append(("errors", text))
+    if chosen not in LEVELS:
+        rows.append(("tolerance", _tolerance_text(study)))
+    return rows
+
+
+def _model_with_known_errors(study: Study) -> str:
+    """Return the contact model of a study whose errors on each rung were measured; '' for others:
+    several models, solved patches, falling friction.
+    """
+    varied = {"contact_model", "normal"} & set(study.factors)
+    constant = all(law_of(law).is_constant for law in study.friction_laws)
+    if varied or not constant or study.options.get("normal", "hertz") != "hertz":
+        return ""
+    return str(study.options.get("contact_model", OPTIONS["contact_model"].default))
+
+
+def _percent(share: float) -> str:
+    return f"{100.0 * rounded_up(max(share, LEAST_ERROR)):.2g} %"
+
+
+def _tolerance_text(study: Study) -> str:
+    """Return what a tolerance costs over `standard`, and which designs miss it."""
+    tolerance = tolerance_of(study.options["accuracy"], study.options.get("outputs", ()))
+    strictest = min(tolerance.by_quantity.values()) if tolerance is not None else math.inf
+    missed = {float(name): share for name, share in measured_costs()["missed"].items()}
+    at = min(missed, key=lambda known: abs(math.log(known / strictest)))
+    times = study_rate(study, "standard") / study_rate(study)
+    return (
+        f"takes {times:.2g} times standard; at {at:g}, {missed[at]:.0%} of designs with friction "
+        f"to 1 and contact angles of 15 to 70 degrees miss it on every rung and are flagged"
+    )
 
 
 def _growth_rows(study: Study) -> list[tuple[str, str]]:

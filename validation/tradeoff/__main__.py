@@ -1,7 +1,7 @@
 """Measure error and cost of the rungs of accuracy and of the contact models: python -m validation.tradeoff FOLDER.
 
 The folder receives `tradeoff.json` and `figures/`. With `--small`, two designs of each sample show that it runs.
-With `--told`, told errors alone are measured; all other numbers are the stored ones.
+With `--told`, told errors alone are measured, and with `--costs` costs alone; all other numbers are the stored ones.
 """
 
 import json
@@ -14,8 +14,9 @@ os.environ.setdefault("NUMBA_NUM_THREADS", "1")  # processor times of one thread
 from trackroller.files import write_text
 from validation.benchmarks.command import plain
 from validation.tradeoff.figures import draw_all
-from validation.tradeoff.measure import FINEST, measure
+from validation.tradeoff.measure import FINEST, all_costs, measure
 from validation.tradeoff.told import measure_told
+from validation.tradeoff.truth import Truth
 
 STORED = Path(__file__).resolve().parents[2] / "docs" / "data" / "tradeoff.json"
 
@@ -24,6 +25,9 @@ if __name__ == "__main__":
     few = 2 if "--small" in sys.argv else 0
     if "--told" in sys.argv:
         found = json.loads(STORED.read_text(encoding="utf-8")) | {"told": measure_told(few, FINEST)}
+    elif "--costs" in sys.argv:
+        costs = all_costs(Truth.read().few(few or 230), few, 1 if few else 2)
+        found = json.loads(STORED.read_text(encoding="utf-8")) | costs
     else:
         found = measure(few, repeats=1 if few else 2)
     draw_all(found, folder / "figures")

@@ -41,6 +41,9 @@ FINEST = replace(
     peak=FINEST_SEARCH,
 )
 LEVELS = (50, 99)  # percentiles of the page
+FILM = 1e-5  # mm3/N, layer of 10 um with a shear modulus of 1 GPa
+HEATED = {"heat_transfer_coefficient": 20.0, "cooled_area": 3000.0}  # W/(m2 K) and mm2, what the limit of heat needs
+PATCH_LIMITS = ("shakedown", "heat", "multiaxial")  # limits that take time
 
 
 def seconds(
@@ -87,6 +90,47 @@ def falling_costs(truth: Truth, repeats: int, seed: int = 3) -> list[dict[str, A
         {"model": model, "accuracy": rung, "complete": whole / one, "forces": part / one}
         for (model, rung), whole, part in zip(asked, *spent, strict=True)
     ]
+
+
+def film_costs(cases: list[tr.Case], repeats: int) -> list[dict[str, Any]]:
+    """Return the costs of ordinary designs with a film between the bodies over the yardstick without one."""
+    films = [replace(case, **{"layer_flexibility": FILM}) for case in cases]
+    one = min(seconds(cases, [YARDSTICK], COMPLETE, repeats))
+    asked = [(model, rung) for model in MODELS if DECLARED[model].films for rung in RUNGS]
+    spent = (seconds(films, asked, outputs, repeats) for outputs in (COMPLETE, FORCES))
+    return [
+        {"model": model, "accuracy": rung, "complete": whole / one, "forces": part / one}
+        for (model, rung), whole, part in zip(asked, *spent, strict=True)
+    ]
+
+
+def limit_costs(cases: list[tr.Case], repeats: int) -> dict[str, float]:
+    """Return the costs of groups of limits in addition to complete ordinary designs, over the yardstick.
+
+    The group `limits` has whatever the materials of a design allow, `limits with heat` heat as well, which needs fields
+    that few cases give.
+    """
+    one = min(seconds(cases, [YARDSTICK], COMPLETE, repeats))
+    standard = [("kalker", "standard")]
+    complete = min(seconds(cases, standard, COMPLETE, repeats))
+    heated = [replace(case, **HEATED) for case in cases]
+    asked = {"limits": (cases, "limits"), "limits with heat": (heated, "limits")}
+    asked |= {name: (heated, name) for name in PATCH_LIMITS}
+    return {
+        name: max(min(seconds(own, standard, (*COMPLETE, group), repeats)) - complete, 0.0) / one
+        for name, (own, group) in asked.items()
+    }
+
+
+def all_costs(truth: Truth, few: int, repeats: int) -> dict[str, Any]:
+    """Return the numbers of `plan`: costs of rungs, of falling friction, of films and of limits."""
+    ordinary = [case for case, own in zip(truth.cases, truth.sample, strict=True) if own == "ordinary"]
+    return {
+        "costs": costs(truth, repeats),
+        "falling": falling_costs(truth.few(min(few or 10, 10)), 1),
+        "films": film_costs(ordinary[: few or 60], 1),
+        "limits": limit_costs(ordinary, repeats),
+    }
 
 
 def _of_sample(truth: Truth, name: str, values: np.ndarray) -> np.ndarray:
@@ -182,8 +226,7 @@ def measure(few: int = 0, repeats: int = 2) -> dict[str, Any]:
     }
     return {
         "designs": {name: int(np.sum(truth.sample == name)) for name in SAMPLES} | {"sliding": few or CHEAP},
-        "costs": costs(part, repeats),
-        "falling": falling_costs(truth.few(min(few or 10, 10)), 1),
+        **all_costs(truth, few, repeats),
         "rungs": rungs(truth, part, sample(few or CHEAP)),
         "tolerances": tolerances(truth),
         "told": measure_told(few, FINEST),

@@ -1,5 +1,9 @@
 """Write the design of a study."""
 
+from trackroller.environment import leave_out
+
+leave_out("dask", "pint")  # before xarray asks for them
+
 from trackroller.cli.workflow import log_to, workflow_ledger
 from trackroller.study.store.gather import write_design
 

@@ -2,6 +2,10 @@
 
 import logging
 
+from trackroller.environment import leave_out
+
+leave_out("dask", "pint")  # before xarray asks for them
+
 from trackroller.cli.workflow import log_to, workflow_ledger
 from trackroller.study.store.gather import gather
 

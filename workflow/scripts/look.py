@@ -4,6 +4,10 @@ import json
 import logging
 from pathlib import Path
 
+from trackroller.environment import leave_out
+
+leave_out("dask", "pint")  # before xarray asks for them
+
 from trackroller.cli.workflow import log_to
 from trackroller.results.sample_growth import next_step
 from trackroller.study.file.load import load_study

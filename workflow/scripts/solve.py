@@ -3,6 +3,10 @@
 import logging
 from pathlib import Path
 
+from trackroller.environment import leave_out
+
+leave_out("dask", "pint")  # before xarray asks for them
+
 from trackroller.cli.workflow import log_to, show_progress
 from trackroller.study.solve_chunk import solve_chunk
 from trackroller.study.store.folder import StudyFolder

@@ -48,7 +48,7 @@ if TYPE_CHECKING:
     from trackroller.study.file.study import Study
 
 # seconds of solving a chunk: long beside the start of a job (1-2 s), short to lose
-SHORTEST, LONGEST = 8.0, 40.0
+SHORTEST, LONGEST = 6.0, 40.0
 LARGEST_CHUNK = 20_000
 MOST_LEVELS = 3  # that the words for a chunk list
 
@@ -180,8 +180,8 @@ def study_folder(study_name: str, results: Path | str = "results") -> StudyFolde
 
 
 def chunk_size(study: Study, cases: int) -> int:
-    """Return the number of cases of a chunk: some seconds of solving, and at least two chunks for
-    two processors.
+    """Return the number of cases of a chunk: some seconds of solving, and an even number of chunks
+    for two processors.
 
     A killed process loses the chunks that it works on, so a chunk of slow cases holds few of them.
     """
@@ -189,7 +189,9 @@ def chunk_size(study: Study, cases: int) -> int:
         return study.config.chunk_size
     speed = study_rate(study)
     seconds = min(max(cases / speed / 16, SHORTEST), LONGEST)
-    return max(1, min(round(speed * seconds), math.ceil(cases / 2), LARGEST_CHUNK))
+    most = max(1, min(round(speed * seconds), LARGEST_CHUNK))
+    pairs = max(1, math.ceil(cases / (2 * most)))
+    return max(1, math.ceil(cases / (2 * pairs)))
 
 
 def plan_key(study: Study) -> str:
