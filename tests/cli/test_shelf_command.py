@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
@@ -79,3 +80,69 @@ def test_the_example_is_written_shown_and_sized(tmp_path, monkeypatch):
     Path("case.yaml").write_text(text)
     done = run(app, ["size", "case.yaml", "--shelf", "rollers.csv", "--life", "100", "--least", "price", "-q"])
     assert done.exit_code == 0 and "small is the least of" in done.output
+
+
+HEADS = "name;axis_distance [mm];roller_profile_radius [mm];roller_material;bearing_outer_diameter [mm]"
+RATED = "catalogue_radial_force [N];catalogue_axial_force [N];catalogue_basic_life [km];price [EUR]"
+MISTAKES = {  # row, column, wrong cell, message
+    5: (0, "R4", "line 7: name = 'R4' stands in line 6 too"),
+    11: (1, "25 um mm", "line 13: axis_distance"),
+    20: (2, "6,5", "line 22: roller_profile_radius = '6,5'.* one decimal sign"),
+    26: (8, "12 USD", "line 28: price"),
+    30: (4, "80", "line 32: bearing_outer_diameter = 80.0 .*less than the rolling diameter"),
+    33: (3, "1.7225-quenched", "line 35: roller_material .*1.7225-quenched-tempered"),
+    41: (5, "swapped", "line 43: catalogue_axial_force = '800 N' is larger than the permissible radial force"),
+    50: (2, "-5.5", "line 52: roller_profile_radius = -5.5 .*conform or interlock"),
+}
+
+
+def shelf_of_60(path, mistakes):
+    lines = [f"{HEADS};{RATED}"]
+    for i in range(60):
+        cells = [f"R{i}", f"{18 + i / 2}", "-6.5", "1.7225-quenched-tempered", "22", "800", "300", "100", f"{8 + i}.5"]
+        if i in mistakes:
+            column, cell, _ = MISTAKES[i]
+            cells[column] = cell
+            if cell == "swapped":
+                cells[5:7] = "300", "800"
+        lines.append(";".join(cells))
+    path.write_text("\n".join(lines) + "\n")
+    return path
+
+
+def test_all_mistakes_of_a_shelf_are_told_at_once_by_row_and_column(tmp_path):
+    path = shelf_of_60(tmp_path / "rollers.csv", MISTAKES)
+    with pytest.raises(InputError) as refused:
+        run(path)
+    errors = list(refused.value.errors)
+    assert [error.line for error in errors] == [i + 2 for i in MISTAKES]
+    for error, (_, _, message) in zip(errors, MISTAKES.values(), strict=True):
+        assert re.search(message, str(error)), str(error)
+    assert "rows: 60" in run(shelf_of_60(path, {}))  # corrected
+    for i in MISTAKES:  # each alone
+        with pytest.raises(InputError, match=MISTAKES[i][2]) as alone:
+            run(shelf_of_60(path, {i}))
+        assert len(list(alone.value.errors)) == 1
+
+
+def test_a_size_tells_the_mistakes_of_its_shelf_too(tmp_path):
+    path = shelf_of_60(tmp_path / "rollers.csv", MISTAKES)
+    case = {"radial_force": -100, "motor_force": 0}
+    with pytest.raises(InputError) as refused:
+        tr.size(case, path, life=100)
+    assert [error.line for error in refused.value.errors] == [i + 2 for i in MISTAKES]
+
+
+def test_requirements_that_nothing_meets_name_what_excludes_each_roller(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    shelf_of_60(tmp_path / "rollers.csv", {})
+    text = (tmp_path / "rollers.csv").read_text().splitlines()
+    (tmp_path / "rollers.csv").write_text("\n".join(text[:4]) + "\n")
+    case = {"radial_force": -100, "motor_force": 0, "contact_model": "sliding", "accuracy": "preview"}
+    for required, words in (
+        ({"life": 1e9}, "life: fatigue after"),
+        ({"safety": 1e4}, "overload: "),
+        ({"life": 100, "failures": "1%"}, "no scatter of"),
+    ):
+        found = tr.size(case, "rollers.csv", **required)
+        assert found.least == "" and found.table["excluded_by"].str.contains(words).all()

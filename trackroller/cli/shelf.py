@@ -197,7 +197,8 @@ def shelf_study(file: Path, of: str, case: Path | None, settings: list[str] | No
             {"name": "shelf", "base": base, "factors": {of: {"file": file.name}}}
         )
     with places.in_files():
-        return parse_study(without_overridden(keys, of))
+        study = parse_study(without_overridden(keys, of))
+    return study
 
 
 def _cell(name: str, value: Any) -> str:

@@ -17,6 +17,7 @@ from trackroller.damage.own import digests
 from trackroller.errors import Collector, InputError, nearest, raise_all, unknown_name
 from trackroller.files import Reads, files_beside, find_beside, noted_reads, read_text
 from trackroller.materials import load_database
+from trackroller.methods.factor import ROWS
 from trackroller.numerics.numbers import number_in
 from trackroller.numerics.plain import mapping_of
 from trackroller.parameters import MATERIAL_FIELDS
@@ -25,11 +26,12 @@ from trackroller.parameters.example import not_given
 from trackroller.roller.aliases import OTHER_OPTIONS, WRITTEN, study_with_radii, with_options
 from trackroller.roller.duty import OVERROLLINGS, checked_duty, is_of_strokes, of_roller
 from trackroller.study.design.carriage_cases import common_values, given_by
+from trackroller.study.design.entries import SHELVES
 from trackroller.study.file.checks import check_cells, check_geometry, cross_check, named_materials
 from trackroller.study.file.config import StudyFile
 from trackroller.study.file.goals import Analysis, check_analysed, to_first_limit
 from trackroller.study.file.search import Budget
-from trackroller.study.file.shelf import names_of_columns, with_rows
+from trackroller.study.file.shelf import names_of_columns, rows_named, with_rows
 from trackroller.study.file.study import Study
 from trackroller.study.file.until import Until
 from trackroller.study.file.user_columns import column_names
@@ -347,7 +349,44 @@ def parse_study(
         inputs |= {path: ("limit", digest) for path, digest in digests().items()}
         data, places = with_rows(data)
         with places.in_files():
-            return _checked_study(data, path, database, planned, inputs)
+            study = _checked_rows(data, path, database, planned, inputs)
+        return study
+
+
+def _checked_rows(
+    data: Mapping[str, Any], path: Path | None, database: Any, planned: bool, inputs: Reads
+) -> Study:
+    """Return the checked study, see `_checked_study`; raise the errors of all rows of its shelves,
+    also those that a check finds only where an earlier one has passed.
+    """
+    wrong = Collector()
+    remaining = data
+    while True:
+        try:
+            study = _checked_study(remaining, path, database, planned, inputs)
+        except InputError as error:
+            wrong.errors += error.errors
+            remaining = _without_rows(remaining, error)
+            if remaining:
+                continue
+        wrong.check()
+        return study
+
+
+def _without_rows(data: Mapping[str, Any], error: InputError) -> dict[str, Any]:
+    """Return a study without the rows of the shelf that all of some errors name; {} if there are
+    none, or if no row is left.
+    """
+    factors = _mapping(data.get("factors"))
+    for shelf in (name for name in SHELVES if isinstance(factors.get(name), Mapping)):
+        rows = factors[shelf].get(ROWS)
+        if not isinstance(rows, list) or not all(isinstance(row, Mapping) for row in rows):
+            continue
+        named = rows_named(shelf, rows, error)
+        others = [row for row in rows if str(row.get("name")) not in named]
+        if named and others:
+            return {**data, "factors": {**factors, shelf: {**factors[shelf], ROWS: others}}}
+    return {}
 
 
 def _checked_study(

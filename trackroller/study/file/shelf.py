@@ -12,7 +12,7 @@ cell of a parameter takes the value of `base`.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -62,17 +62,39 @@ Place = tuple[Path, int]
 class Places:
     """Where the rows of shelves stand: the file and the number of the line, by shelf and name of
     the row.
+
+    Attributes
+    ----------
+    lines : dict
+        File and line by shelf and name of the row.
+    errors : list of InputError
+        Errors of rows that were left out, so that the checks of the other rows find theirs. They
+        are raised by `in_files`.
     """
 
     lines: dict[tuple[str, str], Place] = field(default_factory=dict)
+    errors: list[InputError] = field(default_factory=list)
 
     @contextmanager
     def in_files(self) -> Iterator[None]:
-        """Name file, line and column in errors on rows of shelves."""
-        try:
+        """Name file, line and column in errors on rows of shelves, and raise those of `errors`
+        with them.
+        """
+        wrong = Collector()
+        with wrong.part():
             yield
-        except InputError as error:
+        errors = [*self.errors, *(self._placed(one) for one in wrong.errors)]
+        raise_all(sorted(errors, key=lambda error: (str(error.file or ""), error.line or 0)))
+
+    def leave_out(self, shelf: str, rows: Sequence[Mapping[str, Any]], error: InputError) -> Any:
+        """Return the rows without those that an error names, and note it; raise it if it names
+        none, or all of them.
+        """
+        named = rows_named(shelf, rows, error)
+        if not named or len(named) == len(rows):
             raise_all(self._placed(one) for one in error.errors)
+        self.errors += [self._placed(one) for one in error.errors]
+        return [row for row in rows if str(row.get("name")) not in named]
 
     def _placed(self, error: InputError) -> InputError:
         for (shelf, name), place in self.lines.items():
@@ -119,15 +141,47 @@ def with_rows(data: Mapping[str, Any]) -> tuple[dict[str, Any], Places]:
             if isinstance(spec.get(ROWS), list) and all(
                 isinstance(row, Mapping) for row in spec[ROWS]
             ):
-                with places.in_files():
-                    spec[ROWS] = _filled(shelf, spec[ROWS], left)
-                    _check_ratings(shelf, spec[ROWS])
+                spec[ROWS] = _sound_rows(shelf, spec[ROWS], left, places)
         given[shelf] = spec
     wrong.check()
     out = {**data, "factors": given}
     if base is not None:
         out["base"] = left
     return out, places
+
+
+def _sound_rows(
+    shelf: str, rows: list[Mapping[str, Any]], base: dict[str, Any], places: Places
+) -> list[dict[str, Any]]:
+    """Return the rows with the values of `base` in empty cells, without those that are wrong."""
+    filled: list[dict[str, Any]] = []
+    values = dict(base)
+    try:
+        filled = _filled(shelf, rows, values)
+    except InputError as error:
+        values = dict(base)
+        filled = _filled(shelf, places.leave_out(shelf, rows, error), values)
+    for name in {*base} - {*values}:
+        del base[name]
+    try:
+        _check_ratings(shelf, filled)
+    except InputError as error:
+        return list(places.leave_out(shelf, filled, error))
+    return filled
+
+
+def rows_named(shelf: str, rows: Iterable[Mapping[str, Any]], error: InputError) -> set[str]:
+    """Return the names of the rows that each of some errors names; none where an error names no
+    row.
+    """
+    heads = {f"{field_of_row(shelf, str(row.get('name')))}.": str(row.get("name")) for row in rows}
+    named = set()
+    for one in error.errors:
+        own = [name for head, name in heads.items() if one.field.startswith(head)]
+        if not own:
+            return set()
+        named.add(own[-1])
+    return named
 
 
 def without_overridden(keys: Mapping[str, Any], shelf: str) -> dict[str, Any]:
@@ -261,26 +315,29 @@ def _read(shelf: str, file: Any, places: Places) -> dict[str, Any]:
     known = _units_of(keys) | dict.fromkeys((*SIZES, OUTER_DIAMETER), "mm") | own_units
     wrong = Collector()
     table = read_table(path, KIND, "row", wrong, (), [*heads, *known], known)
-    with wrong.part():
-        _check_heads(table, path, keys)
+    _check_heads(table, path, keys)
     with wrong.part():
         _note_names(table, shelf, path, places)
-    wrong.check()
-    columns, units = _own_columns(table, own_units, keys, path)
-    rows = []
+    if any(error.line not in table.lines for error in wrong.errors):
+        wrong.check()
+    columns, units = _own_columns(table, own_units, keys, path, wrong)
+    rows = {}
     for place, (number, cells) in enumerate(table.lines.items()):
         row = dict(zip(table.names, cells, strict=True))
         with wrong.part():
-            rows.append(
-                _row(row, shelf, keys) | {name: values[place] for name, values in columns.items()}
-            )
+            own = {name: values[place] for name, values in columns.items()}
+            rows[number] = _row(row, shelf, keys) | own
         for error in wrong.errors:
             if not error.line:
                 error.at(path, number)
-    wrong.check()
+    wrong_lines = {error.line for error in wrong.errors}
+    sound = [row for number, row in rows.items() if number not in wrong_lines]
+    if not sound:
+        wrong.check()
+    places.errors += wrong.errors
     if units:
-        return {ROWS: rows, "units": units}
-    return {ROWS: rows}
+        return {ROWS: sound, "units": units}
+    return {ROWS: sound}
 
 
 def _keys_of(shelf: str) -> dict[str, tuple[MappingField, str]]:
@@ -411,10 +468,9 @@ def _row(cells: Mapping[str, str], shelf: str, keys: Keys) -> dict[str, Any]:
 
 
 def _own_columns(
-    table: UserTable, units: Mapping[str, str], keys: Keys, path: Path
+    table: UserTable, units: Mapping[str, str], keys: Keys, path: Path, wrong: Collector
 ) -> tuple[dict[str, list[Any]], dict[str, str]]:
     """Return the values and the units of the user's own columns by their names in a study."""
-    wrong = Collector()
     columns: dict[str, list[Any]] = {}
     shown: dict[str, str] = {}
     for j, head in enumerate(table.names):
@@ -432,7 +488,6 @@ def _own_columns(
             columns[name] = [float(cell) if cell else None for cell in cells.values()]
         else:
             columns[name] = [str(cell) for cell in cells.values()]
-    wrong.check()
     return columns, shown
 
 
