@@ -115,7 +115,8 @@ def hysteresis_moments(
 def evaluate(solved: SolvedRollers) -> Values:
     """Return temperature rises [K], (n, contact, body), partition and hysteresis, (n, contact).
 
-    `drive_torque` [N mm], (n,), takes in the hysteresis of both contacts.
+    `drive_torque` [N mm] and `rolling_resistance` [N], (n,), take in the hysteresis of both
+    contacts.
     """
     m = solved.materials
     v = solved.values
@@ -140,11 +141,17 @@ def evaluate(solved: SolvedRollers) -> Values:
     used = np.where(
         (room <= 0.0) & ~np.isnan(rise), np.inf, rise / np.where(room > 0.0, room, np.nan)
     )
+    lossy = np.nan_to_num(moments.sum(axis=2).sum(axis=1))
+    with_hysteresis = {}
+    if "rolling_resistance" in v:
+        resistance = v["rolling_resistance"] + lossy / solved.rolling_radius
+        with_hysteresis["rolling_resistance"] = resistance
     return {
         # the drive turns the roller against the loss; without a known loss the torque is that of
         # the tractions alone one axis after the other: the order of a sum over two depends on the
         # number of cases
-        "drive_torque": v["drive_torque"] + np.nan_to_num(moments.sum(axis=2).sum(axis=1)),
+        "drive_torque": v["drive_torque"] + lossy,
+        **with_hysteresis,
         "flash_temperature_rise": flashes,
         "bulk_temperature_rise": bulks,
         "heat_utilisation": used,

@@ -11,22 +11,22 @@ import xarray as xr
 from trackroller.parameters import REGIMES
 from trackroller.parameters.carriage_fields import long_name_of
 from trackroller.results.answer import Answer, Column, Curve
-from trackroller.results.answer_parts import (
+from trackroller.results.case_ranges import CaseRanges
+from trackroller.results.comparison import compared_output
+from trackroller.results.effect_curves import Effects
+from trackroller.results.ends_by_factor import ends_by_factor
+from trackroller.results.ranking import estimate, headline, index_words, order, robust_design
+from trackroller.results.requirement import required_of
+from trackroller.results.sensitivity import analysis_of
+from trackroller.results.solved_cases import SolvedCases
+from trackroller.results.study_facts import (
     case_cautions,
     checks_left_out,
     facts_of,
     given_for_nothing,
     not_given_words,
 )
-from trackroller.results.case_ranges import CaseRanges
-from trackroller.results.comparison import compared_output
-from trackroller.results.effect_curves import Effects
-from trackroller.results.first_ends import ends_by_factor
-from trackroller.results.places import level_text
-from trackroller.results.ranking import estimate, headline, index_words, order, robust_design
-from trackroller.results.requirement import required_of
-from trackroller.results.sensitivity import analysis_of
-from trackroller.results.solved_cases import SolvedCases
+from trackroller.results.subgroups import level_text
 from trackroller.roller.output_names import is_life
 from trackroller.study.design.entries import OPTION_FACTORS
 from trackroller.study.outputs import default_names
@@ -49,9 +49,9 @@ def shown_ranges(results: SolvedCases) -> CaseRanges | None:
         if life is not None and named[0] == life[0]:
             return CaseRanges(results, life, True)
         return CaseRanges(results, (named[0], words, units), is_life(named[0]))
-    found = compared_output(results, required)
-    if found is not None:
-        return CaseRanges(results, *found)
+    compared = compared_output(results, required)
+    if compared is not None:
+        return CaseRanges(results, *compared)
     for name in default_names(results.data, results.design.factors, results.dims):
         _, units, words = results.quantity(name)
         return CaseRanges(results, (name, words, units), False)
@@ -77,9 +77,12 @@ def answer_what_matters(results: SolvedCases) -> Answer:
     table = _table(results, ranges, curves)
     sens = _indices(results, ranges)
     rows = results.of_one_model()
+    kind = "indices"
+    if sens is None:
+        kind = "curves"
     return Answer(
         question="what matters",
-        kind="curves" if sens is None else "indices",
+        kind=kind,
         headline={"factors": [_named(table, curves, place) for place in range(min(2, len(table)))]},
         output=ranges.output,
         table=table,
@@ -104,7 +107,9 @@ def _indices(results: SolvedCases, ranges: CaseRanges) -> xr.Dataset | None:
     name = ranges.output[0]
     if sens is None or robust_design(sens) or name not in sens["output"].values:
         return None
-    return sens if order(sens, name) and headline(sens) in sens else None
+    if order(sens, name) and headline(sens) in sens:
+        return sens
+    return None
 
 
 def _table(results: SolvedCases, ranges: CaseRanges, curves: tuple[Curve, ...]) -> pd.DataFrame:
@@ -114,26 +119,34 @@ def _table(results: SolvedCases, ranges: CaseRanges, curves: tuple[Curve, ...]) 
     sens = _indices(results, ranges)
     known = {curve.factor: curve for curve in curves}
     lost = _lost(results, ranges)
-    found = []
+    rows = []
     for name in (n for n in results.factors if n not in OPTION_FACTORS):
-        curve = known.get(name)
         row: dict[str, Any] = {
             "factor": long_name_of(name),
             "name": name,
             "role": results.roles.get(name, ""),
             "range": _range(results, name),
-            "height": np.nan if curve is None else curve.height,
-            "shape": "" if curve is None else curve.shape,
-            "at_low": np.nan if curve is None else float(curve.middle[0]),
-            "at_high": np.nan if curve is None else float(curve.middle[-1]),
+            "height": np.nan,
+            "shape": "",
+            "at_low": np.nan,
+            "at_high": np.nan,
             "lost": lost[name],
         }
+        curve = known.get(name)
+        if curve is not None:
+            row["height"] = curve.height
+            row["shape"] = curve.shape
+            row["at_low"] = float(curve.middle[0])
+            row["at_high"] = float(curve.middle[-1])
         if sens is not None:
             row |= _index(sens, ranges.output[0], name)
-        found.append(row)
-    table = pd.DataFrame(found)
+        rows.append(row)
+    table = pd.DataFrame(rows)
     by_index = sens is not None and not index_words(sens, headline(sens)).sized
-    keys = ["index", "height"] if by_index and "index" in table else ["height"]
+    if by_index and "index" in table:
+        keys = ["index", "height"]
+    else:
+        keys = ["height"]
     return table.sort_values(keys, ascending=False, na_position="last", kind="stable").reset_index(
         drop=True
     )
@@ -151,7 +164,8 @@ def _index(sens: xr.Dataset, output: str, name: str) -> dict[str, Any]:
     value, low, high = estimate(part, index)[:, names.index(name)]
     if index_words(sens, index).sized:
         largest = float(np.nanmax(np.abs(estimate(part, index)[0])))
-        value = 0.0 if abs(value) < ROUNDING * largest else value
+        if abs(value) < ROUNDING * largest:
+            value = 0.0
     else:
         value, low, high = (float(np.clip(one, 0.0, 1.0)) for one in (value, low, high))
     return {
@@ -201,7 +215,7 @@ def _lost(results: SolvedCases, ranges: CaseRanges) -> dict[str, int]:
     most less least.
     """
     rows = results.of_one_model()
-    bad = (~ranges.held)[rows]
+    bad = (~ranges.holds)[rows]
     out = {}
     for name in results.factors:
         own = results.table[name].to_numpy()[rows]
@@ -225,24 +239,24 @@ def _named(table: pd.DataFrame, curves: tuple[Curve, ...], place: int) -> dict[s
     """Return what a headline says of a factor."""
     row = table.iloc[place]
     curve = next((one for one in curves if one.factor == row["name"]), None)
-    told: dict[str, Any] = {
+    head: dict[str, Any] = {
         "title": row["factor"],
         "name": row["name"],
         "height": float(row["height"]),
     }
-    told |= {key: float(row.get(key, np.nan)) for key in ("index", "index_low", "index_high")}
+    head |= {key: float(row.get(key, np.nan)) for key in ("index", "index_low", "index_high")}
     if curve is not None:
         low, high = (0, len(curve.levels) - 1)
         if not curve.ordered or curve.shape in ("hump", "dip"):
             low, high = int(curve.middle.argmin()), int(curve.middle.argmax())
-        told |= {
+        head |= {
             "units": curve.units,
             "from": curve.levels[low],
             "to": curve.levels[high],
             "at_from": float(curve.middle[low]),
             "at_to": float(curve.middle[high]),
         }
-    return told
+    return head
 
 
 def _in_order(curves: tuple[Curve, ...], table: pd.DataFrame) -> tuple[Curve, ...]:
@@ -250,9 +264,40 @@ def _in_order(curves: tuple[Curve, ...], table: pd.DataFrame) -> tuple[Curve, ..
     return tuple(sorted(curves, key=lambda curve: place.get(curve.factor, len(place))))
 
 
+def _index_columns(ranges: CaseRanges, table: pd.DataFrame, sens: xr.Dataset) -> list[Column]:
+    """Return the columns of the index of each factor, and of the factors it acts together with."""
+    index = headline(sens)
+    meaning = str(sens[index].attrs.get("long_name", index))
+    scale = ""
+    if "scale" in sens.coords:
+        scale = str(sens["scale"].sel(output=ranges.output[0]).item())
+    if index_words(sens, index).sized:
+        title = "Main effect"
+        kind = "number"
+        unit = ranges.output[2]
+        if scale == "log10":
+            unit = "decades"
+    else:
+        title = "Index"
+        kind = "share"
+        unit = "1"
+        meaning += ", cut to 0 to 100 %"
+    columns = [
+        Column("index", title, unit, meaning, kind),
+        Column("index_low", "95 %", unit, "interval of the index", kind, until="index_high"),
+    ]
+    if table["interacts"].any():
+        meaning = (
+            f"factors with which a pair surely holds {100 * WORTH:.0f} % of the variance or more"
+        )
+        columns.append(Column("interacts", "Interacts with", "", meaning, "text"))
+    return columns
+
+
 def _columns(
     ranges: CaseRanges, table: pd.DataFrame, sens: xr.Dataset | None
 ) -> tuple[Column, ...]:
+    """Return the columns of the table of factors."""
     _, words, units = ranges.output
     columns = [
         Column("factor", "Factor", "", "factor of the study", "text", role="name"),
@@ -260,44 +305,15 @@ def _columns(
         Column("range", "Range", "", "levels of the factor in this study", "text"),
     ]
     if sens is not None:
-        index = headline(sens)
-        share = not index_words(sens, index).sized
-        meaning = str(sens[index].attrs.get("long_name", index))
-        scale = (
-            str(sens["scale"].sel(output=ranges.output[0]).item()) if "scale" in sens.coords else ""
-        )
-        unit = "1" if share else "decades" if scale == "log10" else units
-        kind = "share" if share else "number"
-        columns += [
-            Column(
-                "index",
-                "Index" if share else "Main effect",
-                unit,
-                meaning + (", cut to 0 to 100 %" if share else ""),
-                kind,
-            ),
-            Column("index_low", "95 %", unit, "interval of the index", kind, until="index_high"),
-        ]
-        if table["interacts"].any():
-            meaning = (
-                f"factors with which a pair surely holds {100 * WORTH:.0f} % of the "
-                "variance or more"
-            )
-            columns.append(Column("interacts", "Interacts with", "", meaning, "text"))
-    positive = bool(np.nanmin(table["at_low"], initial=np.inf) > 0)
-    meaning = (
-        "largest over smallest value of the curve"
-        if positive
-        else "largest less smallest value of the curve"
-    )
+        columns += _index_columns(ranges, table, sens)
+    if np.nanmin(table["at_low"], initial=np.inf) > 0:
+        meaning = "largest over smallest value of the curve"
+        height = Column("height", "Height", "", meaning, "ratio")
+    else:
+        meaning = "largest less smallest value of the curve"
+        height = Column("height", "Height", units, meaning, "number")
     columns += [
-        Column(
-            "height",
-            "Height",
-            "" if positive else units,
-            meaning,
-            "ratio" if positive else "number",
-        ),
+        height,
         Column(
             "at_low",
             "At the first level",

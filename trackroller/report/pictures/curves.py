@@ -82,7 +82,8 @@ def _drawn(answer: Answer, curve: Curve, axis: Axis) -> Markup:
     parts = [upright_axis(axis, HEIGHT)]
     if numeric:
         parts += [_band(curve, axis, places), required_levels(answer, axis)]
-        parts += _dots(curve, axis, places) if len(places) <= MOST_NAMES else []
+        if len(places) <= MOST_NAMES:
+            parts += _dots(curve, axis, places)
         parts.append(_below(curve))
     else:
         parts += [
@@ -159,13 +160,13 @@ def points(places: Sequence[tuple[float, float]]) -> str:
 
 def _runs(known: np.ndarray) -> list[list[int]]:
     """Return neighbouring levels that have a value."""
-    found: list[list[int]] = []
+    runs: list[list[int]] = []
     for i in np.flatnonzero(known):
-        if found and found[-1][-1] == i - 1:
-            found[-1].append(int(i))
+        if runs and runs[-1][-1] == i - 1:
+            runs[-1].append(int(i))
         else:
-            found.append([int(i)])
-    return found
+            runs.append([int(i)])
+    return runs
 
 
 def _dots(curve: Curve, axis: Axis, places: Sequence[float]) -> list[Markup]:
@@ -209,8 +210,8 @@ def caption(answer: Answer) -> str:
         )
         text += f" {curve.title}: {names}."
     left = [f"{curve.title} {curve.left_out:,}" for curve in answer.curves if curve.left_out]
-    return (
-        f"{text} Valid cases without a partner at some level are left out: {', '.join(left)}."
-        if left
-        else text
-    )
+    if left:
+        return (
+            f"{text} Valid cases without a partner at some level are left out: {', '.join(left)}."
+        )
+    return text

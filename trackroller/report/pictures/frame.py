@@ -32,7 +32,9 @@ STEP = 12  # of the room beside a picture that the style sheet knows [px]
 def with_unit(title: str, units: str) -> str:
     """Return a title with its unit in brackets; a plain number has none."""
     unit = unit_text(units).replace("–", "")
-    return f"{title} [{unit}]" if unit else title
+    if unit:
+        return f"{title} [{unit}]"
+    return title
 
 
 def upright_axis(axis: Axis, height: float) -> Markup:
@@ -69,9 +71,14 @@ def lower_names(names: Sequence[str], places: Sequence[float], width: float) -> 
     parts = []
     for name, place in zip(names, places, strict=True):
         text = cut(name, share)
-        whole = element("title", name) if text != name else ""
+        whole = ""
+        if text != name:
+            whole = element("title", name)
         content = joined([Markup.escape(text), Markup(whole)])
         anchor = anchor_at(place)
+        text_anchor = anchor
+        if anchor == "start":
+            text_anchor = ""
         parts.append(
             element(
                 "text",
@@ -79,7 +86,7 @@ def lower_names(names: Sequence[str], places: Sequence[float], width: float) -> 
                 x=percent_place(place),
                 y="100%",
                 dy=15,
-                text_anchor="" if anchor == "start" else anchor,
+                text_anchor=text_anchor,
             )
         )
     return joined(parts)
@@ -131,4 +138,6 @@ def output_title(answer: Answer) -> str:
 def left_out_words(picture_data: Mapping[str, Any]) -> str:
     """Return how many rows a picture leaves out; '' for none."""
     left = int(picture_data.get("left_out", 0))
-    return f"{left:,} rows are not drawn: they are not valid at every level." if left else ""
+    if left:
+        return f"{left:,} rows are not drawn: they are not valid at every level."
+    return ""

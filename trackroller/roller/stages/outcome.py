@@ -16,6 +16,7 @@ from trackroller.damage import LIMITS, computed, judged, verdict
 from trackroller.damage.histories import RollerTractions
 from trackroller.damage.limit import TRACTIONS, Limit, SolvedRollers, Verdict
 from trackroller.damage.wear import BEYOND_TABLE, KM_PER_HOUR
+from trackroller.damage.wear import TABLE as WEAR_TABLE
 from trackroller.halfspace.tractions import Tractions
 from trackroller.numerics.rows import distinct
 from trackroller.numerics.variable import BODIES
@@ -60,8 +61,11 @@ def solved_of(
     """Return cases, materials and results as the limits receive them."""
     fields = [field.name for field in dataclasses.fields(table.roller)]
     names = [name for name in fields if name not in TEXTS or name == "sn_points"]
+    cases = {name: getattr(table, name) for name in (*PARAMETERS, *MAPPING_FIELDS)}
+    if options.wear_law == "energy":  # else a law of the materials would ask for wear
+        cases[WEAR_TABLE.name] = table.loss_tables
     return SolvedRollers(
-        {name: getattr(table, name) for name in (*PARAMETERS, *MAPPING_FIELDS)},
+        cases,
         {
             name: np.array([getattr(body, name) for body in (table.roller, table.guide)]).T
             for name in names
