@@ -28,6 +28,7 @@ def test_every_declared_output_has_a_value_and_every_value_a_declaration(monkeyp
     for criterion in ("von_mises_peak", "findley"):
         found |= set(tr.solve(tr.Case(), EVERY, accuracy="preview", life_criterion=criterion).variables)
     found |= set(tr.solve(tr.Case(), ("forces", "contact"), accuracy=0.01).variables)
+    found |= set(tr.solve([tr.Case()], ("peak_stress", "limits"), accuracy="preview", at_most="shakedown").variables)
     assert set(VARIABLES) <= found
     assert set(seen) <= set(VARIABLES) | set(FLAGS)
 

@@ -14,7 +14,8 @@ GAP, FINE = (
     1e-5,
     1e-10,
 )  # relative gaps of a squared radius: for the radius, and for the centre, whose error is its root
-MOST_MOVES, RIDGE = 200, 1e-13  # of the search, whose radius is an upper bound even if it gives up
+# of the search, whose radius is an upper bound even if it gives up
+MOST_MOVES, MOST_HELD, RIDGE = 200, 16, 1e-13
 
 
 @compiled
@@ -26,64 +27,111 @@ def squared(u):  # pragma: no cover (compiled)
 
 
 @compiled
-def _slope(point, base, centre):  # pragma: no cover (compiled)
-    """Return |u - c|^2 + h - |c|^2 of a point u (d,) with its base |u|^2 + h."""
-    slope = base
+def _write_slopes(columns, base, centre, out):  # pragma: no cover (compiled)
+    """Write |u - c|^2 + h - |c|^2 of the points u, columns (d, p), with their base |u|^2 + h, (p,).
+
+    The points stand in rows of their coordinates, so that the loop runs in vector registers.
+    """
+    for i in range(len(base)):
+        out[i] = base[i]
     for j in range(len(centre)):
-        slope -= 2.0 * centre[j] * point[j]
-    return slope
+        twice, column = 2.0 * centre[j], columns[j]
+        for i in range(len(base)):
+            out[i] -= twice * column[i]
 
 
 @compiled
-def _even_weights(points, base, centre):  # pragma: no cover (compiled)
-    """Return weights of sum 1, of any sign, of the points from whose mean all these points are
-    equally far.
+def _solve(rows, n):  # pragma: no cover (compiled)
+    """Solve n equations in place by Gaussian elimination: rows (n, n + 1) end with the solution."""
+    for column in range(n):
+        pivot = column
+        for i in range(column + 1, n):
+            if abs(rows[i, column]) > abs(rows[pivot, column]):
+                pivot = i
+        top = rows[pivot, column]
+        if top == 0.0:
+            continue
+        for k in range(n + 1):
+            swap = rows[column, k]
+            rows[column, k] = rows[pivot, k] / top
+            if pivot != column:
+                rows[pivot, k] = swap
+        for i in range(n):
+            factor = rows[i, column]
+            if i != column and factor != 0.0:
+                for k in range(n + 1):
+                    rows[i, k] -= factor * rows[column, k]
 
-    Gaussian elimination of 2 (u_i - c)(u_k - c) w_k + lambda = |u_i - c|^2 + h_i. A small ridge
-    serves points that depend on each other.
+
+@compiled
+def _write_even_weights(columns, slopes, centre, few, count, rows):  # pragma: no cover (compiled)
+    """Write weights of sum 1, of any sign, of the first `count` points among `few` from whose mean
+    all these points are equally far, into the last column of `rows`.
+
+    Equations 2 (u_i - c)(u_k - c) w_k + lambda = |u_i - c|^2 + h_i. A small ridge serves points
+    that depend on each other.
     """
-    n = len(points)
-    rows = np.ones((n + 1, n + 2))
-    for i in range(n):
-        for k in range(n):
+    for i in range(count):
+        for k in range(count):
             total = 0.0
             for j in range(len(centre)):
-                total += (points[i, j] - centre[j]) * (points[k, j] - centre[j])
+                total += (columns[j, few[i]] - centre[j]) * (columns[j, few[k]] - centre[j])
             rows[i, k] = 2.0 * total
-        rows[i, n + 1] = _slope(points[i], base[i], centre)
-    for i in range(n):
         rows[i, i] *= 1.0 + RIDGE
-    rows[n, n] = 0.0
-    for column in range(n + 1):
-        pivot = column + np.argmax(np.abs(rows[column:, column]))
-        if rows[pivot, column] == 0.0:
-            continue
-        swap = rows[column].copy()
-        rows[column], rows[pivot] = rows[pivot], swap
-        rows[column] /= rows[column, column]
-        for i in range(n + 1):
-            if i != column and rows[i, column] != 0.0:
-                rows[i] -= rows[i, column] * rows[column]
-    return rows[:n, n + 1]
+        rows[i, count] = rows[count, i] = 1.0
+        rows[i, count + 1] = slopes[few[i]]
+    rows[count, count] = 0.0
+    rows[count, count + 1] = 1.0
+    _solve(rows, count + 1)
 
 
 @compiled
-def _held(points, base, few, weight, centre):  # pragma: no cover (compiled)
-    """Return the points among `few` that hold their smallest ball, and their weights.
+def _hold(columns, slopes, centre, few, weight, count, rows):  # pragma: no cover (compiled)
+    """Keep the points among `few` that hold their smallest ball, and their weights; return their
+    number.
 
     The weights go straight to those of equal distances; a point whose weight vanishes on the way
     leaves.
     """
     while True:
-        even, share = _even_weights(points[few], base[few], centre), 1.0
-        for k in range(len(few)):
-            if even[k] < 0.0:
-                share = min(share, weight[k] / (weight[k] - even[k]))
-        weight = weight + share * (even - weight)
+        _write_even_weights(columns, slopes, centre, few, count, rows)
+        share = 1.0
+        for k in range(count):
+            even = rows[k, count + 1]
+            if even < 0.0:
+                share = min(share, weight[k] / (weight[k] - even))
+        kept = 0
+        for k in range(count):
+            own = weight[k] + share * (rows[k, count + 1] - weight[k])
+            if share == 1.0 or own > 1e-12:
+                few[kept], weight[kept] = few[k], own
+                kept += 1
+        count = kept
         if share == 1.0:
-            return few, weight
-        kept = weight > 1e-12
-        few, weight = few[kept], weight[kept]
+            return count
+
+
+@compiled
+def _farthest(slopes):  # pragma: no cover (compiled)
+    """Return the number of the first largest value, and the value."""
+    far, high = 0, -np.inf
+    for i in range(len(slopes)):
+        if slopes[i] > high:
+            far, high = i, slopes[i]
+    return far, high
+
+
+@compiled
+def _write_centre(columns, few, weight, centre):  # pragma: no cover (compiled)
+    """Make the sum of weights 1, and write the mean of the points `few` into `centre`."""
+    total = 0.0
+    for own in weight:
+        total += own
+    centre[:] = 0.0
+    for k in range(len(few)):
+        weight[k] /= total
+        for j in range(len(centre)):
+            centre[j] += weight[k] * columns[j, few[k]]
 
 
 @compiled
@@ -116,28 +164,33 @@ def smallest_ball(points, height, gap):  # pragma: no cover (compiled)
     The centre is a weighted mean of a few points (active set of the dual problem). The farthest of
     all points joins them until the ball holds all points; points whose weight vanishes leave.
     """
-    base = height.copy()
-    for i in range(len(points)):
-        base[i] += squared(points[i])
-    few, weight = np.array([np.argmax(base)]), np.ones(1)
-    centre = points[few[0]].copy()
+    p, d = points.shape
+    columns = np.empty((d, p))
+    base, slopes = np.empty(p), np.empty(p)
+    for i in range(p):
+        base[i] = height[i] + squared(points[i])
+        for j in range(d):
+            columns[j, i] = points[i, j]
+    few, weight = np.empty(MOST_HELD, np.int64), np.empty(MOST_HELD)
+    rows = np.empty((MOST_HELD + 1, MOST_HELD + 2))
+    first, _ = _farthest(base)
+    few[0], weight[0] = first, 1.0
+    count = 1
+    centre = points[first].copy()
     for move in range(MOST_MOVES):
-        far, high, reached = 0, -np.inf, 0.0
-        for i in range(len(points)):
-            slope = _slope(points[i], base[i], centre)
-            far, high = (i, slope) if slope > high else (far, high)
-        for k in range(len(few)):
-            reached += weight[k] * _slope(points[few[k]], base[few[k]], centre)
+        _write_slopes(columns, base, centre, slopes)
+        far, high = _farthest(slopes)
+        reached = 0.0
+        for k in range(count):
+            reached += weight[k] * slopes[few[k]]
         own = squared(centre)
-        if high - reached <= gap * (reached + own) or move == MOST_MOVES - 1:
+        last = move == MOST_MOVES - 1 or count == MOST_HELD
+        if high - reached <= gap * (reached + own) or last:
             break
-        few, weight = np.append(few, far), np.append(weight, 0.0)
-        few, weight = _held(points, base, few, weight, centre)
-        weight /= np.sum(weight)
-        centre[:] = 0.0
-        for k in range(len(few)):
-            centre += weight[k] * points[few[k]]
-    return high + own, centre, few, weight
+        few[count], weight[count] = far, 0.0
+        count = _hold(columns, slopes, centre, few, weight, count + 1, rows)
+        _write_centre(columns, few[:count], weight[:count], centre)
+    return high + own, centre, few[:count], weight[:count]
 
 
 @compiled

@@ -194,6 +194,10 @@ class Limit:
         Function of a `SolvedRollers` that returns what `evaluate` needs of the tractions, once for
         the values of the materials and both ends of their placeholders. A name that begins with an
         underscore is no result.
+    bound : callable, optional
+        Function of a `SolvedRollers` with the results of `shared` that returns an upper bound of
+        the utilisation, (n, body) [1]. It costs little. Where it stays below 1 the limit is kept,
+        and the option `at_most` leaves the number out.
     shared_by_mechanics : bool
         Whether cases with equal forces and tractions share these values. `shared` must then not use
         the speed or values of strength and wear.
@@ -241,6 +245,7 @@ class Limit:
     meaning: str = ""
     needs: tuple[str, ...] = ()
     shared: Callable[[SolvedRollers], Values] | None = None
+    bound: Callable[[SolvedRollers], np.ndarray] | None = None
     shared_by_mechanics: bool = True
     results: tuple[Variable, ...] = ()
     parameters: tuple[Parameter, ...] = ()
@@ -301,6 +306,17 @@ class Limit:
         columns = [solved.cases[name] for name in own if name in solved.cases]
         given = not all(missing(column).all() for column in columns)
         return given or not self.lacking(solved).all()
+
+    def kept_by_bound(self, solved: SolvedRollers) -> np.ndarray:
+        """Return which bodies get a bound of the utilisation in place of the number, (n, body)
+        bool.
+
+        The bound shows that they keep the limit at the worse ends of the placeholders, too.
+        """
+        asked = self.name in solved.options.get("at_most", ())
+        if self.bound is None or not asked or self.group in solved.options["outputs"]:
+            return np.zeros((len(solved.rolling_radius), len(BODIES)), dtype=bool)
+        return np.asarray(self.bound(solved.at_end(0)) < 1.0)
 
     def moves(self, solved: SolvedRollers) -> bool:
         """Return whether the verdict rests on a value of a material that is known within a range

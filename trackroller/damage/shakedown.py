@@ -13,6 +13,8 @@ to 7 % more.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from trackroller.damage.histories import RollerTractions
@@ -28,7 +30,9 @@ from trackroller.damage.limit import (
 from trackroller.numerics.variable import BODIES, LARGEST
 
 
-def shears(t: RollerTractions, poisson_ratio: np.ndarray) -> np.ndarray:
+def shears(
+    t: RollerTractions, poisson_ratio: np.ndarray, bounded: np.ndarray | None = None
+) -> np.ndarray:
     """Return the shear yield stress k at which the stresses below each patch just shake down.
 
     Parameters
@@ -37,11 +41,13 @@ def shears(t: RollerTractions, poisson_ratio: np.ndarray) -> np.ndarray:
         The patches.
     poisson_ratio : numpy.ndarray
         nu of the bodies, (n, 2) [1].
+    bounded : numpy.ndarray of bool, optional
+        Bodies of which no number is wanted, (n, 2).
 
     Returns
     -------
     numpy.ndarray
-        k, (n, contact, body) [MPa].
+        k, (n, contact, body) [MPa]; NaN where no number is wanted.
     """
     # numba compiles on import, and planning needs none of it
     from trackroller.damage.deep_planes import Loads, shakedown_shears
@@ -52,23 +58,39 @@ def shears(t: RollerTractions, poisson_ratio: np.ndarray) -> np.ndarray:
     )
     steps = np.stack(t.steps, axis=2)[at]
     wanted = np.ones((len(steps), len(BODIES)), dtype=bool)
+    if bounded is not None:
+        wanted = ~bounded[at[0]]
     own = Loads(lateral, rolling, pressure, steps, poisson_ratio[at[0]], wanted)
     surface = np.sqrt(np.max(lateral**2 + rolling**2, axis=(1, 2)))
     return t.of_all_patches(np.maximum(shakedown_shears(own), surface[:, None]))
 
 
+def bound(solved: SolvedRollers) -> np.ndarray:
+    """Return an upper bound of the utilisation, (n, body) [1]: stresses that nowhere yield shake
+    down without a residual stress.
+    """
+    return worst(solved.values["_elastic"] / solved.materials["yield_strength"][:, None, :])
+
+
 def of_mechanics(solved: SolvedRollers) -> Values:
     """Return what does not depend on strength and speed.
 
-    These are the shear yield stress that just shakes down, `_shaken`, (n, contact, body) [MPa], and
-    the largest |tau|/p of each patch, `_traction`, (n, contact) [1].
+    These are the shear yield stress that just shakes down, `_shaken`, (n, contact, body) [MPa], the
+    peak stress with its error, `_elastic`, (n, contact, body) [MPa], and the largest |tau|/p of
+    each patch, `_traction`, (n, contact) [1]. Strength decides alone where `_shaken` is wanted.
     """
     t = solved.tractions()
+    v = solved.values
+    elastic = v["peak_stress"] * (1.0 + v["error_estimate"])
+    if solved.options.get("stress_bodies") == "published":
+        elastic = np.full_like(elastic, np.nan)  # these peaks are those of a mean body
+    bounded = LIMIT.kept_by_bound(replace(solved, values={"_elastic": elastic}))
     pressed = t.pressure > 0.02 * np.nanmax(t.pressure, axis=(2, 3), keepdims=True, initial=0.0)
     with np.errstate(divide="ignore", invalid="ignore"):
         local = np.hypot(t.shear_lateral, t.shear_rolling) / t.pressure
     return {
-        "_shaken": shears(t, solved.materials["poisson_ratio"]),
+        "_shaken": shears(t, solved.materials["poisson_ratio"], bounded),
+        "_elastic": elastic,
         "_traction": np.max(np.where(pressed, local, 0.0), axis=(2, 3)),
     }
 
@@ -100,6 +122,7 @@ LIMIT = Limit(
     group="shakedown",
     meaning="elastic limit, elastic shakedown by Melan's theorem, and surface fatigue index",
     shared=of_mechanics,
+    bound=bound,
     evaluate=evaluate,
     verdict=lambda solved, results: Verdict(worst(results["shakedown_utilisation"]), None),
     needs=("peak_stress", TRACTIONS),

@@ -35,6 +35,8 @@ POSITION = Parameter(
 ENDS = ("", "_low", "_high")  # a life, and the ends of its range
 STATES = ("unknown", "kept", "open", "exceeded")
 _LB = ("limit", "body")
+# bounds of utilisations whose numbers were not computed, see the option `at_most`
+AT_MOST = "utilisation_at_most"
 _FIRST = "hours to the first limit that is known"
 
 
@@ -70,6 +72,14 @@ RESULTS = variables(
         "",
         "load over the load at which the limit is reached",
         {"label": "utilisation"},
+    ),
+    (
+        AT_MOST,
+        _LB,
+        "1",
+        "",
+        "bound of the utilisation of a limit that is kept, in place of the number",
+        {"label": "utilisation, at most", "estimate": True},
     ),
     *_life("life_hours_by_limit", _LB, "hours to the limit at the failure probability", "life"),
     *_life("life_to_first_limit_hours", ("body",), _FIRST, "life to the first limit"),
@@ -149,7 +159,11 @@ def first_of(
 
 
 def states(
-    used: np.ndarray, life: np.ndarray, broken: np.ndarray, limits: Sequence[Limit]
+    used: np.ndarray,
+    life: np.ndarray,
+    broken: np.ndarray,
+    limits: Sequence[Limit],
+    bounded: np.ndarray | None = None,
 ) -> np.ndarray:
     """Return the state of each limit as its place in `STATES`, (n, limit, body).
 
@@ -162,19 +176,22 @@ def states(
         Life [h], and whether the body breaks at once, (n, limit, body).
     limits : sequence of Limit
         The limits; one that is not bounded is kept as long as the body does not break.
+    bounded : numpy.ndarray of bool, optional
+        Where a bound shows that a limit is kept, (n, limit, body); the utilisation is NaN there.
 
     Notes
     -----
     A limit is exceeded if its utilisation is above 1 wherever the placeholders lie in their ranges,
     and open if it is above 1 at one end only.
     """
-    bounded = np.array([limit.bounded for limit in limits], dtype=bool)[:, None]
+    has_bound = np.array([limit.bounded for limit in limits], dtype=bool)[:, None]
     least, most = used.min(axis=0), used.max(axis=0)
-    state = np.where(
-        np.isnan(used[0]) & np.isnan(life), STATES.index("unknown"), STATES.index("kept")
-    )
-    state = np.where(bounded & (most > 1.0), STATES.index("open"), state)
-    return np.where((bounded & (least > 1.0)) | broken, STATES.index("exceeded"), state)
+    unknown = np.isnan(used[0]) & np.isnan(life)
+    if bounded is not None:
+        unknown = unknown & ~bounded
+    state = np.where(unknown, STATES.index("unknown"), STATES.index("kept"))
+    state = np.where(has_bound & (most > 1.0), STATES.index("open"), state)
+    return np.where((has_bound & (least > 1.0)) | broken, STATES.index("exceeded"), state)
 
 
 def _ends(hours: np.ndarray, low: np.ndarray | None, high: np.ndarray | None) -> list[np.ndarray]:
@@ -186,6 +203,18 @@ def _ends(hours: np.ndarray, low: np.ndarray | None, high: np.ndarray | None) ->
     if high is None:
         high = hours
     return [hours, low, high]
+
+
+def _bounds(solved: SolvedRollers, limits: Sequence[Limit]) -> np.ndarray:
+    """Return the bounds of utilisations that stand in place of numbers, (n, limit, body) [1]; NaN
+    where the number counts.
+    """
+    out = np.full((len(solved.rolling_radius), len(limits), len(BODIES)), np.nan)
+    for i, limit in enumerate(limits):
+        bounded = limit.kept_by_bound(solved)
+        if limit.bound is not None and bounded.any():
+            out[:, i] = np.where(bounded, limit.bound(solved), np.nan)
+    return out
 
 
 def verdict(
@@ -209,7 +238,8 @@ def verdict(
     Returns
     -------
     dict of str to numpy.ndarray
-        `utilisation` [1], `life_hours_by_limit` [h] and `limit_state`, (n, limit, body);
+        `utilisation` [1], `utilisation_at_most` [1], `life_hours_by_limit` [h] and `limit_state`,
+        (n, limit, body);
         `life_to_first_limit_hours` [h] and `limiting_mechanism`, (n, body);
         `pair_life_to_first_limit_hours` [h], (n,). Each life also has the ends of its range, with
         `_low` and `_high` in its name.
@@ -242,10 +272,13 @@ def verdict(
                     lives[end][place, :, i] = np.where(concerned, hours, np.nan)
             if own.at_once is not None:
                 broken[:, i] = own.at_once
+    at_most = _bounds(places[0], limits)
+    used = np.where(np.isnan(at_most), used, np.nan)
     at_once = breaking(np.asarray(broken.any(axis=1)), limits)
     out: Values = {
         "utilisation": used[0],
-        "limit_state": states(used, lives[""][0], at_once, limits),
+        AT_MOST: at_most,
+        "limit_state": states(used, lives[""][0], at_once, limits, ~np.isnan(at_most)),
     }
     # the worse and the better place are the last but one and the last one; without placeholders
     # there is one place

@@ -325,6 +325,16 @@ _OPTIONS = (
         kind="words",
     ),
     Option(
+        "at_most",
+        (),
+        "limits whose utilisation is told by a bound where the bound is below 1, also at the worse "
+        "ends of placeholders; a study takes all of them, but those whose group is among its "
+        "outputs or whose utilisation it names",
+        {own.name: own.title for own in LIMITS.values() if own.bound is not None},
+        kind="words",
+        files=(),
+    ),
+    Option(
         "normal",
         "hertz",
         "how patch and pressure are found",

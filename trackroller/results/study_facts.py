@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from trackroller.damage import LIMITS, limit_word
+from trackroller.damage import LIMITS, limit_word, verdict
 from trackroller.parameters import BODIES
 from trackroller.parameters.carriage_fields import long_name_of
 from trackroller.parameters.example import is_absent
@@ -106,6 +106,8 @@ def _known(results: SolvedCases) -> dict[str, np.ndarray]:
         return _without_limits(results)
     lives = flat(data, "life_hours_by_limit", results.dims)
     uses = flat(data, "utilisation", results.dims)
+    if verdict.AT_MOST in data:
+        uses = np.fmax(uses, flat(data, verdict.AT_MOST, results.dims))
     out = {}
     for place, name in enumerate(str(one) for one in data["limit"].values):
         timed = ~np.isnan(lives[:, place])

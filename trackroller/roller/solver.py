@@ -64,6 +64,7 @@ def solve(
     wear_law: str | None = None,
     failure_probability: float | None = None,
     not_checked: Collection[str] | str | None = None,
+    at_most: Collection[str] | str | None = None,
     normal: str | None = None,
     stop_if: str | None = None,
     shortcuts: bool | None = None,
@@ -118,6 +119,10 @@ def solve(
         Failure probability in (0, 1) at which the group "limits" states each life.
     not_checked : str or collection of str
         Limits that the group "limits" leaves out.
+    at_most : str or collection of str
+        Limits, such as "shakedown", whose utilisation is not computed where a cheap bound shows
+        that they are kept: `utilisation` is NaN there, and `utilisation_at_most` the bound. One
+        case alone gets its numbers.
     normal : str
         "hertz" for Hertzian patches, "halfspace" for non-Hertzian ones by boundary elements, which
         drawn profiles need.
@@ -175,7 +180,10 @@ def solve(
     if database is None:
         database = load_database()
     table = to_table(cases, database)
-    ds = with_coordinates(_solve_table(table, Options(**given), single), table)
+    options = Options(**given)
+    if single:  # what is said of one roller takes numbers
+        options = options.changed(at_most=())
+    ds = with_coordinates(_solve_table(table, options, single), table)
     if not single:
         return ds
     case = cases
@@ -190,6 +198,8 @@ def _solve_design(
     """Solve a data set of cases, each with the options that belong to it."""
     different, group = options_of_cases(cases, given)
     options = [Options(**one) for one in different]
+    if "case" not in cases.dims:
+        options = [one.changed(at_most=()) for one in options]
     table = to_table(cases, database)
     if len(options) == 1:
         return with_design(
@@ -263,6 +273,8 @@ def _solve_window(table: CaseTable, options: Options) -> Block:
     ):
         rows, number = distinct_contacts.distinct_mechanics(one_handed)
         distinct = one_handed.take(rows)
+        if options.at_most:
+            distinct = stages_outcome.with_weakest(distinct, one_handed, number)
     at_temperature, block = temperature.settle(
         one_handed, solve_all(distinct).take(number), options, solve_all
     )
@@ -367,8 +379,13 @@ def assemble(block: Block, options: Options, single: bool) -> xr.Dataset:
     keep = [
         name
         for name in block.values
-        if (name in VARIABLES and VARIABLES[name].group in options.outputs)
+        if (
+            name in VARIABLES
+            and VARIABLES[name].group in options.outputs
+            and name != verdict.AT_MOST
+        )
         or name == "residual"
+        or (name == verdict.AT_MOST and options.at_most)
         or (name == "error_estimate" and "peak_stress" in options.outputs)
         # the materials of these results are those at this temperature
         or (name == "bulk_temperature_rise" and verdict.GROUP in options.outputs)

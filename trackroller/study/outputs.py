@@ -237,6 +237,22 @@ def _countable(
     return values, {reason: count for reason, count in why.items() if count}
 
 
+def _check_number(ds: xr.Dataset, part: Part) -> None:
+    """Refuse a utilisation that a bound stands for in some cases: it is no number to compare."""
+    if part.variable.name != "utilisation" or verdict.AT_MOST not in ds:
+        return
+    count = int(replace(part, variable=VARIABLES[verdict.AT_MOST]).values(ds).notnull().sum())
+    if count:
+        group = LIMITS[part.at["limit"]].group
+        raise InputError(
+            "analysis.outputs",
+            part.name,
+            "an output with its number in every case",
+            f"Add {group} to outputs of the study, and run it again.",
+            f"is known as a bound alone, which is below 1, in {count:,} cases",
+        )
+
+
 def outputs(
     ds: xr.Dataset,
     factors: Iterable[str],
@@ -276,7 +292,8 @@ def outputs(
     Raises
     ------
     InputError
-        If a name is unknown.
+        If a name is unknown, or if it is that of a utilisation of which some cases know a bound
+        alone, see the option `at_most`.
     """
     factors = list(factors)
     dims = case_dims(ds, factors)
@@ -296,6 +313,7 @@ def outputs(
         if name not in known:
             raise unknown_name("analysis.outputs", name, known)
         part = known[name]
+        _check_number(ds, part)
         single = part.values(ds).to_dataset(name=name)
         units = str(ds[part.variable.name].attrs.get("units", "1"))
         on = (scale if isinstance(scale, str) else scale.get(name, "")) or part.variable.scale

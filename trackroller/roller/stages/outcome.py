@@ -19,6 +19,7 @@ from trackroller.damage.wear import BEYOND_TABLE, KM_PER_HOUR
 from trackroller.damage.wear import TABLE as WEAR_TABLE
 from trackroller.halfspace.tractions import Tractions
 from trackroller.numerics.rows import distinct
+from trackroller.numerics.variable import BODIES
 from trackroller.parameters import CONTACT_MODELS, MAPPING_FIELDS, PARAMETERS
 from trackroller.parameters.validity import VALIDITY
 from trackroller.roller.case import CaseTable
@@ -102,6 +103,32 @@ def _ends(table: CaseTable) -> dict[str, np.ndarray]:
     return {name: shares for name, shares in out.items() if np.any(shares != 1.0)}
 
 
+def with_weakest(table: CaseTable, cases: CaseTable, number: np.ndarray) -> CaseTable:
+    """Return cases that several others share, with the lowest yield strength among these.
+
+    Parameters
+    ----------
+    table, cases : CaseTable
+        The m cases with a mechanics of their own, and all n cases.
+    number : numpy.ndarray of int
+        Number in `table` of each case, (n,).
+
+    Notes
+    -----
+    The strength decides which bodies need a number of shakedown, see `Limit.kept_by_bound`. A
+    mechanics gets the number if one of its cases needs it.
+    """
+    ends = _ends(cases).get("yield_strength", np.ones((len(cases), 2, 2)))
+    weakest = {}
+    for i, body in enumerate(BODIES):
+        own = getattr(cases, body).yield_strength * ends[:, i, 0]
+        lowest = np.full(len(table), np.inf)
+        np.fmin.at(lowest, number, own)
+        lowest[np.isinf(lowest)] = np.nan
+        weakest[body] = dataclasses.replace(getattr(table, body), yield_strength=lowest)
+    return dataclasses.replace(table, **weakest)
+
+
 def to_compute(solved: SolvedRollers, options: Options) -> tuple[Limit, ...]:
     """Return the limits to compute: those named among the outputs, and those of the verdict that a
     case serves.
@@ -182,7 +209,8 @@ def limits(
 
 def _nothing(limit: Limit) -> Limit:
     """Return a limit that no case serves, with a verdict that knows nothing."""
-    return dataclasses.replace(limit, verdict=lambda solved, results: Verdict(None, None))
+    unknown = Verdict(None, None)
+    return dataclasses.replace(limit, verdict=lambda solved, results: unknown, bound=None)
 
 
 def _at_end(solved: SolvedRollers, limits: tuple[Limit, ...], end: int) -> SolvedRollers:
@@ -266,7 +294,8 @@ def outlives_groove(table: CaseTable, block: Block, options: Options) -> np.ndar
     and a second model of an end does not shorten it. A life that is not known exceeds nothing.
     """
     v = block.values
-    solved = solved_of(table, v, options, block.regime)
+    # a limit that a bound shows to be kept ends no life
+    solved = solved_of(table, v, options.changed(at_most=()), block.regime)
     run_in = v["run_in_distance"] / (KM_PER_HOUR * table.velocity)
     counted = [own for own in to_compute(solved, options) if own.verdict is not None]
     known = verdict.verdict([solved], counted, range(len(counted)), len(counted))

@@ -14,7 +14,7 @@ from trackroller.carriage.file import Carriage, carriage_of
 from trackroller.files import Reads
 from trackroller.materials import MaterialDatabase, load_database
 from trackroller.methods.factor import Factor, parse
-from trackroller.parameters import MATERIAL_FIELDS
+from trackroller.parameters import BODIES, LIMITS, MATERIAL_FIELDS, OPTIONS
 from trackroller.roller.doubts import doubts
 from trackroller.roller.stored_inputs import NOT_GIVEN
 from trackroller.study.design import build, carriage_cases
@@ -133,9 +133,26 @@ class Study:
     @property
     def options(self) -> dict[str, Any]:
         """Return the keyword arguments of `solve` that are not factors."""
-        return {
+        given = {
             o.name: getattr(self.config, o.name) for o in IN_STUDY if o.name not in self.factors
         }
+        return given | {"at_most": self._at_most}
+
+    @cached_property
+    def _at_most(self) -> tuple[str, ...]:
+        """Return the limits whose utilisation may be told by a bound.
+
+        A limit whose group is among the outputs has its numbers, and so has one whose utilisation
+        the study file names, as a goal or constraint. The tables of a carriage take numbers.
+        """
+        if self.carriage is not None:
+            return ()
+        return tuple(
+            name
+            for name in OPTIONS["at_most"].values
+            if LIMITS[name].group not in self.config.outputs
+            and not any(f"utilisation_{body}_{name}" in self._text for body in BODIES)
+        )
 
     def merged(self, table: str | None = None) -> str:
         """Return the study as YAML with every default written out.
