@@ -47,8 +47,11 @@ above.
 
 `what matters`: `factors`, a list of at most two dicts, the largest first: `title`, `units`,
 `index`, `index_low`, `index_high` [1] (NaN without indices), `height` (as a factor), `from`, `to`
-(levels at the smallest and the largest end of the curve), `at_from`, `at_to` [unit of the output];
-`asked`: the same of a factor that the study asks for.
+(levels at the smallest and the largest end of the curve), `at_from`, `at_to` [unit of the output],
+`by_ratio` (whether `height` is a factor, otherwise it is a difference [unit of the output]),
+`largest` (of a group of factors, the title of the one that the curve is of); `asked`: the same of a
+factor that the study asks for; with a requirement `meets`, `perhaps`, `of`: cases that surely meet
+it, cases that may, all cases.
 
 `which model`: `changes`: ``, `verdict`, `order` or `verdict and order`; `models`: list of dict
 `model`, `verdict`, `low`, `high`, `error`, `leader` (a dict as one of `names`); `smallest`,
@@ -358,11 +361,20 @@ def what_matters(answer: Answer) -> Headline:
     if _known(factors[0], "index") and _in_shares(answer):
         sizes = f"index {listing([_index(one) for one in factors])}"
     else:
-        sizes = listing([f"×{grouped(one['height'], 2)}" for one in factors])
+        sizes = listing([_height(answer, one) for one in factors])
     clauses = [sizes, _effect(answer, factors[0])]
     if head.get("asked"):
         clauses.append(f"{lowered(head['asked']['title'])}: {_effect(answer, head['asked'])}")
+    if answer.required and _known(head, "meets"):
+        clauses.append(f"{head['meets']:,} of {head['of']:,} {_reach(answer.required)}")
     return _joined(lead, [clause for clause in clauses if clause])
+
+
+def _height(answer: Answer, factor: Mapping[str, Any]) -> str:
+    """Return by how much a factor changes the output: '×42', or 'by 3 N' where it is no ratio."""
+    if factor.get("by_ratio", True):
+        return f"×{grouped(factor['height'], 2)}"
+    return f"by {_measured(grouped(factor['height'], 2), answer.output[2])}"
 
 
 def _in_shares(answer: Answer) -> bool:
@@ -381,8 +393,8 @@ def _index(factor: Mapping[str, Any]) -> str:
 
 
 def _effect(answer: Answer, factor: Mapping[str, Any]) -> str:
-    if not _known(factor, "at_from"):
-        return ""
+    if not _known(factor, "at_from") or factor.get("largest"):
+        return ""  # the table says which member of a group the curve is of
     units = unit_text(factor.get("units", "")).replace("–", "")
     levels = [_plain_level(factor.get(key)) for key in ("from", "to")]
     ends = [carried(factor[key]) for key in ("at_from", "at_to")]
@@ -618,7 +630,7 @@ def _required_states(answer: Answer) -> list[str]:
     clauses = []
     for state in ("missed", "open", "met"):
         states = zip(answer.required, answer.headline["states"], strict=True)
-        bounds = [_bound(one, answer.output[0]) for one, own in states if own == state]
+        bounds = [_bound(one, answer) for one, own in states if own == state]
         if bounds:
             clauses.append(f"required {listing(bounds)}: {state}")
     return clauses
@@ -689,6 +701,9 @@ def spectrum(answer: Answer) -> Headline:
         if head["not_judged"]
         else ""
     )
+    if head["state"]:
+        required = answer.required[0]
+        clauses.append(f"required {_amount(required, required.least)}: {head['state']}")
     if answer.kind == "unlimited":
         return _joined(capital(f"{unsure}no limit ends this spectrum"), clauses)
     if head["block"]:
@@ -768,9 +783,7 @@ def _carriage_lasts(answer: Answer, margins: Sequence[str]) -> Headline:
         clauses.append(f"the life of {listing(head['unknown'])} is not known")
     if head["state"]:
         of = f" of {listing(head['of'])}" if head["of"] else ""
-        clauses.append(
-            f"required {_bound(answer.required[0], answer.output[0])}{of}: {head['state']}"
-        )
+        clauses.append(f"required {_bound(answer.required[0], answer)}{of}: {head['state']}")
         margins = ()  # its table has them
     if not head["exceeded"]:
         return _joined(capital(lasts), [*clauses, *margins])
@@ -1039,16 +1052,16 @@ def _required(answer: Answer) -> list[str]:
     """Return what is required, as one clause."""
     if answer.kind in SILENT or not answer.required:
         return []
-    return [f"required {listing([_bound(one, answer.output[0]) for one in answer.required])}"]
+    return [f"required {listing([_bound(one, answer) for one in answer.required])}"]
 
 
-def _bound(required: Required, output: str) -> str:
+def _bound(required: Required, answer: Answer) -> str:
     """Return a requirement with its unit, and with the words of its output where it is another than
-    the table's.
+    the table's; one life needs no words.
     """
-    words = (
-        "" if required.output == output or required.units == "h" else f"{lowered(required.words)} "
-    )
+    lives = sum(one.units == "h" for one in answer.required)
+    is_plain = required.output == answer.output[0] or (required.units == "h" and lives == 1)
+    words = "" if is_plain else f"{lowered(required.words)} "
     if math.isfinite(required.least) and math.isfinite(required.most):
         return f"{words}{grouped(required.least, 6)} to {_amount(required, required.most)}"
     if math.isfinite(required.most):

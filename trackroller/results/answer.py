@@ -98,11 +98,12 @@ class Curve:
         tenth and the ninetieth hundredth of the cases, shape (k,) each [unit of the output]
     logarithmic : whether the levels stand on a logarithmic axis
     ordered : whether the levels have an order
-    height : largest over smallest middle [1]; of an output that changes its sign largest less
-        smallest
+    height : largest over smallest middle [1]; of an output that is not above 0 everywhere largest
+        less smallest [unit of the output]
     shape : `rise`, `fall`, `hump`, `dip`, `cliff`, `groups` or `flat`
     rows : cases that it rests on
     left_out : valid cases that lack a partner at some level
+    by_ratio : whether `height` is a ratio; otherwise it is a difference
     """
 
     factor: str
@@ -119,6 +120,7 @@ class Curve:
     shape: str
     rows: int
     left_out: int = 0
+    by_ratio: bool = True
 
 
 @dataclass(frozen=True)

@@ -59,13 +59,17 @@ class Flag:
 
 
 def flags_of(ds: xr.Dataset) -> list[Flag]:
-    """Return the flags of a solved case in words.
+    """Return the flags of a solved case in words; those of a roller that wears once each, as the
+    last state says them.
 
     Parameters
     ----------
     ds : xarray.Dataset
-        Result of one case.
+        Result of one case, or of a roller that wears.
     """
+    if "travel" in ds.dims:
+        states = (ds.isel(travel=place) for place in range(ds.sizes["travel"]))
+        return list({flag.name: flag for state in states for flag in flags_of(state)}.values())
     bits, flags = int(ds["validity"]), []
     by_body = (
         dict(zip(ds["body"].values, ds["validity_body"].values, strict=True))

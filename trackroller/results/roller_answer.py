@@ -343,7 +343,7 @@ def _use(margin: Margin) -> dict[str, Any]:
 
 def _required(ds: xr.Dataset, inputs: Mapping[str, Any]) -> tuple[Required, ...]:
     """Return what is required of the roller: the key `requirement`, and the travel that wear has to
-    allow.
+    allow. Of a required life and a travel the longer one counts, as in a study.
     """
     found = []
     for name, own in requirement_of(ds).items():
@@ -356,7 +356,11 @@ def _required(ds: xr.Dataset, inputs: Mapping[str, Any]) -> tuple[Required, ...]
     travel = inputs.get("required_travel")
     if travel is not None and not math.isnan(float(travel)):
         hours = float(travel) / (KM_PER_HOUR * float(inputs["velocity"]))
-        found.append(Required(*FIRST_LIMIT, least=hours))
+        lives = [one for one in found if one.output in OF_PAIR and math.isfinite(one.least)]
+        if all(one.least < hours for one in lives):
+            found = [one for one in found if one not in lives]
+            most = min((one.most for one in lives), default=math.inf)
+            found.append(Required(*FIRST_LIMIT, least=hours, most=most))
     return tuple(found)
 
 

@@ -19,9 +19,10 @@ from trackroller.results.answer_parts import (
     not_given_words,
 )
 from trackroller.results.case_ranges import CaseRanges
-from trackroller.results.comparison import compared_output
+from trackroller.results.comparison import Comparison, compared_output
 from trackroller.results.effect_curves import Effects
 from trackroller.results.first_ends import ends_by_factor
+from trackroller.results.groups import BINS, groups
 from trackroller.results.places import level_text
 from trackroller.results.ranking import estimate, headline, index_words, order, robust_design
 from trackroller.results.requirement import required_of
@@ -34,6 +35,7 @@ from trackroller.study.outputs import default_names
 # indices of pairs of factors, the most exact first
 PAIRED = ("S2", "interaction_share", "interaction")
 ROUNDING = 1e-12  # of the largest effect: a smaller one is 0 but for rounding
+OF_GROUPS = "group_ST"  # total index of a group of factors
 WORTH = 0.02  # of the variance: a smaller interaction is not named
 
 
@@ -70,20 +72,28 @@ def answer_what_matters(results: SolvedCases) -> Answer:
     -----
     `kind` is `indices` where the method has them for this output, otherwise `curves`. The total
     index ranks the factors of a Saltelli design; the height of their curves ranks all others.
+    Where a study asks for groups of factors (`analysis.groups`), a row is a group with its total
+    index, and the curve is that of its member with the largest effect.
     """
     ranges = shown_ranges(results)
     assert ranges is not None
-    curves = Effects.of(ranges).curves()
-    table = _table(results, ranges, curves)
+    effects = Effects.of(ranges)
+    curves = effects.curves()
     sens = _indices(results, ranges)
+    table = _table(results, ranges, curves)
+    if sens is not None and OF_GROUPS in sens:
+        table = _by_group(table, sens.sel(output=ranges.output[0]), curves)
     rows = results.of_one_model()
     return Answer(
         question="what matters",
         kind="curves" if sens is None else "indices",
-        headline={"factors": [_named(table, curves, place) for place in range(min(2, len(table)))]},
+        headline={
+            "factors": [_named(table, curves, place) for place in range(min(2, len(table)))],
+            **_met_by(results, rows),
+        },
         output=ranges.output,
         table=table,
-        columns=_columns(ranges, table, sens),
+        columns=_columns(ranges, table, sens, effects.by_ratio),
         required=required_of(results),
         curves=_in_order(curves, table),
         ends=ends_by_factor(results, ranges),
@@ -107,6 +117,42 @@ def _indices(results: SolvedCases, ranges: CaseRanges) -> xr.Dataset | None:
     return sens if order(sens, name) and headline(sens) in sens else None
 
 
+def _by_group(table: pd.DataFrame, part: xr.Dataset, curves: tuple[Curve, ...]) -> pd.DataFrame:
+    """Return one row a group of factors: its indices, and the curve of the member with the largest
+    effect.
+    """
+    place = {curve.factor: number for number, curve in enumerate(curves)}  # the largest one first
+    own = table.set_index("name", drop=False)
+    value, low, high = estimate(part, OF_GROUPS).clip(0.0, 1.0)
+    found = []
+    for number, title in enumerate(part["group_name"].values):
+        words = str(part["group_members"].values[number])
+        members = [name for name in own.index if long_name_of(name) in words.split(", ")]
+        first = min(members, key=lambda name: place.get(name, len(place)))
+        row = own.loc[first].to_dict()
+        row |= {"factor": str(title), "members": words, "largest": long_name_of(first)}
+        row |= {"index": value[number], "index_low": low[number], "index_high": high[number]}
+        row |= {"lost": int(own.loc[members, "lost"].max()), "interacts": ""}
+        if len(members) > 1:
+            row["role"] = "" if own.loc[members, "role"].nunique() > 1 else row["role"]
+        found.append(row)
+    return (
+        pd.DataFrame(found)
+        .sort_values("index", ascending=False, kind="stable")
+        .reset_index(drop=True)
+    )
+
+
+def _met_by(results: SolvedCases, rows: np.ndarray) -> dict[str, Any]:
+    """Return how many cases meet the requirement, surely and perhaps; {} without one."""
+    own = Comparison.of(results)
+    if own is None or not own.required:
+        return {}
+    sure, may = own.met()
+    counts = {"meets": int(sure[rows].sum()), "perhaps": int(may[rows].sum())}
+    return counts | {"of": int(rows.sum())}
+
+
 def _table(results: SolvedCases, ranges: CaseRanges, curves: tuple[Curve, ...]) -> pd.DataFrame:
     """Return one row a factor: index with its interval, height and shape of its curve, and both of
     its ends.
@@ -114,6 +160,7 @@ def _table(results: SolvedCases, ranges: CaseRanges, curves: tuple[Curve, ...]) 
     sens = _indices(results, ranges)
     known = {curve.factor: curve for curve in curves}
     lost = _lost(results, ranges)
+    met = _met_at(results)
     found = []
     for name in (n for n in results.factors if n not in OPTION_FACTORS):
         curve = known.get(name)
@@ -127,7 +174,7 @@ def _table(results: SolvedCases, ranges: CaseRanges, curves: tuple[Curve, ...]) 
             "at_low": np.nan if curve is None else float(curve.middle[0]),
             "at_high": np.nan if curve is None else float(curve.middle[-1]),
             "lost": lost[name],
-        }
+        } | met.get(name, {})
         if sens is not None:
             row |= _index(sens, ranges.output[0], name)
         found.append(row)
@@ -198,18 +245,34 @@ def pair_shares(sens: xr.Dataset | None, output: str) -> dict[str, Any]:
 
 def _lost(results: SolvedCases, ranges: CaseRanges) -> dict[str, int]:
     """Return how many cases are lost (skids, lift-offs and others) between the levels of a factor,
-    most less least.
+    or its classes of equally many cases: most less fewest.
     """
     rows = results.of_one_model()
-    bad = (~ranges.held)[rows]
+    lost = ~ranges.held[rows]
     out = {}
     for name in results.factors:
-        own = results.table[name].to_numpy()[rows]
-        if len(results.levels(name)) > 12:
-            out[name] = int(bad.sum())
-            continue
-        counts = [int(bad[own == level].sum()) for level in results.levels(name)]
-        out[name] = max(counts, default=0) - min(counts, default=0)
+        classes = groups(results.table, name, rows)
+        counts = np.bincount(classes.index, weights=lost, minlength=len(classes))
+        out[name] = int(counts.max() - counts.min())
+    return out
+
+
+def _met_at(results: SolvedCases) -> dict[str, dict[str, float]]:
+    """Return the smallest and the largest share of cases that surely meet the requirement among the
+    levels of each factor, or its classes; {} without a requirement.
+    """
+    own = Comparison.of(results)
+    if own is None or not own.required:
+        return {}
+    rows = results.of_one_model()
+    sure = own.met()[0][rows]
+    out = {}
+    for name in results.factors:
+        classes = groups(results.table, name, rows)
+        number = np.bincount(classes.index, minlength=len(classes))
+        hits = np.bincount(classes.index, weights=sure, minlength=len(classes))
+        shares = hits[number > 0] / number[number > 0]
+        out[name] = {"meets_low": float(shares.min()), "meets_high": float(shares.max())}
     return out
 
 
@@ -230,6 +293,8 @@ def _named(table: pd.DataFrame, curves: tuple[Curve, ...], place: int) -> dict[s
         "name": row["name"],
         "height": float(row["height"]),
     }
+    if row.get("largest", row["factor"]) != row["factor"]:
+        told["largest"] = row["largest"]
     told |= {key: float(row.get(key, np.nan)) for key in ("index", "index_low", "index_high")}
     if curve is not None:
         low, high = (0, len(curve.levels) - 1)
@@ -241,6 +306,7 @@ def _named(table: pd.DataFrame, curves: tuple[Curve, ...], place: int) -> dict[s
             "to": curve.levels[high],
             "at_from": float(curve.middle[low]),
             "at_to": float(curve.middle[high]),
+            "by_ratio": curve.by_ratio,
         }
     return told
 
@@ -251,7 +317,7 @@ def _in_order(curves: tuple[Curve, ...], table: pd.DataFrame) -> tuple[Curve, ..
 
 
 def _columns(
-    ranges: CaseRanges, table: pd.DataFrame, sens: xr.Dataset | None
+    ranges: CaseRanges, table: pd.DataFrame, sens: xr.Dataset | None, by_ratio: bool
 ) -> tuple[Column, ...]:
     _, words, units = ranges.output
     columns = [
@@ -259,8 +325,20 @@ def _columns(
         Column("role", "Role", "", "choice: the designer sets it. Condition: the use does", "text"),
         Column("range", "Range", "", "levels of the factor in this study", "text"),
     ]
+    grouped = "members" in table
+    if grouped:
+        of_largest = "member of the group with the largest effect, which range and curve are of"
+        columns = [
+            Column(
+                "factor", "Group", "", "factors that the study puts together", "text", "", "name"
+            ),
+            Column("members", "Factors", "", "factors of the group", "text"),
+            columns[1],
+            Column("largest", "Its largest", "", of_largest, "text"),
+            columns[2],
+        ]
     if sens is not None:
-        index = headline(sens)
+        index = OF_GROUPS if grouped else headline(sens)
         share = not index_words(sens, index).sized
         meaning = str(sens[index].attrs.get("long_name", index))
         scale = (
@@ -284,20 +362,11 @@ def _columns(
                 "variance or more"
             )
             columns.append(Column("interacts", "Interacts with", "", meaning, "text"))
-    positive = bool(np.nanmin(table["at_low"], initial=np.inf) > 0)
-    meaning = (
-        "largest over smallest value of the curve"
-        if positive
-        else "largest less smallest value of the curve"
-    )
+    height = Column("height", "Height", units, "largest less smallest value of the curve")
+    if by_ratio:
+        height = Column("height", "Height", "", "largest over smallest value of the curve", "ratio")
     columns += [
-        Column(
-            "height",
-            "Height",
-            "" if positive else units,
-            meaning,
-            "ratio" if positive else "number",
-        ),
+        height,
         Column(
             "at_low",
             "At the first level",
@@ -321,8 +390,15 @@ def _columns(
             "lost",
             "Rows lost",
             "",
-            "cases that are not held: most of a level less fewest of a level",
+            "cases that are not held: most of a level less fewest of a level; many levels stand in "
+            f"{BINS} classes of equally many cases",
             "count",
         ),
     ]
+    if "meets_low" in table:
+        meaning = (
+            "cases that surely meet the requirement: smallest and largest share of a level, or of "
+            "a class"
+        )
+        columns.append(Column("meets_low", "Meets it", "1", meaning, "share", until="meets_high"))
     return tuple(columns)

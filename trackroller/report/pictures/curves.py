@@ -56,12 +56,12 @@ def effects(answer: Answer) -> list[Effect]:
 
 
 def height_words(curve: Curve) -> str:
-    """Return the height of a curve: '×42', or the difference of an output that changes its sign."""
+    """Return the height of a curve: '×42', or a difference where it is no ratio."""
     if math.isinf(curve.height):
         return "to 0"
-    if curve.middle.size and np.nanmin(curve.middle) < 0:
-        return f"Δ {grouped(curve.height, 2)}"
-    return f"×{grouped(curve.height, 2)}"
+    if curve.by_ratio:
+        return f"×{grouped(curve.height, 2)}"
+    return f"Δ {grouped(curve.height, 2)}"
 
 
 def _inside(curve: Curve) -> np.ndarray:
