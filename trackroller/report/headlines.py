@@ -13,6 +13,8 @@ Keys of `Answer.headline`; a key that is missing, None, NaN or empty is left out
 `names`            list of dict: name of a column of role `name` -> level of the named candidates;
                    only choices that differ between them and the rest; the first one is the leader
                    (of `none` empty)
+`goals`            list of {words, units, value}: goals that are no choices, of the leader
+`shared`           of `a_or_b`: choices that the named candidates have in common, and others lack
 `low`, `high`      of the leader's required output at its worst condition [unit of `Answer.output`]
 `worst`            levels of that condition in words (stands in the table)
 `ends`, `ends_high`  limit that ends it, in words that follow "then": "fatigue", "wear"
@@ -143,7 +145,8 @@ def decide(answer: Answer) -> Headline:
     if head.get("not_held") and head.get("elsewhere") and answer.kind in ELSEWHERE:
         lost = f"None holds in {_part(head['not_held'], 'conditions')}"
         lead = f"{lost}; elsewhere {ELSEWHERE[answer.kind](answer)}"
-        return Headline(lead, f": {'; '.join([_value_said(answer), *_other_rules(head)])}.")
+        clauses = [_value_said(answer), *_goals_said(head), *_other_rules(head)]
+        return Headline(lead, f": {'; '.join(clauses)}.")
     shares = _known(head, "share") and bool(answer.required)
     clauses = _shares(answer) if shares and answer.kind != "none" else _lasts(answer)
     return _joined(lead, [*_up_to(answer), *clauses, *_nearest(answer)])
@@ -169,7 +172,8 @@ def _either(answer: Answer) -> str:
     left = len(names) - MOST_NAMES
     if left > 0:
         spoken += f" or {left} more"
-    return spoken
+    shared = answer.headline.get("shared")
+    return f"{spoken}, {_name(answer, shared)}" if shared else spoken
 
 
 def _none(answer: Answer) -> str:
@@ -244,6 +248,8 @@ def _lasts(answer: Answer) -> list[str]:
         whose = f"{_leader(answer)} " if answer.kind in ("a_or_b", "measure", "give") else ""
         place = "" if _one_condition(answer) else " at its worst condition"
         clauses.append(f"{whose}{_value_said(answer)}{place}{_then(head)}")
+        if answer.kind in ELSEWHERE:
+            clauses += _goals_said(head)
     clauses += _turn(head)
     others = [] if answer.kind == "cannot_tell" else _other_rules(head)
     return [*clauses, *others, *_required(answer)]
@@ -262,6 +268,12 @@ def _has_leader(answer: Answer) -> bool:
 def _one_condition(answer: Answer) -> bool:
     conditions = answer.facts.get("conditions")
     return conditions in (1, [1, 1], (1, 1))
+
+
+def _goals_said(head: Mapping[str, Any]) -> list[str]:
+    """Return the goals that the leader follows beside the requirement."""
+    goals = head.get("goals") or ()
+    return [listing([_goal(one) for one in goals])] if goals else []
 
 
 def _tenth(answer: Answer) -> str:

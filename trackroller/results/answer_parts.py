@@ -203,21 +203,21 @@ def cautions(own: Comparison, shown: pd.DataFrame, named: int = 1) -> tuple[Caut
             found.append(
                 Caution("second_model", int(turned.sum()), len(shown), words, "candidates")
             )
-    edges = [edge for edge in shown["edge"].iloc[:named] if edge]
-    if edges:
-        found.append(
-            Caution("at_end", len(edges), named, _edge_text(own, shown, edges[0]), "candidates")
-        )
+    edges = shown.iloc[:named]
+    edges = edges[edges["edge"] != ""]
+    if len(edges):
+        words = _edge_text(own, edges.iloc[0])
+        found.append(Caution("at_end", len(edges), named, words, "candidates"))
     return (*found, *_unlike(own, shown))
 
 
-def _edge_text(own: Comparison, shown: pd.DataFrame, edge: str) -> str:
-    """Return the choices of the leader at the ends of their levels, with these levels."""
+def _edge_text(own: Comparison, candidate: pd.Series) -> str:
+    """Return the choices of a candidate at the ends of their levels, with these levels."""
     parts = []
     for name in own.choices:
-        if long_name_of(name) in edge.split(", "):
+        if long_name_of(name) in candidate["edge"].split(", "):
             levels = own.results.levels(name)
-            value = shown[name].iloc[0]
+            value = candidate[name]
             side = "smallest" if value == levels[0] else "largest"
             ends = f"{level_text(name, levels[0])} to {level_text(name, levels[-1])}"
             parts.append(f"{long_name_of(name)} {level_text(name, value)}: {side} of {ends}")

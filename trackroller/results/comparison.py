@@ -151,6 +151,44 @@ class Comparison:
         return tuple(found)
 
     @cached_property
+    def lives(self) -> CaseRanges | None:
+        """Return the life that ranks what meets a requirement which names no life; None where the
+        compared output is a life, or the study has none.
+        """
+        if not self.required or is_life(self.ranges.output[0]) or self.results.life is None:
+            return None
+        return CaseRanges(self.results, self.results.life, True)
+
+    @cached_property
+    def followed(self) -> dict[str, str]:
+        """Return the goals of numbers that the study follows beside its requirement, each `max` or
+        `min`.
+        """
+        if not self.required:
+            return {}
+        goals = self.results.config.pareto.items()
+        return {
+            name: way for name, way in goals if self.results.quantity(name)[0].dtype.kind in "fiu"
+        }
+
+    @cached_property
+    def others(self) -> dict[str, CaseRanges]:
+        """Return the outputs beside the compared one on which a decision rests: other requirements,
+        goals that are no inputs, and the life that ranks.
+        """
+        found = [own for _, own in self.judges if own is not self.ranges]
+        inputs = {*self.results.factors, *self.results.derived, *self.results.goods}
+        for name, way in self.followed.items():
+            if name not in inputs and name not in self.results.base:
+                _, units, words = self.results.quantity(name)
+                found.append(CaseRanges(self.results, (name, words, units), way == "max"))
+        if self.lives is not None:
+            found.append(self.lives)
+        named = {own.output[0]: own for own in found}
+        named.pop(self.ranges.output[0], None)
+        return named
+
+    @cached_property
     def idle(self) -> dict[str, str]:
         """Return the choices that change nothing which a decision rests on: `no effect`, or `none
         on the NAME`.
@@ -460,15 +498,17 @@ class Comparison:
         return np.asarray(out, dtype=float)
 
     def tenth_part(self, number: int) -> tuple[float, float, float]:
-        """Return the life that nine of ten drawn conditions of a candidate reach, with its 95 %
-        interval.
+        """Return what nine of ten drawn conditions of a candidate reach, or of an output of which
+        less is better stay within, with its 95 % interval.
 
         The interval is NaN below the number of rows at which an order statistic reaches 95 %.
         """
-        rows = self.rows[number]
-        lives = np.where(self.ranges.held[rows], self.ranges.middle[rows], 0.0)
-        value, low, high = b10(lives, self.scatter[rows])
-        return (value, low, high) if len(rows) >= ENOUGH else (value, np.nan, np.nan)
+        rows, sign = self.rows[number], self.ranges.sign
+        values = np.where(self.ranges.held[rows], self.ranges.middle[rows], self.ranges.worst_value)
+        value, *ends = (sign * one for one in b10(sign * values, self.scatter[rows]))
+        if len(rows) < ENOUGH:
+            return value, np.nan, np.nan
+        return value, min(ends), max(ends)
 
     def middle_interval(self, number: int) -> tuple[float, float]:
         """Return the 95 % interval of the median of the drawn conditions of a candidate, by order
