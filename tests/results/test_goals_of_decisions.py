@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+import yaml
 
 import trackroller as tr
 from trackroller.report.headlines import headline_of
@@ -166,3 +167,49 @@ def test_equal_candidates_name_what_they_share_and_others_lack(tmp_path):
     assert "roller profile radius −6.3 mm" in headline_of(answer).lead
     caution = next(one for one in answer.warnings if one.code == "at_end")
     assert "−6.3 mm: largest of −9 mm to −6.3 mm" in caution.where
+
+
+def named_loads(place, heavy):
+    """Two steels under three named loads; friction belongs to the pair, and one load skids on both."""
+    rows = ["load case,radial_force [N],motor_force [N],friction_coefficient,roller_material"]
+    for material, friction, full in ((STEEL, 0.2, -200), ("C45-induction-hardened", 0.16, heavy)):
+        rows += [f"empty,-60,0,{friction},{material}", f"full,{full},0,{friction},{material}"]
+        rows.append(f"wet start,-200,-30,0.05,{material}")
+    (place / "loads.csv").write_text("\n".join(rows) + "\n")
+    base = {key: value for key, value in BASE.items() if key not in ("motor_force", "roller_material")}
+    study = {
+        "name": "named",
+        "base": base,
+        "method": "table",
+        "table": "loads.csv",
+        "contact_model": "sliding",
+        "accuracy": "preview",
+        "requirement": {LIFE: {"min": 20}},
+    }
+    (place / "study.yaml").write_text(yaml.safe_dump(study))
+    return tr.run(place / "study.yaml", results=place, progress=False)
+
+
+def test_loads_of_one_name_are_paired(tmp_path):
+    results = named_loads(tmp_path, -200)
+    rows = results.table
+    assert (rows["regime"] != 0).tolist() == [case == "wet start" for case in rows["load_case"]]
+    answer = results.answer
+    assert answer.kind == "build"
+    assert answer.headline["not_held"] == {"count": 1, "of": 3, "where": "load case wet start"}
+    leader = answer.table.iloc[0]
+    lives = rows[rows["regime"] == 0].groupby("roller_material")[LIFE].min()
+    assert leader["roller_material"] == lives.idxmax()
+    assert leader["low"] == pytest.approx(lives.max())
+    other = answer.table.iloc[1]
+    by_case = rows[rows["regime"] == 0].pivot(index="load_case", columns="roller_material", values=LIFE)
+    ratios = by_case[other["roller_material"]] / by_case[leader["roller_material"]]
+    assert (other["ratio_low"], other["ratio_high"]) == pytest.approx((ratios.min(), ratios.max()))
+    unlike = [one.where for one in answer.warnings if one.code == "unlike"]
+    assert unlike == ["values that differ in conditions of one name: friction coefficient"]
+
+
+def test_unequal_loads_of_one_name_are_not_paired(tmp_path):
+    answer = named_loads(tmp_path, -260).answer
+    assert answer.table["ratio_low"].iloc[1:].isna().all()
+    assert "candidates have other conditions" in {one.where for one in answer.warnings}

@@ -18,7 +18,7 @@ from trackroller.results.answer import Caution
 from trackroller.results.candidates import slip_margin
 from trackroller.results.case_ranges import CaseRanges
 from trackroller.results.columns import codes
-from trackroller.results.comparison import Comparison
+from trackroller.results.comparison import LOADS, UNEQUAL, Comparison
 from trackroller.results.lives import OF_PAIR, body_lives
 from trackroller.results.places import level_text, places_of, places_text
 from trackroller.results.solved_cases import SolvedCases
@@ -32,8 +32,6 @@ from trackroller.study.store.provenance import DATE
 CAUSES = {"lifts off": "axial_force", "skids": "motor_force"}
 # share of the cases lost by an input that was not given, from which on the input is asked for
 MANY = 0.5
-LOADS = ("radial_force", "axial_force", "motor_force")
-UNEQUAL = 0.01  # relative difference from which on loads of candidates are unlike
 NAMED_LEVELS = 4  # values that a warning lists
 
 
@@ -321,6 +319,10 @@ def _unlike(own: Comparison, shown: pd.DataFrame) -> list[Caution]:
                 "candidates",
             )
         )
+    if own.unpaired:
+        words = _listed(long_name_of(name) for name in own.unpaired)
+        where = f"values that differ in conditions of one name: {words}"
+        found.append(Caution("unlike", own.count, own.count, where, "candidates"))
     if own.count > 1 and not own.matched and not own.drawn and own.conditions:
         found.append(
             Caution(

@@ -31,6 +31,8 @@ from trackroller.roller.told_errors import ORDINARY_FRICTION
 from trackroller.study.design.levels import OF_MATERIALS
 from trackroller.study.outputs import flat
 
+LOADS = ("radial_force", "axial_force", "motor_force")
+UNEQUAL = 0.01  # relative difference from which on loads of candidates are unlike
 EQUAL = 1e-9  # relative difference of numbers that count as equal
 STRESSES = (
     ("peak_stress_roller", "peak stress of the roller", "MPa"),
@@ -87,14 +89,14 @@ def wilson(hits: np.ndarray, size: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 def unchanged_by(results: SolvedCases, name: str, values: Iterable[np.ndarray]) -> bool:
     """Return whether a factor changes none of some values where all other factors are equal.
 
-    A factor without two such rows counts as one that may change them.
+    A factor of which a row has no such partner counts as one that may change them.
     """
     others = [factor for factor in results.factors if factor != name]
     group = codes(results.table, others)
+    if (np.bincount(group)[group] < 2).any():
+        return False
     first = np.unique(group, return_index=True)[1]
     partner = first[np.unique(group, return_inverse=True)[1]]
-    if not (partner != np.arange(len(group))).any():
-        return False
     return all(_equal(own, own[partner]) for own in values)
 
 
@@ -252,8 +254,43 @@ class Comparison:
 
     @cached_property
     def conditions(self) -> tuple[str, ...]:
-        """Return the names of the conditions."""
-        return tuple(n for n in self.groups.conditions if n not in self.spans)
+        """Return the names of the conditions.
+
+        Conditions that candidates do not share are paired by their names, such as that of a load
+        case, if a table has such a column and the loads of one name are equal.
+        """
+        names = tuple(n for n in self.groups.conditions if n not in self.spans)
+        if self.drawn or self.count < 2 or self._each_has(names):
+            return names
+        for name in self.results.labels:
+            if name in names and self._each_has((name,)) and self._equal_loads(name, names):
+                return (name,)
+        return names
+
+    @property
+    def unpaired(self) -> tuple[str, ...]:
+        """Return the conditions that differ between candidates in conditions of one name."""
+        if set(self.conditions) >= {*self.groups.conditions} - {*self.spans}:
+            return ()
+        others = [n for n in self.groups.conditions if n not in (*self.spans, *self.conditions)]
+        varies = self.results.table[self.own].groupby([*self.conditions], sort=False)[others]
+        return tuple(str(name) for name, most in varies.nunique().max().items() if most > 1)
+
+    def _each_has(self, names: tuple[str, ...]) -> bool:
+        """Return whether each candidate has each combination of some columns once at each place of
+        the placeholders.
+        """
+        use = codes(self.results.table, names)[self.own]
+        keys = np.stack([self.place[self.own], use, self.level[self.own]])
+        once = np.unique(keys, axis=1).shape[1] == self.own.sum()
+        return bool(once and self.own.sum() == np.prod([len(np.unique(key)) for key in keys]))
+
+    def _equal_loads(self, name: str, names: tuple[str, ...]) -> bool:
+        """Return whether all loads of one name are equal within a hundredth."""
+        loads = [load for load in LOADS if load in names]
+        own = self.results.table[self.own].groupby(name, sort=False)[loads]
+        most, least = own.max(), own.min()
+        return bool((most - least <= UNEQUAL * np.maximum(most.abs(), least.abs())).all(axis=None))
 
     @cached_property
     def drawn(self) -> bool:
