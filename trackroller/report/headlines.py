@@ -570,12 +570,10 @@ def roller(answer: Answer) -> Headline:
         text = f"{unsure}{lasts}"
         return Headline(capital(text), "".join(f"; {clause}" for clause in clauses) + ".")
     worst = head["exceeded"][0]
-    hours = worst["hours"]
-    after = (
-        f", after {grouped(hours, 2)} h by its rule"
-        if hours is not None and math.isfinite(hours)
-        else ""
-    )
+    hours = math.inf if worst["hours"] is None else worst["hours"]
+    after = ""
+    if math.isfinite(hours) and not hours > head["high"]:  # a later end says nothing
+        after = f", after {grouped(hours, 2)} h by its rule"
     lead = f"{_limit_of(worst)} exceeded ({percent(worst['use'])})"
     return Headline(
         capital(lead),

@@ -17,8 +17,9 @@ import pandas as pd
 
 from trackroller.study.file.questions import QUESTIONS as QUESTIONS
 
-# of the keys of `Answer.to_dict`; a key that is renamed or that changes its meaning raises it
-VERSION = 1
+# of the keys of `Answer.to_dict`; a key that is new or renamed, or that changes its meaning,
+# raises it
+VERSION = 2
 WARNINGS = {  # code -> what it means
     "not_held": "cases that skid, lift off, break, or exceed a limit",
     "not_judged": "cases that the model cannot judge",

@@ -42,7 +42,7 @@ from trackroller.roller import stored_inputs as record
 from trackroller.roller.dataset import VARIABLES, shown, solved_by
 from trackroller.roller.duty import duty_of, strokes_of, years
 from trackroller.roller.limit_notes import given_in_vain, lacks_of, notes_of
-from trackroller.roller.output_names import PARTS
+from trackroller.roller.output_names import PARTS, body_of
 from trackroller.roller.regime_limits import Limits, limits
 from trackroller.roller.requirement import requirement_of
 from trackroller.roller.temperature import HEAD as OF_TEMPERATURE
@@ -384,6 +384,8 @@ def _table(ds: xr.Dataset, own: Sequence[Margin], required: Sequence[Required]) 
     """Return one row a limit, and one for each required output that is no life of the pair."""
     least = max([one.least for one in required if one.output in OF_PAIR], default=-math.inf)
     rows = [_row(margin, least) for margin in own]
+    # a life that is not known may be the shortest one, so it stands behind the one that is known
+    rows[1:1] = [_unrated_row(ds, body) for body in _unrated(ds)]
     of_outputs = [_required_row(ds, one) for one in required if one.output not in OF_PAIR]
     rows = sorted([*rows, *of_outputs], key=lambda row: row["state"] != "exceeded")
     table = pd.DataFrame(
@@ -428,6 +430,17 @@ def _row(margin: Margin, least: float) -> dict[str, Any]:
     }
 
 
+def _unrated_row(ds: xr.Dataset, body: str) -> dict[str, Any]:
+    """Return the row of a fatigue life that is not known at the failure probability, because the
+    material has no scatter.
+    """
+    chance = 100 * float(ds.attrs["failure_probability"])
+    bound = f"life at {chance:g} % failed: needs scatter_in_cycles of {material_name(ds, body)}"
+    limit = LIMITS["fatigue"]
+    margin = Margin(limit.name, limit.word, limit.title, body, bound=bound, state="unknown")
+    return _row(margin, -math.inf)
+
+
 def _required_row(ds: xr.Dataset, required: Required) -> dict[str, Any]:
     """Return the row of a required output; how much of it is used counts towards the nearer end."""
     value = (
@@ -447,7 +460,7 @@ def _required_row(ds: xr.Dataset, required: Required) -> dict[str, Any]:
         required.output,
         required.words,
         "requirement",
-        "pair",
+        body_of(required.output) or "pair",
         value,
         required.most if math.isfinite(required.most) else required.least,
         required.units,

@@ -199,7 +199,9 @@ def caption(answer: Answer) -> str:
     )
     if any(math.isfinite(end) for one in answer.required for end in (one.least, one.most)):
         text += "; dashed: required"
-    text += ". × is the largest over the smallest middle."
+    ratios = all(curve.by_ratio for curve in answer.curves)
+    height = "× is the largest over" if ratios else "Δ is the largest less"
+    text += f". {height} the smallest middle."
     numbered = [
         curve for curve in answer.curves if not curve.ordered and len(curve.levels) > MOST_NAMES
     ]

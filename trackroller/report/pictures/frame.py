@@ -12,7 +12,6 @@ from trackroller.report.bounds import required_of_output
 from trackroller.report.numbers import as_required, unit_text
 from trackroller.report.pictures.axis import Axis
 from trackroller.report.pictures.marks import (
-    anchor_at,
     element,
     joined,
     label,
@@ -62,8 +61,8 @@ def lower_axis(axis: Axis, title: str, width: float, lines: bool = False) -> Mar
 
 
 def lower_names(names: Sequence[str], places: Sequence[float], width: float) -> Markup:
-    """Return names below a picture; a name that is longer than its share of the width is cut, its
-    title is whole.
+    """Return names below a picture, each in the middle of its share of the width; a name that is
+    longer is cut, its title is whole.
     """
     share = width / max(1, len(names))
     parts = []
@@ -71,17 +70,8 @@ def lower_names(names: Sequence[str], places: Sequence[float], width: float) -> 
         text = cut(name, share)
         whole = element("title", name) if text != name else ""
         content = joined([Markup.escape(text), Markup(whole)])
-        anchor = anchor_at(place)
-        parts.append(
-            element(
-                "text",
-                content,
-                x=percent_place(place),
-                y="100%",
-                dy=15,
-                text_anchor="" if anchor == "start" else anchor,
-            )
-        )
+        at = percent_place(place)
+        parts.append(element("text", content, x=at, y="100%", dy=15, text_anchor="middle"))
     return joined(parts)
 
 
