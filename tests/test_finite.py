@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import copy
 import math
 from collections.abc import Iterator
@@ -22,6 +23,8 @@ from trackroller.damage.bearing import FIELD as BEARING
 from trackroller.damage.catalogue import FIELD as CATALOGUE
 from trackroller.materials import add_material
 from trackroller.materials.properties import ALTERNATIVES, PROPERTIES
+from trackroller.numerics.units import split_quantity
+from trackroller.one_patch.inputs import checked_patch
 from trackroller.parameters import PARAMETERS
 from trackroller.parameters.sizes import SIZES
 from trackroller.roller.case import to_table
@@ -222,31 +225,48 @@ CARRIAGE = {
             "share": 0.4,
             "acceleration": 2.0,
             "speed": 1.0,
-            "gradient": "2 deg",
-            "cant": 0.0,
+            "gradient": "2 %",
+            "cant": "1 deg",
             "payload": 0.5,
             "forces": [{"force": [0.0, 50.0, 0.0], "at": [0.0, 0.0, 200.0]}],
         },
-        {"name": "b", "share": 0.6, "speed": 1.0},
+        {"name": "b", "share": 0.6, "speed": 1.0, "curve_radius": 2000.0},
     ],
     "distance": 1000.0,
     "duty": {"strokes_per_day": 400.0, "stroke": 0.8, "days_per_year": 250.0},
 }
+PATCH = {
+    "normal_force": 1000.0,
+    "curvature_rolling": "0.02 1/mm",
+    "curvature_lateral": 0.01,
+    "materials": {"youngs_modulus": "210 GPa", "poisson_ratio": 0.3},
+    "friction_coefficient": 0.3,
+    "longitudinal_creepage": [0.001, "0.2 %"],
+    "lateral_creepage": 0.0,
+    "spin": 0.001,
+    "velocity": 60.0,
+    "layer_flexibility": 1e-6,
+}
+DISCS = {key: value for key, value in PATCH.items() if key != "spin"} | {"curvature_lateral": 0.0, "width": 5.0}
+AXES = {key: value for key, value in PATCH.items() if not key.startswith("curvature")} | {"semi_axes": [1.0, "2 mm"]}
 FILES = {
     "carriage": (CARRIAGE, load_carriage),
     "case": (CASE, lambda values: to_table(checked_case(values)[0])),  # the table has the values of the materials
     "study": (STUDY, lambda values: tr.load_study(values)),
     "search": (SEARCH, lambda values: tr.load_study(values)),
     "spectrum": (SPECTRUM, lambda values: Spectrum.from_dict(values)),
+    "patch": (PATCH, lambda values: checked_patch(values)),
+    "discs": (DISCS, lambda values: checked_patch(values)),
+    "axes": (AXES, lambda values: checked_patch(values)),
 }
 
 
 def leaves(value: Any, place: tuple[Any, ...] = ()) -> Iterator[tuple[Any, ...]]:
-    """Yield the places of all numbers in nested mappings and lists."""
+    """Yield the places of all numbers in nested mappings and lists, those with a unit too."""
     entries = value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list) else ()
     for key, entry in entries:
         yield from leaves(entry, (*place, key))
-    if isinstance(value, (int, float)) and not isinstance(value, bool):
+    if (isinstance(value, (int, float)) and not isinstance(value, bool)) or split_quantity(value):
         yield place
 
 
@@ -256,7 +276,8 @@ def changed(given: dict[str, Any], place: tuple[Any, ...], value: float) -> dict
     inside: Any = out
     for key in place[:-1]:
         inside = inside[key]
-    inside[place[-1]] = value
+    quantity = split_quantity(inside[place[-1]])
+    inside[place[-1]] = value if quantity is None else f"{value} {quantity[1]}"
     return out
 
 
@@ -266,7 +287,7 @@ def test_no_number_of_a_file_is_infinite_or_nan_wherever_it_stands(kind):
     check(copy.deepcopy(given))
     taken = []
     for place in leaves(given):
-        straight = {"parabola", "roller_profile_radius"} & set(place)  # of infinite radius
+        straight = {"parabola", "roller_profile_radius", "curve_radius"} & set(place)  # of infinite radius
         for value in BAD:
             if straight and math.isinf(value) and "uniform" not in place:
                 continue
@@ -276,6 +297,15 @@ def test_no_number_of_a_file_is_infinite_or_nan_wherever_it_stands(kind):
                 continue
             taken.append((place, value))
     assert not taken
+
+
+@pytest.mark.parametrize("kind", FILES)
+def test_a_number_out_of_all_proportion_is_taken_or_refused_wherever_it_stands(kind):
+    given, check = FILES[kind]
+    for place in leaves(given):
+        for value in (1e300, -1e300, 1e-300, 0.0):
+            with contextlib.suppress(tr.InputError):  # another error fails the test
+                check(changed(given, place, value))
 
 
 UNDER = {"load_type": "axial", "stress_ratio": -1.0, "like": STEEL}

@@ -78,11 +78,11 @@ REMEDIES: dict[str, tuple[Any, dict[str, Any], str, dict[str, Any]]] = {
     "a plain number": (case, {"axial_force": "1,5"}, "Write 1.5.", {"axial_force": 1.5}),
     "another unit": (case, {"axial_force": "5 mm"}, "such as '5 N'", {"axial_force": "5 N"}),
     "0 for a number that is too small": (case, {"axial_force": "1e-400"}, "Write 0", {"axial_force": 0}),
-    "inf for a number that is too large": (
+    "a smaller number for one that is too large": (
         case,
         {"guide_curve_radius": "1e400"},
-        "Write inf",
-        {"guide_curve_radius": "inf"},
+        "Write a smaller number",
+        {"guide_curve_radius": "1e6"},
     ),
     "add limits to outputs": (
         case,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import errno
 
+import numpy as np
 import pandas as pd
 import pytest
 import yaml
@@ -34,6 +35,53 @@ def test_a_sign_that_a_terminal_obeys_is_refused_and_shown_escaped(sign):
     assert named.encode("ascii").decode("unicode_escape") in sign
     text = f"lift {sign}".replace(named.encode("ascii").decode("unicode_escape"), "")
     assert checked_text(text, "name") == text, "the remedy works"
+
+
+ALIKE = ["a\u200b", "\ufeffa", "so\xadft", "a\u2060b", "a\u200d", "a\ufe0f", "\u3164", "\u2800", "\U000e0041a"]
+
+
+@pytest.mark.parametrize(("value", "shown"), [(np.float64(2.5), "2.5"), (np.array([1.0, 2.0]), "[1.0, 2.0]")])
+def test_a_message_shows_numbers_without_names_of_the_library(value, shown):
+    assert f"slip = {shown} is" in str(InputError("slip", value, "a number"))
+
+
+@pytest.mark.parametrize("text", [*ALIKE, "\u0301a", "a \u0308", "   ", "\u3000"])
+def test_a_name_that_does_not_show_whole_is_refused_and_the_remedy_works(text):
+    with pytest.raises(InputError, match=r"an invisible character|without its letter|blanks") as caught:
+        checked_text(text, "name")
+    if text.isspace():
+        assert "Write a name" in str(caught.value)
+        return
+    code = str(caught.value).split("Remove the character ")[1].rstrip(".")
+    mended = text.replace(code.encode("ascii").decode("unicode_escape"), "") or "name"
+    assert checked_text(mended.rstrip(), "name")
+
+
+@pytest.mark.parametrize("text", ["e\u0301", "می‌خواهم", "नमस्‍ते", "👨‍👩‍👧", "⚠\ufe0f"])
+def test_letters_of_several_characters_stay(text):
+    assert checked_text(text, "name") == text
+
+
+@pytest.mark.parametrize("value", [None, ""])
+def test_an_empty_name_is_one_that_was_not_given(value):
+    cart = load_carriage(CART | {"name": value, "description": value, "cases": [{"name": value}]})
+    assert (cart.name, cart.description, cart.cases[0].name) == ("carriage", "", "case 1")
+    spectrum = Spectrum.from_dict(SPECTRUM | {"name": value, "blocks": [{"name": value, "distance": 10}]})
+    assert (spectrum.name, spectrum.blocks[0].name) == ("spectrum", "block 1")
+
+
+@pytest.mark.parametrize("value", [True, 1.5, ["a"], {"a": 1}, np.ones(2)])
+@pytest.mark.parametrize("key", ["name", "description", "cases"])
+def test_a_name_is_a_text(key, value):
+    given = [{"name": value}] if key == "cases" else value
+    with pytest.raises(InputError, match=r"a text, or a whole number\. Put the text in quotes"):
+        load_carriage(CART | {key: given})
+
+
+@pytest.mark.parametrize("name", ["", None])
+def test_a_roller_has_a_name(name):
+    with pytest.raises(InputError, match="name of a roller is missing"):
+        load_carriage(CART | {"rollers": {name: ROLLER}})
 
 
 @pytest.mark.parametrize("text", ["Förderer 7", "滑车", "a b\u00a0c", "µm ± 3 °", "=1+1", "العربة"])

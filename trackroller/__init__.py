@@ -21,13 +21,14 @@ _WHERE = {
     "explore": "trackroller.report.show",
     "find": "trackroller.roller.find",
     "fit_bench": "trackroller.fit.bench",
+    "fit_catalogue": "trackroller.fit.catalogue",
     "fit_sn": "trackroller.fit.coupons",
     "next_tests": "trackroller.fit.next_tests",
     "patch": "trackroller.one_patch.solve",
     "solve": "trackroller.roller.solver",
     "load_study": "trackroller.study.file.load",
     "open_study": "trackroller.results.stored_study",
-    "run": "trackroller.results.solving",
+    "run": "trackroller.results.run",
     "size": "trackroller.results.size",
     "wear": "trackroller.roller.wear",
     "workbook": "trackroller.report.show",
@@ -46,6 +47,7 @@ if TYPE_CHECKING:
     from trackroller import report as report
     from trackroller.errors import InputError as InputError
     from trackroller.fit.bench import fit_bench as fit_bench
+    from trackroller.fit.catalogue import fit_catalogue as fit_catalogue
     from trackroller.fit.coupons import fit_sn as fit_sn
     from trackroller.fit.next_tests import next_tests as next_tests
     from trackroller.halfspace.stress import max_shear as max_shear
@@ -57,8 +59,8 @@ if TYPE_CHECKING:
     from trackroller.one_patch.solve import patch as patch
     from trackroller.report.show import explore as explore
     from trackroller.report.show import workbook as workbook
+    from trackroller.results.run import run as run
     from trackroller.results.size import size as size
-    from trackroller.results.solving import run as run
     from trackroller.results.stored_study import open_study as open_study
     from trackroller.roller.case import Case as Case
     from trackroller.roller.find import find as find

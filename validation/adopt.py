@@ -5,7 +5,7 @@
 Targets are those of `validation/Snakefile`; without a target, all that FOLDER (default `results`) holds. What was not
 measured again stays. `tradeoff` also writes the costs that `plan` uses and the errors that results state; studies solve
 their cases anew by themselves then, because these errors are part of the solver's digest. `kalker_table` also writes
-the table of the package.
+the table of the package, and `measured` our entry in the benchmark.
 """
 
 from __future__ import annotations
@@ -25,18 +25,21 @@ from trackroller.parameters import contact_models
 from trackroller.parameters.accuracy import RUNGS
 from trackroller.roller import expected_errors
 from validation.benchmarks import groove, programs, scaling
+from validation.measured.benchmark.entry import OURS
+from validation.measured.benchmark.table import PROGRAMS as ENTRIES
 
 DOCS = Path(__file__).resolve().parents[1] / "docs"
 DATA, FIGURES = DOCS / "data", DOCS / "figures"
 ERRORS = Path(expected_errors.__file__).with_name(expected_errors.FILE)
 TABLE = Path(spline.__file__).with_name(spline.TABLE)
 COSTS = contact_models.FILE
-TARGETS = ("extremes", "tradeoff", "paper", "contact_models", "fits", "kalker_table", "benchmarks")
+TARGETS = ("extremes", "tradeoff", "paper", "contact_models", "fits", "measured", "kalker_table", "benchmarks")
 # figures that the pages show, by target: pattern of their names, and colours of the reduced palette, if it is reduced
 PICTURES = {
     "extremes": ("extremes_*.png", 0),
     "tradeoff": ("tradeoff*.png", 0),
     "paper": ("paper_*.png", 96),
+    "measured": ("measured_*.png", 0),
     "contact_models": ("models-*.png", 64),
 }
 
@@ -121,6 +124,8 @@ def adopt(target: str, results: Path) -> None:
         copy_figures(folder / "study" / "figures" if of_study else folder / "figures", *PICTURES[target])
         if not of_study:
             shutil.copy(folder / "figures" / "index.json", DATA / f"{target}_figures.json")
+    if target == "measured":
+        shutil.copy(folder / "entry.csv", ENTRIES / f"{OURS}.csv")
     if target == "tradeoff":
         ERRORS.write_text(errors(), encoding="utf-8")
         COSTS.write_text(costs(), encoding="utf-8")

@@ -17,6 +17,7 @@ import jinja2
 from trackroller.report.numbers import rounded
 from validation.benchmarks import programs
 from validation.extremes import page as extremes
+from validation.measured import page as against
 from validation.paper import page as paper
 from validation.tradeoff import page as tradeoff
 
@@ -26,6 +27,8 @@ FACTS: dict[str, Callable[[Mapping[str, Any]], dict[str, Any]]] = {
     "paper.md": paper.facts,
     "tradeoff.md": tradeoff.facts,
     "extremes.md": extremes.facts,
+    "measured.md": against.facts,
+    "benchmark.md": against.benchmark_facts,
 }
 
 

@@ -323,7 +323,7 @@ def test_outputs_of_a_case_file_are_computed_beside_those_of_the_page():
 def test_how_far_a_force_may_go_takes_years_and_shows_the_band_of_the_life():
     """A year of the duty is 4,000 h; the band at the end of the range is that of the case there."""
     wears = {"like": "1.7225-quenched-tempered"}
-    values = {"motor_force": 0, "friction_coefficient": 0.1, "contact_model": "sliding", "permissible_wear_depth": 0.1}
+    values = {"motor_force": 0, "friction_coefficient": 0.1, "contact_model": "sliding", "permissible_wear_depth": 0.5}
     values |= {"roller_material": wears, "guide_material": wears, "guide_overrollings_per_hour": 60}
     values |= {"roller_profile_radius": -6.4, "duty": {"hours_per_day": 16, "days_per_year": 250}}
     life = "pair_life_to_first_limit_hours"

@@ -43,6 +43,34 @@ def test_a_file_with_the_files_of_its_rollers(tmp_path, monkeypatch):
     assert whole.rollers[0].options == {"contact_model": ["sliding"]} or whole.rollers[0].options["contact_model"]
 
 
+SCATTERED = {"like": "1.7225-quenched-tempered", "scatter_in_cycles": 4.0}
+
+
+def with_scatter(**options):
+    """Return a carriage whose roller and rail have a scatter, with options in the file of the roller."""
+    roller = ROLLER | {"roller_material": SCATTERED, "guide_material": SCATTERED, "guide_overrollings_per_hour": 60}
+    return cart(rollers=rollers_below(roller=roller | options))
+
+
+def test_the_failures_of_a_carriage_are_those_of_the_files_of_its_rollers():
+    once = solve_carriage(with_scatter() | {"failures": "10%"})
+    each = solve_carriage(with_scatter(failures="10%"))
+    assert np.array_equal(once["life_hours"], each["life_hours"]) and once.attrs["failure_probability"] == 0.1
+    median = solve_carriage(with_scatter())
+    assert np.allclose(median["life_hours"], 2.0 * once["life_hours"], rtol=1e-9)  # T_N = N_90/N_10 = 4, fatigue first
+    assert median.attrs["failure_probability"] == 0.5
+
+
+def test_failures_that_contradict_each_other_are_refused():
+    with pytest.raises(InputError, match=r"rollers\.FL.*is another one.*Remove it there"):
+        load_carriage(with_scatter(failures="5%") | {"failures": "10%"})
+    load_carriage(with_scatter() | {"failures": "10%"})  # the remedy
+    with pytest.raises(InputError, match=r"another name of it"):
+        load_carriage(with_scatter() | {"failures": "10%", "failure_probability": 0.1})
+    with pytest.raises(InputError, match="between 0 and 1"):
+        load_carriage(with_scatter() | {"failures": "110%"})
+
+
 def changed_roller(**more):
     rollers = rollers_below()
     rollers["FL"] |= more

@@ -89,7 +89,7 @@ def test_the_life_that_files_of_rollers_require_is_judged():
     life = {name: float(ds["life_hours"].sel(roller=name)) for name in ("FL", "RR")}
     pace = 0.25 / 1.8 + 0.75 / 3.6  # hours a km
     for share, state in ((0.5, "met"), (2.0, "missed")):
-        travel = ROLLER | {"required_travel": share * life["FL"] / pace, "permissible_wear_depth": 50}
+        travel = ROLLER | {"required_travel": share * life["FL"] / pace, "permissible_wear_depth": 900}
         rollers = rollers_below(roller=travel)
         own = tr.carriage(cart(cases=cases, rollers=rollers))
         answer = answer_of_carriage(own)

@@ -387,6 +387,15 @@ def test_catalogue_lives(law, power):
     assert np.allclose(ds.catalogue_life_km, 100 / (0.03 + 0.97 * factor) ** power)
 
 
+def test_a_catalogue_with_factors():
+    catalogue = {"radial_force": "1 kN", "axial_force": "400 N", "basic_life": "100 km", "law": "cubic"}
+    catalogue |= {"exponent": 2.5, "speed_factor": 0.6, "stroke_factor": 0.8}
+    ds = solved(cart(rollers=rollers_below(catalogue=catalogue)))
+    factor = 10 * G / 1000 / 0.8
+    assert np.allclose(ds.load_factor, factor)
+    assert np.allclose(ds.catalogue_life_km, 0.6 * 100 / factor**2.5)
+
+
 def test_margins_beyond_one_contact_are_not_stated():
     """The model of a roller on both contacts ends where an axial force lifts one of them."""
     ds = solve_carriage(shuttle(cases=[{"name": "run"}]), lives=False)

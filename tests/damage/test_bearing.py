@@ -71,11 +71,38 @@ def test_axial_force_alone_loads_one_row_by_y():
 
 
 def test_catalogue_laws():
-    law = np.array(["dry", "lubricated", "cubic", ""], dtype=object)
-    km = catalogue_km(np.full(4, 0.5), np.full(4, 100.0), law)
-    assert km[:3] == pytest.approx([100 / 0.515**2, 100 / 0.515**3, 800]) and np.isnan(km[3])
+    law = np.array(["dry", "lubricated", "cubic", "", "square"], dtype=object)
+    km = catalogue_km(np.full(5, 0.5), np.full(5, 100.0), law)
+    assert km[[0, 1, 2, 4]] == pytest.approx([100 / 0.515**2, 100 / 0.515**3, 800, 400]) and np.isnan(km[3])
     assert catalogue_km(np.ones(3), np.full(3, 70.0), law[:3]) == pytest.approx([70, 70, 70])
     assert catalogue_km(np.zeros(3), np.full(3, 70.0), law[:3])[2] == np.inf
+
+
+def test_worked_example_of_a_catalogue():
+    """DualVee W4X, 300 lbf axial of 900 and 100 lbf radial of 2181: LF 0.38, 6.84e6/LF^3 = 124.7e6 inch, 3167 km."""
+    factor = 300 / 900 + 100 / 2181
+    assert round(factor, 2) == 0.38
+    inches = catalogue_km(np.array([0.38]), np.array([6.84e6]), np.array(["cubic"], dtype=object))
+    assert inches == pytest.approx([124.7e6], rel=5e-4) and inches * 25.4e-6 == pytest.approx([3167], rel=5e-4)
+    pounds = 4.4482216  # N
+    wheel = {"radial_force": 2181 * pounds, "axial_force": 900 * pounds, "basic_life": 6.84e6 * 25.4e-6, "law": "cubic"}
+    load = {"radial_force": -100 * pounds, "axial_force": 300 * pounds, "motor_force": 0}
+    shape = {"axis_distance": 60, "guide_profile_radius": 20, "roller_profile_radius": 60, "contact_angle": 75}
+    ds = tr.solve(tr.Case(**load, **shape, catalogue=wheel), ("bearing",), contact_model="sliding", accuracy="preview")
+    assert float(ds.catalogue_life_km) == pytest.approx(6.84e6 * 25.4e-6 / factor**3, rel=1e-9)
+
+
+def test_factors_of_speed_and_stroke_and_an_exponent():
+    """Rollon: 100 km (C/P f_h)^3, so that a stroke factor divides the load; a factor of the life is DualVee's AF."""
+    base = {"radial_force": 800, "axial_force": 300, "basic_life": 100, "law": "cubic"}
+    more = [{}, {"stroke_factor": 0.7}, {"speed_factor": 0.6}, {"exponent": 2.5, "offset": 0.1}, {"law": "square"}]
+    cases = [tr.Case(motor_force=0, axial_force=30, catalogue=base | own) for own in more]
+    ds = tr.solve(cases, ("bearing",), contact_model="sliding", accuracy="preview")
+    ratio = 200 / 800 + 30 / 300
+    factor = np.array([ratio, ratio / 0.7, ratio, ratio, ratio])
+    assert ds.catalogue_load_factor.values == pytest.approx(factor, rel=1e-6)
+    km = [ratio**-3, (ratio / 0.7) ** -3, 0.6 * ratio**-3, (0.1 + 0.9 * ratio) ** -2.5, ratio**-2]
+    assert ds.catalogue_life_km.values == pytest.approx(100 * np.array(km), rel=1e-6)
 
 
 def test_a_catalogue_without_a_moment_and_with_an_offset():
@@ -133,6 +160,9 @@ def test_cases_with_other_bearings_share_their_mechanics():
         ("catalogue", {"basic_life_km": 100}, "Write basic_life"),
         ("catalogue", {"lubricated": True}, "Write law: lubricated"),
         ("catalogue", {"offset": 2}, "offset"),
+        ("catalogue", {"exponent": 0.1}, "exponent"),
+        ("catalogue", {"speed_factor": 0}, "speed_factor"),
+        ("catalogue", {"stroke_factor": -1}, "stroke_factor"),
     ],
 )
 def test_contradictory_ratings_are_refused_by_name(field, change, told):

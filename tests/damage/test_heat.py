@@ -8,7 +8,8 @@ from scipy.integrate import quad
 from scipy.signal import fftconvolve
 
 import trackroller as tr
-from trackroller.damage.heat import cell_temperature, hysteresis_moments
+from trackroller.damage.heat import hysteresis_moments
+from trackroller.damage.moving_source import cell_temperature
 
 STEEL = {"like": "1.7225-normalised", "thermal_conductivity": 42, "heat_capacity": 460, "density": 7850}
 STEEL |= {"loss_fraction": 0.01, "temperature_limit": 150}

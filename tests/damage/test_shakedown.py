@@ -5,8 +5,9 @@ import pytest
 from scipy.optimize import minimize
 
 import trackroller as tr
-from trackroller.damage.ball import GAP, ball_of_plane, shakedown_shears, smallest_ball
-from trackroller.damage.histories import DEPTHS, RollerTractions, deep_planes, planes
+from trackroller.damage.ball import GAP, ball_of_plane, smallest_ball, top_of_depths
+from trackroller.damage.deep_planes import BESIDE, deep_planes, ladder_of, loads_on_ladder, steps_on_ladder
+from trackroller.damage.histories import DEPTHS, RollerTractions, planes
 from trackroller.damage.shakedown import shears
 from trackroller.halfspace.stress import stress_from_tractions, stress_on_grid, von_mises
 
@@ -66,9 +67,8 @@ def test_the_depth_of_the_largest_shear_may_lie_between_the_planes():
     """A parabola over the logarithm of the depth is met exactly, a rise to the last plane ends there."""
     log_depth = np.log(DEPTHS)
     shear = np.stack([3.0 - 0.4 * (log_depth - np.log(0.43)) ** 2, 1.0 + DEPTHS])
-    stress = np.zeros((2, len(DEPTHS), 6, 2, 2))
-    stress[:, :, 4] = shear[:, :, None, None]
-    assert shakedown_shears(stress, log_depth) == pytest.approx([3.0, 1.0 + DEPTHS[-1]], rel=1e-12)
+    tops = [top_of_depths(own, log_depth) for own in shear]
+    assert tops == pytest.approx([3.0, 1.0 + DEPTHS[-1]], rel=1e-12)
     assert shear[0].max() < 2.995
 
 
@@ -94,22 +94,32 @@ def test_planes_are_the_stresses_of_the_half_space():
         assert np.moveaxis(stress[body, :, :, 3:15], 1, -1) == pytest.approx(direct, abs=2e-6)  # over p_0 = 1
 
 
+def on_ladder(loads):
+    """Return the loads of a patch on the nodes of a ladder, their spacings, and the sides of its box."""
+    _, ny, nx = loads.tractions.shape
+    nodes = ladder_of((nx, ny)).nodes
+    steps = steps_on_ladder((nx * loads.step_x, ny * loads.step_y), nodes)
+    own = loads_on_ladder(loads.tractions, (loads.step_x / steps[0], loads.step_y / steps[1]), nodes)
+    return own, steps, (nodes[0] * steps[0], nodes[1] * steps[1])
+
+
 def test_loads_on_the_ladder_keep_resultants_and_first_moments():
     """The second moments grow by a quarter of the squared spacing, as the kernels expect."""
     for a, b, nodes in ((1.3, 0.8, 28), (1.0, 2.9, 21)):
         fine = ellipse(a, b, 0.2, nodes).loads(0, 0)
-        coarse = fine.on_ladder()
+        coarse, steps, box = on_ladder(fine)
         sums, spreads = [], []
-        for own in (fine, coarse):
-            _, ny, nx = own.tractions.shape
-            x, y = own.step_x * (np.arange(nx) - 0.5 * (nx - 1)) + 0.1, own.step_y * (np.arange(ny) - 0.5 * (ny - 1))
-            load = own.tractions * own.step_x * own.step_y
+        for own, (step_x, step_y) in ((fine.tractions, (fine.step_x, fine.step_y)), (coarse, steps)):
+            _, ny, nx = own.shape
+            x, y = step_x * (np.arange(nx) - 0.5 * (nx - 1)) + 0.1, step_y * (np.arange(ny) - 0.5 * (ny - 1))
+            load = own * step_x * step_y
             sums.append([load.sum((1, 2)), (load * x).sum((1, 2)), (load.sum(2) * y).sum(1)])
             spreads.append([(load * x**2).sum((1, 2))[2], (load.sum(2) * y**2).sum(1)[2]])
         assert np.array(sums[1]) == pytest.approx(np.array(sums[0]), abs=1e-12)
-        grown = np.array([coarse.step_x, coarse.step_y]) ** 2 / 4 * sums[0][0][2]
+        grown = np.array(steps) ** 2 / 4 * sums[0][0][2]
         assert np.subtract(*spreads[::-1]) == pytest.approx(grown, rel=1e-9)
-        assert coarse.half_sides[0] * coarse.half_sides[1] <= 1.5 * a * b
+        assert box[0] * box[1] <= 1.5 * 4 * a * b
+        assert coarse.shape[1:] == tuple((n + 1) // 2 + 2 * BESIDE for n in fine.tractions.shape[1:])
 
 
 @pytest.mark.slow
@@ -126,12 +136,11 @@ def test_deep_planes_converge_with_the_fourth_order(a, b):
     errors, exact = [], load(112)
     for nodes in (14, 28):
         loads = load(nodes).loads(0, 0)
-        ladder, stress = loads.on_ladder(), deep_planes(loads, np.array([0.3, 0.4]))
+        (_, (step_x, step_y), box), stress = on_ladder(loads), deep_planes(loads, np.array([0.3, 0.4]))
         worst = []
-        wide, long = (s * n / (n + 2) for s, n in zip(ladder.half_sides, (nodes // 2,) * 2, strict=True))
-        for k, depth in enumerate(min(wide, long) * DEPTHS[4:], 4):
+        for k, depth in enumerate(0.5 * min(box) * DEPTHS[4:], 4):
             ny, nx = stress.shape[3:]
-            x, y = ladder.step_x * (np.arange(nx) - 0.5 * (nx - 1)), ladder.step_y * (np.arange(ny) - 0.5 * (ny - 1))
+            x, y = step_x * (np.arange(nx) - 0.5 * (nx - 1)), step_y * (np.arange(ny) - 0.5 * (ny - 1))
             points = np.stack(np.broadcast_arrays(x[::3], y[::2, None], depth), axis=-1)
             for body, (nu, sign) in enumerate(((0.3, 1), (0.4, -1))):
                 q = sign * exact.shear_lateral[0, 0], sign * exact.shear_rolling[0, 0]

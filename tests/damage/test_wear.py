@@ -12,14 +12,14 @@ from scipy.integrate import quad
 
 import trackroller as tr
 from trackroller.contact.quantities import Ellipse
-from trackroller.damage.wear import deepest, mass_loss, sunk_area, wear_depth
+from trackroller.damage.wear import TABLE, deepest, mass_loss, sunk_area, table_of_laws, wear_depth
 from trackroller.parameters.accuracy import PRESETS
 from trackroller.roller.dataset import validity_bit
 
 QUENCHED = "1.7225-quenched-tempered"
 OUTPUTS = ("forces", "contact", "friction_work", "wear", "limits")
 GIVEN = {"permissible_wear_depth": 0.05, "guide_overrollings_per_hour": 60.0}
-K = 1e-5  # mm3/(N m), of quenched steel on itself in the database
+K = 1e-5  # mm3/(N m)
 CASES = [
     {"roller_material": QUENCHED, "guide_material": QUENCHED},
     {"motor_force": 0, "axial_force": 0, "guide_curve_radius": float("inf"), "friction_coefficient": 0.15},
@@ -310,6 +310,58 @@ def test_energy_law_equals_archard_for_a_linear_table_and_follows_its_corners():
     assert mass_loss(np.array([5.2, 40, 77.2, 88.6, 111.4]), *railway) == pytest.approx([27.5, 55, 55, 760.5, 2171.5])
 
 
+def test_the_energy_law_of_the_materials_needs_no_table():
+    """Wheel and rail steel of the twin discs: 5.3 ug/(m mm2) per N/mm2, level from 10.4, steeper from 77.2 N/mm2."""
+    pearlitic = {"roller_material": "C45", "guide_material": "1.7225-normalised", "motor_force": -10}
+    law = tr.load_database().material("C45").energy_wear
+    assert mass_loss(np.array([2.0, 10.4, 50.0, 77.2]), law.work_rate, law.loss) == pytest.approx(
+        [5.3 * 2.0, 5.3 * 10.4, 55, 55], rel=0.003
+    )
+    assert law.loss[-1] == pytest.approx(61.9 * 100 - 4778.7, rel=0.04)  # as quoted, with its gap at 77.2
+    energy = solved(wear_law="energy", **pearlitic)
+    table = {"work_rate": law.work_rate, "roller": law.loss, "guide": law.loss}
+    by_hand = solved(wear_law="energy", wear_table=table, **pearlitic)
+    for name in ("wear_depth_per_overrolling", "wear_life_hours"):
+        np.testing.assert_array_equal(energy[name], by_hand[name])
+    notes = energy.attrs["limits_notes"]
+    assert "energy_wear (dry twin discs of R8T" in notes and "no wear_table" not in notes
+    assert "energy_wear" not in by_hand.attrs["limits_notes"] + solved(**pearlitic).attrs["limits_notes"]
+    half = solved(wear_law="energy", **pearlitic | {"guide_material": QUENCHED})
+    assert "wear: the case gives no wear_table." in half.attrs["limits_notes"]
+    flag = validity_bit("wear_extrapolated")
+    low = {"like": "C45", "energy_wear": {"work_rate": [0, 1e-6], "loss": [0, 5.3e-6], "source": "own tests"}}
+    beyond = solved(wear_law="energy", **pearlitic | {"roller_material": low})
+    assert int(beyond.validity) & flag and not int(energy.validity) & flag
+
+
+def test_the_laws_of_two_materials_make_one_table_where_both_are_known():
+    one = {"work_rate": [0.0, 10.0, 40.0], "loss": [0.0, 50.0, 80.0]}
+    two = {"work_rate": [1.0, 20.0, 60.0], "loss": [3.0, 3.0, 43.0]}
+    table = TABLE.parsed(table_of_laws(json.dumps(one), json.dumps(two)))
+    assert table == {"work_rate": [1, 10, 20, 40], "roller": [5, 50, 60, 80], "guide": [3, 3, 3, 23]}
+    work = np.linspace(1, 40, 79)
+    for body, law in (("roller", one), ("guide", two)):
+        own = mass_loss(work, law["work_rate"], law["loss"])
+        assert mass_loss(work, table["work_rate"], table[body]) == pytest.approx(own)
+
+
+@pytest.mark.parametrize(
+    ("law", "message"),
+    [
+        (3, "a mapping with the lists work_rate, loss"),
+        ({"work_rate": [0, 1]}, "energy_wear.loss.*a list of at least two numbers"),
+        ({"work_rate": [0, 1], "loss": [0, 1, 2]}, "one value for each of the 2 work rates"),
+        ({"work_rate": [1, 0], "loss": [0, 1]}, "work rates that rise"),
+        ({"work_rate": [0, 1], "loss": [0, -1]}, "loss = -1"),
+        ({"work_rate": [0, 1], "loss": [0, 1], "rate": 3}, "'rate' is not known"),
+        ({"work_rate": [0, 1], "loss": [0, 1], "placeholder": "maybe"}, "true or false"),
+    ],
+)
+def test_a_wrong_energy_law_of_a_material_is_refused(law, message):
+    with pytest.raises(tr.InputError, match=message):
+        tr.load_database().material({"like": "C45", "energy_wear": law})
+
+
 def test_cases_of_equal_mechanics_share_their_tractions():
     cases = [GIVEN | {"wear_coefficient_factor": f, "velocity": v} for f, v in ((1, 60), (3, 60), (0.2, 20))]
     for table in ({"work_rate": [0, 9], "roller": [0, 9], "guide": [0, 9]}, None):
@@ -397,8 +449,6 @@ def test_bad_input_is_refused_by_name(wrong, message):
 
 
 def test_table_in_the_documentation_is_read():
-    from trackroller.damage.wear import TABLE
-
     text = TABLE.meaning[TABLE.meaning.index("{") :]
     for key in ("work_rate", "roller", "guide"):
         text = text.replace(f"{key}:", f'"{key}":')

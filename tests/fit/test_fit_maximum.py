@@ -174,3 +174,16 @@ def test_tests_that_a_line_alone_explains_give_no_limit():
     forced = tr.fit_sn(given, knee=True, **UNDER).groups[0].line
     assert not forced.limit_matters
     assert forced.largest == pytest.approx(fit.groups[0].line.largest, abs=1e-6)
+
+
+def test_run_outs_shorter_than_the_longest_failure_bring_no_limit_and_a_word():
+    given = columns([370, 350])
+    given["cycles"] = [
+        1e5 if not failed else cycles for failed, cycles in zip(given["failed"], given["cycles"], strict=True)
+    ]
+    fit = tr.fit_sn(given, **UNDER)
+    assert not fit.groups[0].line.knee
+    assert sum("The run-outs do not show a fatigue limit" in note for note in fit.notes) == 1
+    assert tr.fit_sn(given, knee=True, **UNDER).groups[0].line.knee, "as the page on tests says"
+    whole = tr.fit_sn(columns([]), **UNDER)
+    assert not any("run-outs" in note for note in whole.notes)

@@ -15,8 +15,8 @@ from trackroller.app.fields import all_fields
 from trackroller.methods import METHODS, Method, register
 from trackroller.methods.method import Estimated, Index
 from trackroller.methods.sample import RandomSample
-from trackroller.results.growing import grow_study
-from trackroller.results.looks import looks_of
+from trackroller.results.interim_looks import looks_of
+from trackroller.results.sample_growth import grow_study
 
 RECIPE = Path(__file__).parents[2] / "CONTRIBUTING.md"
 STUDY = {

@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
-from scipy.interpolate import make_interp_spline
+from scipy.interpolate import BSpline, make_interp_spline
 
-from trackroller.numerics.splines import interpolated
+from trackroller.numerics.splines import _derivatives, interpolated
 
 
 @pytest.mark.parametrize(
@@ -18,3 +18,13 @@ def test_fields_between_their_points_are_those_of_scipy(ny, nx, along, across):
         points = np.clip((np.arange(parts * count) + 0.5) / parts - 0.5, 0.0, count - 1.0)
         expected = make_interp_spline(np.arange(count), expected, axis=axis)(points)
     np.testing.assert_allclose(interpolated(fields, across, along), expected, atol=1e-13)
+
+
+@pytest.mark.parametrize("count", [4, 5, 6, 20, 112])
+def test_splines_between_knots_have_the_bits_of_scipy(count):
+    knots = make_interp_spline(np.arange(count), np.zeros(count), k=3).t
+    four = np.arange(count - 3)[:, None] + np.arange(4)
+    for order in range(4):
+        every = BSpline(knots, np.eye(count), 3)(knots[3:count], order)
+        own = _derivatives(knots, np.arange(3, count), order)
+        np.testing.assert_array_equal(own, np.take_along_axis(every, four, axis=1))

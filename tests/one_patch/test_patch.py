@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
+from command_line import trackroller
 
 import trackroller as tr
 from trackroller.one_patch.inputs import checked_patch, load_patch
@@ -171,6 +172,7 @@ def test_a_file_says_what_the_function_says(tmp_path):
         ({"semi_axes": [1, 2]}, "semi_axes", "beside", {"semi_axes": None}),
         ({"width": None}, "width", "missing", {"width": "10 mm"}),
         ({"curvature_lateral": 0.01}, "width", "no width", {"curvature_lateral": 0}),
+        ({"curvature_lateral": 1e-300}, "curvature_lateral", "two discs", {"curvature_lateral": 0, "width": "10 mm"}),
         ({"spin": 0.01}, "spin", "0 for two discs", {"spin": None}),
         ({"friction_coefficient": None}, "friction_coefficient", "missing", {"friction_coefficient": 0.3}),
         ({"materials": None}, "materials", "missing", {"materials": "PA6"}),
@@ -195,3 +197,11 @@ def test_an_error_of_a_file_names_its_line(tmp_path):
     path.write_text(FILE.replace("0.3", "-0.3"))
     with pytest.raises(tr.InputError, match=r"line 7.*friction_coefficient"):
         load_patch(path)
+
+
+def test_a_modulus_in_another_unit_is_asked_about(tmp_path):
+    (tmp_path / "discs.yaml").write_text(FILE.replace("210 GPa", "210"))
+    told = trackroller("patch", "discs.yaml", cwd=tmp_path).stderr
+    assert "doubtful: youngs_modulus = 210 MPa" in told and "write '210 GPa' or 210000" in told
+    (tmp_path / "discs.yaml").write_text(FILE)
+    assert "doubtful" not in trackroller("patch", "discs.yaml", cwd=tmp_path).stderr, "the remedy works"

@@ -10,7 +10,7 @@ import xarray as xr
 import yaml
 from synthetic_results import results_of
 
-from trackroller.results import contact_models as ladder
+from trackroller.results import model_errors as ladder
 from trackroller.study.file.load import load_study
 from trackroller.study.run import run_study
 from validation.contact_models.product import compare

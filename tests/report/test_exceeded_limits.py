@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import trackroller as tr
-from trackroller.results.judging import judge
+from trackroller.results.search_fitness import judge
 
 BASE = {"guide_curve_radius": "inf", "guide_overrollings_per_hour": 300, "motor_force": -8, "axial_force": 10}
 BASE |= {"roller_material": "C45", "guide_material": "100Cr6"}

@@ -55,19 +55,20 @@ def test_the_lead_is_the_answer(name, lead):
 
 
 def test_a_number_has_the_figures_of_its_error():
-    said = [headline_of(decide(headline={"low": 211_634.0, "high": 211_634.0, "error": e})).rest for e in (0.48, 0.02)]
+    head = {"low": 211_634.0, "high": 211_634.0}
+    said = [headline_of(decide(headline=head | {"error": error})).ending for error in (0.48, 0.02)]
     assert " 210,000 h" in said[0] and " 212,000 h" in said[1]
 
 
 def test_a_number_just_below_its_requirement_does_not_read_like_it():
     head = {"low": 19_960.0, "high": 19_960.0, "error": 0.3}
-    assert "19,960 h" in headline_of(decide(headline=head)).rest
+    assert "19,960 h" in headline_of(decide(headline=head)).ending
 
 
 def test_years_are_said_from_one_year_on_and_up_to_a_thousand():
     def years(hours):
         one = made_answers.years()
-        return headline_of(dataclasses.replace(one, headline={**one.headline, "low": hours, "high": hours})).rest
+        return headline_of(dataclasses.replace(one, headline={**one.headline, "low": hours, "high": hours})).ending
 
     assert "(53 years, extrapolated)" in years(212_000.0)
     assert "18 h (extrapolated)" in years(18.0)
@@ -89,12 +90,12 @@ def test_a_text_that_is_too_long_stands_in_the_table_alone():
 def test_an_exceeded_limit_and_a_second_model_are_in_the_headline():
     head = {"exceeded": {"limit": "catalogue", "body": "roller", "use": 2.62, "hours": 3.0}}
     head["second"] = {"limit": "the rating", "verdict": "missed"}
-    assert "the rating misses; catalogue exceeded (262 %)" in headline_of(decide(headline=head)).rest
+    assert "the rating misses; catalogue exceeded (262 %)" in headline_of(decide(headline=head)).ending
 
 
 def test_what_does_not_roll_is_said_in_brackets():
     head = {"low": 0.0, "high": 0.0, "ends": "skids", "body": "", "extrapolated": False}
-    assert "0 h (skids) at its worst condition" in headline_of(decide(headline=head)).rest
+    assert "0 h (skids) at its worst condition" in headline_of(decide(headline=head)).ending
 
 
 def test_several_requirements_are_named_together():

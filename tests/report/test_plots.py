@@ -27,8 +27,8 @@ from trackroller.report.figures.panels import CLASSES, capped
 from trackroller.report.figures.sensitivity import morris_plane
 from trackroller.report.figures.study import OF_CASES, draw_all
 from trackroller.report.numbers import level_text, number, rounded
-from trackroller.results.columns import at_surface
-from trackroller.results.groups import spaced_by_ratio
+from trackroller.results.case_columns import at_surface
+from trackroller.results.factor_levels import spaced_by_ratio
 from trackroller.results.sensitivity import analyse
 
 ALL = {

@@ -14,7 +14,7 @@ from trackroller.report.figures import style
 from trackroller.report.figures.contact import friction_energy, shear_arrows
 from trackroller.report.figures.contact_outline import Patch, outline, widths
 from trackroller.report.figures.contact_sections import sections, surface_stress
-from trackroller.results.columns import at_surface
+from trackroller.results.case_columns import at_surface
 
 OUTPUTS = ("forces", "contact", "friction_work", "peak_stress", "tractions", "subsurface")
 EDGED = {"motor_force": -15, "roller_profile": {"arc": -7, "edge": {"outer": 0.1}}}

@@ -14,7 +14,7 @@ import yaml
 from trackroller.report.numbers import percent, percent_up, plus_minus, share
 from trackroller.report.tables.table import Table
 from trackroller.report.workbook import export
-from trackroller.results.flags import SLIDING_ERROR
+from trackroller.results.validity_flags import SLIDING_ERROR
 from trackroller.study.file.load import parse_study
 
 

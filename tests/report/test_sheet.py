@@ -30,8 +30,8 @@ from trackroller.report.figures.roller_section import content_of
 from trackroller.report.pages.record import command_of, options_text
 from trackroller.report.pages.sheet import as_json, notes_of_sheet, render, sheet_inputs
 from trackroller.report.workbook import write_roller
-from trackroller.results.flags import flags_of
 from trackroller.results.roller_answer import answer_of_roller
+from trackroller.results.validity_flags import flags_of
 from trackroller.roller.dataset import validity_bit
 from trackroller.roller.regime_limits import limits
 from trackroller.roller.settings import sheet_of

@@ -15,7 +15,7 @@ from typer.testing import CliRunner
 import trackroller as tr
 from trackroller.cli.main import app
 from trackroller.report.figures.wear import course, profiles
-from trackroller.results.flags import SLIDING_WEAR
+from trackroller.results.validity_flags import SLIDING_WEAR
 from trackroller.results.wear_answer import answer_of_wear, deeper_contact
 from trackroller.roller.limit_notes import Placeholder, placeholder_line
 from trackroller.roller.wearing import Groove, travel_to_depth

@@ -11,7 +11,7 @@ from trackroller.errors import InputError
 from trackroller.report.headlines import headline_of
 from trackroller.report.numbers import percent
 from trackroller.results.best import answer_of_search
-from trackroller.results.judging import optimum_of, spread
+from trackroller.results.search_fitness import optimum_of, spread
 
 LIFE = "pair_life_to_first_limit_hours"
 STEEL = dict.fromkeys(("roller_material", "guide_material"), "1.7225-quenched-tempered")

@@ -13,7 +13,7 @@ from trackroller.errors import WorkError
 from trackroller.report.explorer.pack import RARE, _numbers, sample_rows
 from trackroller.report.numbers import level_text
 from trackroller.results.candidates import FEWEST, Candidates, lift_off_margin
-from trackroller.results.groups import classes
+from trackroller.results.factor_levels import classes
 from trackroller.results.targets import _all, hits_of
 from trackroller.roller.requirement import Requirement
 from trackroller.study import cost

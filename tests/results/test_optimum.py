@@ -14,9 +14,9 @@ from trackroller.methods.optimise import (
     next_generation,
     nondominated_ranks,
 )
-from trackroller.results.judging import optimum_of, shortfall
-from trackroller.results.optimum import cheaper, search_designs
 from trackroller.results.pareto import pareto_mask
+from trackroller.results.search import cheaper, search_designs
+from trackroller.results.search_fitness import optimum_of, shortfall
 from trackroller.study.file.load import load_study
 from validation.benchmarks.optimum import hypervolume
 
@@ -220,7 +220,7 @@ def test_a_target_on_a_force_decides_a_search_without_lives_and_stresses():
 
 
 def test_of_equal_goals_the_longer_life_is_recommended():
-    from trackroller.results.judging import Judged, recommended
+    from trackroller.results.search_fitness import Judged, recommended
 
     nothing = np.zeros(3)
     lives = np.array([1790.0, 18600.0, 4000.0])

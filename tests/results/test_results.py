@@ -10,7 +10,7 @@ import pytest
 import xarray as xr
 
 import trackroller as tr
-from trackroller.results.by_tests import beyond_sn_data
+from trackroller.results.lives_by_tests import beyond_sn_data
 from trackroller.study.file.load import parse_study
 from trackroller.study.run import run_study
 

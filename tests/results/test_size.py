@@ -156,8 +156,59 @@ def test_the_command_writes_studies_that_are_kept(shelf, tmp_path, monkeypatch):
     words = ["size", "case.yaml", "--shelf", "rollers.csv", "--life", "2000", "--least", "price", "-q"]
     done = CliRunner().invoke(app, words)
     assert done.exit_code == 0 and "is the least of" in done.output and "no price: no price" in done.output
+    assert "all forces may be multiplied by" in done.output
     assert CliRunner().invoke(app, ["verify", "results/size-case-rollers"]).exit_code == 0
     record = json.loads(CliRunner().invoke(app, [*words, "--json"]).stdout)
     assert record["unranked"] == ["no price"] and len(record["rollers"]) == len(ROWS)
     words[words.index("2000")] = "1e7"
     assert CliRunner().invoke(app, words).exit_code == 1
+
+
+HARD = "1.7225-quenched-tempered"
+
+
+def test_the_load_ratios_bring_each_limit_of_a_single_sheet_to_100_per_cent(shelf):
+    catalogue = {"radial_force": 800, "axial_force": 300, "basic_life": 100}
+    case = CASE | QUICK | {"catalogue": catalogue, "motor_force": -10}
+    found = tr.size(case, shelf, life=500)
+    table = found.ratios.table
+    assert set(table) >= {"static", "shakedown", "catalogue", "pressure"} and not {"fatigue", "wear"} & {*table}
+    for row in ROWS[:3]:
+        name = row.split(";")[0]
+        for limit in ("static", "shakedown", "pressure"):
+            ratio = table.loc[name, limit]
+            loaded = CASE | {"motor_force": -10}
+            loaded |= {force: ratio * loaded[force] for force in ("radial_force", "axial_force", "motor_force")}
+            _, axis, groove, material, _ = row.split(";")
+            loaded |= {"axis_distance": axis, "roller_profile_radius": groove, "roller_material": material}
+            result = tr.solve(loaded, **QUICK)
+            if limit == "pressure":
+                strengths = [tr.load_database().material(one).tensile_strength for one in (material, HARD)]
+                used = result["max_pressure"].max().item() / (1.6 * min(strengths))
+            else:
+                used = result["utilisation"].sel(limit=limit).max().item()
+            assert used == pytest.approx(1.0, abs=2e-4)
+        # the catalogue by hand: radial force and drive force are perpendicular
+        factor = (150**2 + 10**2) ** 0.5 / 800 + 20 / 300
+        assert table.loc[name, "catalogue"] == pytest.approx(1.0 / factor, rel=2e-4)
+        shown = found.table.set_index("roller").loc[name]
+        assert shown["load_ratio"] == table.loc[name].min()
+    assert (found.table["load_ratio"] > 0).all()
+    assert found.to_dict()["load_ratios"][0].keys() >= {"roller", "static"}
+
+
+def test_a_safety_alone_gives_the_same_load_ratios_and_the_worst_condition_counts(shelf):
+    by_life = tr.size(CASE | QUICK, shelf, life=500).ratios.table
+    by_safety = tr.size(CASE | QUICK, shelf, safety=2).ratios.table
+    assert (by_safety / by_life - 1).abs().max().max() < 5e-4
+    base = {name: value for name, value in CASE.items() if name != "friction_coefficient"}
+    study = {"name": "two", "base": base, "factors": {"friction_coefficient": {"values": [0.05, 0.15]}}}
+    both = tr.size(study | QUICK, shelf, life=500).ratios.table
+    assert (both["shakedown"] <= by_life["shakedown"] * 1.0002).all()
+
+
+def test_a_pressure_beyond_the_safety_excludes_a_roller(shelf):
+    found = tr.size(CASE | QUICK, shelf, safety=22).table.set_index("roller")  # pressure of small at 20.5
+    assert found.loc["small", "verdict"] == "not enough"
+    assert "pressure of the roller" in found.loc["small", "excluded_by"]
+    assert found.loc["mid", "verdict"] == "enough"

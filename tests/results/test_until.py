@@ -18,8 +18,8 @@ from trackroller.errors import InputError
 from trackroller.methods.b10 import log_b10, share
 from trackroller.methods.given_data import first_indices
 from trackroller.methods.replicates import jackknife
-from trackroller.results.growing import grow_study
-from trackroller.results.looks import looks_of
+from trackroller.results.interim_looks import looks_of
+from trackroller.results.sample_growth import grow_study
 from trackroller.results.solved_cases import OUTSIDE
 from trackroller.study.design.growth import doubled
 from trackroller.study.design.sampling import sample

@@ -48,6 +48,11 @@ CURVE = {"like": STEEL, "fatigue_limit": 300, "cycles_at_fatigue_limit": 2e6}
         ({"catalogue": CATALOGUE | {"axial_force": 0.3}}, "if 0.3 kN is meant, write '0.3 kN' or 300"),
         ({"catalogue": CATALOGUE | {"moment": 2}}, "if 2 Nm is meant, write '2 Nm' or 2000"),
         (
+            {"catalogue": CATALOGUE | {"basic_life": 1e5}},
+            r"catalogue.basic_life = 100000 km is 5 times above .* write '100000 m' or 100\.",
+        ),
+        ({"catalogue": CATALOGUE | {"basic_life": "174 m"}}, "catalogue.basic_life = 0.174 km is 57.5 times below"),
+        (
             {"roller_material": CURVE | {"woehler_exponent": 0.085}},
             "woehler_exponent = 0.085 .* b is meant.* write 11.8",
         ),

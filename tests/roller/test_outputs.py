@@ -58,6 +58,26 @@ def test_the_drive_gives_the_power_of_the_transmitted_force_and_of_friction(moto
     assert float(ds.drive_torque) / RADIUS - transmitted == pytest.approx(friction, rel=2e-2)
 
 
+def test_a_roller_without_motor_is_pulled_by_its_rolling_resistance():
+    """The force along the track is all that moves it, so that it does the work of friction."""
+    cases = [tr.Case(motor_force=0, friction_coefficient=mu, axial_force=force) for mu, force in ((0.1, 0), (0.3, 30))]
+    ds = tr.solve(cases, ("forces", "friction_work"))
+    pulled = -(1 + ds.slip) * ds.transmitted_force
+    assert ds.rolling_resistance.values == pytest.approx(pulled.values, rel=2e-3)
+    assert ds.rolling_resistance.values == pytest.approx(
+        ds.friction_energy_per_distance.sum("contact").values, rel=1e-15
+    )
+
+
+def test_rolling_resistance_takes_in_hysteresis_where_heat_is_asked_for():
+    case = tr.Case(motor_force=0)
+    plain, warm = (
+        tr.solve(case, ("forces", "friction_work", *more), contact_model="sliding") for more in ((), ("heat",))
+    )
+    lost = float(warm.hysteresis_moment.sum()) / RADIUS
+    assert lost > 0 and float(warm.rolling_resistance - plain.rolling_resistance) == pytest.approx(lost, rel=1e-9)
+
+
 def test_the_drive_torque_is_the_moment_of_the_tractions_about_the_axis():
     """Integrate r x tau over both patches in the frame of the roller."""
     ds = solve_sliding(tr.Case(axial_force=-20), ("forces", "tractions"))

@@ -441,3 +441,48 @@ def test_the_case_file_answers_and_the_spectrum_records_the_doubts(tmp_path, mon
     assert record["file"] == "log.csv"
     assert {"code": "left_out", "count": 4, "line": 102, "values": "'-9999'"} in record["doubts"]
     assert load_spectrum(tmp_path / "shift.yaml").blocks
+
+
+@pytest.mark.parametrize(
+    ("axes", "column", "unit", "speed"),
+    [
+        (("time", "distance"), "distance", "km", 6e4),
+        (("time", "distance"), "time", "ms", 6e4),
+        (("time", "distance"), "distance", "mm", 0.06),
+        (("time", "velocity"), "velocity", "m/s", 3600),
+        (("time", "speed"), "speed", "mm/s", 0.06),
+    ],
+)
+def test_a_speed_that_no_roller_has_is_told(tmp_path, axes, column, unit, speed):
+    """The numbers are right, and a head states another unit than theirs."""
+    columns = truth() | {"speed": np.ones(400), "velocity": np.full(400, 60.0), "distance": np.arange(400) / 10}
+    path = write(tmp_path / "l.csv", columns, names_of(axes), UNITS | {column: unit})
+    log = read(path)
+    (doubt,) = [doubt for doubt in log.doubts if doubt.code == "unusual_speed"]
+    assert doubt.values["value"] == pytest.approx(speed)
+    assert f"check the units of {axes[0]} and {axes[1]}" in doubt.text
+    assert "unusual_speed" not in codes(read(write(path, columns, names_of(axes)))), "the remedy works"
+
+
+def test_a_log_with_long_stops_moves_at_a_usual_speed(tmp_path):
+    columns = truth()
+    columns["speed"] = np.where(np.arange(400) % 10 == 0, 1.0, 0.0)
+    log = read(write(tmp_path / "l.csv", columns, names_of(("time", "speed"))))
+    assert "unusual_speed" not in codes(log)
+
+
+@pytest.mark.parametrize("stamp", ["2026-11-29 10:00:{:06.3f}", "10:00:{:04.1f}", "29.11.2026 10:00:{:02.0f}"])
+def test_a_column_of_dates_is_one_error_whose_remedy_works(tmp_path, stamp):
+    columns = {name: column[:300] for name, column in truth().items()}
+    path = write(tmp_path / "l.csv", columns, names_of(("time", "speed")))
+    head, *lines = path.read_text().splitlines()
+    seconds = [line.split(",")[0] for line in lines]
+    dated = [
+        ",".join([stamp.format(float(time)), *line.split(",")[1:]]) for time, line in zip(seconds, lines, strict=True)
+    ]
+    path.write_text("\n".join([head, *dated]) + "\n")
+    with pytest.raises(InputError, match="all cells below it are no numbers") as caught:
+        read(path)
+    assert len(caught.value.errors) == 1 and "seconds since the first line" in str(caught.value)
+    path.write_text("\n".join([head, *lines]) + "\n")
+    assert read(path).travel.sum() > 0

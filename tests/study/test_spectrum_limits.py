@@ -91,7 +91,7 @@ def palletiser():
     """Solve three blocks, of which the last one exceeds the shakedown limit of the guide."""
     base = {"friction_coefficient": 0.18, "motor_force": 0, "axis_distance": 26, "guide_profile_radius": 7}
     base |= {"roller_profile_radius": -7.5, "contact_angle": 40, "guide_curve_radius": np.inf, "velocity": 50}
-    base |= {"guide_overrollings_per_hour": 200, "permissible_wear_depth": 0.1}
+    base |= {"guide_overrollings_per_hour": 200, "permissible_wear_depth": 2}
     base |= {"roller_material": "42CrMo4+QT-40", "guide_material": "C45"}
     blocks = [
         {"name": "loaded", "share": 0.45, "radial_force": -420, "axial_force": 40},
@@ -191,3 +191,17 @@ def test_a_limit_is_not_kept_in_a_block_without_a_result_and_its_known_damage_is
         assert own["share"] == pytest.approx(share) and own["block"] == f"loaded, {100 * share:.0f} %"
     still = solved(loaded, EMPTY, kick | {"distance": 0, "guide_overrollings": 0}, limits=("static", "fatigue"))
     assert "unknown" not in {*answer_of_spectrum(still).table["state"]}  # a block without travel does not count
+
+
+def test_failures_is_the_other_name_of_the_failure_probability():
+    steel = {"like": "1.7225-quenched-tempered", "scatter_in_cycles": 4.0}
+    base = {"roller_material": steel, "guide_material": steel, "motor_force": 0, "guide_overrollings_per_hour": 60}
+    keys = {"base": base, "blocks": [{"distance": 4000, "radial_force": -300, "axial_force": 20}]}
+    keys |= {"contact_model": "sliding", "accuracy": "preview"}
+    name = "life_to_first_limit_hours"
+    by_name = solve_spectrum(Spectrum.from_dict(keys | {"failures": "10%"}))[name]
+    assert np.array_equal(by_name, solve_spectrum(Spectrum.from_dict(keys | {"failure_probability": 0.1}))[name])
+    median = solve_spectrum(Spectrum.from_dict(keys))[name]
+    assert np.allclose(median, 2.0 * by_name, rtol=1e-9)  # T_N = N_90/N_10 = 4
+    with pytest.raises(InputError, match="another name of it"):
+        Spectrum.from_dict(keys | {"failures": "10%", "failure_probability": 0.1})

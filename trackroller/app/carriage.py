@@ -197,7 +197,7 @@ def _headline(answer: Answer) -> dict[str, Any]:
     """Return the headline of a record and its warnings as texts."""
     headline = headline_of(answer)
     warnings = [warning_line(caution) for caution in answer.warnings]
-    return {"headline": {"lead": headline.lead, "rest": headline.rest}, "warnings": warnings}
+    return {"headline": {"lead": headline.lead, "rest": headline.ending}, "warnings": warnings}
 
 
 def carriage_lives(text: str, file: str = "") -> dict[str, Any]:

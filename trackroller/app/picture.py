@@ -133,7 +133,7 @@ def _facts(ds: xr.Dataset, ranges: Limits | None) -> dict[str, Any]:
     headline = headline_of(answer)
     return {
         "answer": answer.to_dict(),
-        "headline": {"lead": headline.lead, "rest": headline.rest},
+        "headline": {"lead": headline.lead, "rest": headline.ending},
         "limits": limits_on_page(answer),
         "parts": {part.name: part_on_page(answer, part) for part in answer.parts},
         "not_checked": {

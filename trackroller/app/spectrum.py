@@ -63,7 +63,7 @@ def _answer(ds: xr.Dataset) -> dict[str, Any]:
     headline = headline_of(answer)
     return {
         "answer": answer.to_dict(),
-        "headline": {"lead": headline.lead, "rest": headline.rest},
+        "headline": {"lead": headline.lead, "rest": headline.ending},
         "warnings": [warning_line(caution) for caution in answer.warnings],
         "not_checked": {
             body: list(limits) for body, limits in answer.not_checked.items() if limits

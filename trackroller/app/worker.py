@@ -116,7 +116,7 @@ def _work(name: str, progress: Progress) -> None:
     # heavy: SALib; the page shows "starting" meanwhile
     from trackroller.report.build import build_report
     from trackroller.report.explorer.page import write_explorer
-    from trackroller.results.solving import run_any  # heavy: analysis
+    from trackroller.results.run import run_any  # heavy: analysis
     from trackroller.results.stored_study import open_study
     from trackroller.study.status import find_study, status_of
 

@@ -22,14 +22,20 @@ from typing import Any
 import numpy as np
 
 from trackroller.damage.catalogue import FIELD as CATALOGUE
-from trackroller.damage.catalogue import LAWS, catalogue_km
-from trackroller.errors import Collector, InputError, check_names, checked_text, unknown_name
+from trackroller.damage.catalogue import LAWS, apply_stroke_factor, catalogue_km
+from trackroller.errors import (
+    Collector,
+    InputError,
+    check_names,
+    text_of,
+    unknown_name,
+)
 from trackroller.files import files_beside, find_beside, read_text
 from trackroller.numerics.numbers import number_in, number_or_nan
 from trackroller.numerics.plain import mapping_of
 from trackroller.numerics.units import split_quantity
 from trackroller.parameters import MATERIAL_FIELDS
-from trackroller.roller.aliases import ALIASES
+from trackroller.roller.aliases import OTHER_OPTIONS, WRITTEN, with_options
 from trackroller.roller.case import Case
 from trackroller.roller.duty import (
     STROKES,
@@ -45,7 +51,7 @@ from trackroller.yaml_file import errors_by_line, parse_mapping
 
 FILE_FIELDS = (
     *("name", "description", "mass", "payloads", "drive", "rollers", "preload", "cases"),
-    *("distance", "duty"),
+    *("distance", "duty", "failure_probability"),
 )
 ROLLER_FIELDS = (
     "at",
@@ -72,10 +78,12 @@ CASE_FIELDS = (
     ),
 )
 KINDS = ("locating", "floating")
+CHANCE = "failure_probability"  # option that a carriage states for all of its rollers
 OF_LOADS = (*LOADS, "velocity")  # parameters of a roller that its carriage gives
 SQUARE = 1e-6  # largest cosine between directions that count as perpendicular
 # of the distance: rollers of a pair press against each other if they are off their line by less
 IN_LINE = 1e-3
+LARGEST_RADIUS = 1e12  # of a curve of the track [mm]; beyond it, the track is straight
 _POINT = "three numbers [x, y, z] in mm: x forward, y left, z up"
 _AT = "Write at: [0, 0, 60]."
 
@@ -106,6 +114,9 @@ class CatalogueRoller:
     moment : float
         Permissible moment [N mm], which does not count here: the statics of a carriage knows no
         moment of a roller.
+    exponent, speed_factor, stroke_factor : float
+        Exponent of the life in place of that of the law, factor of the life for speed, and factor
+        of both permissible forces for short strokes [1]; NaN if not given.
     """
 
     radial_force: float
@@ -114,15 +125,24 @@ class CatalogueRoller:
     law: str = LAWS[0]
     offset: float = math.nan
     moment: float = math.nan
+    exponent: float = math.nan
+    speed_factor: float = math.nan
+    stroke_factor: float = math.nan
 
     def load_factor(self, radial: np.ndarray, axial: np.ndarray) -> np.ndarray:
         """Return the sum of the ratios of both forces [N] to their permissible values [1]."""
-        return np.abs(radial) / self.radial_force + np.abs(axial) / self.axial_force
+        ratios = np.abs(radial) / self.radial_force + np.abs(axial) / self.axial_force
+        return apply_stroke_factor(ratios, self.stroke_factor)
 
     def life(self, load_factor: np.ndarray) -> np.ndarray:
         """Return the life at load factors [1], in km."""
         return catalogue_km(
-            load_factor, np.asarray(self.basic_life), np.asarray(self.law), self.offset
+            load_factor,
+            np.asarray(self.basic_life),
+            np.asarray(self.law),
+            self.offset,
+            self.exponent,
+            self.speed_factor,
         )
 
 
@@ -287,7 +307,7 @@ def load_carriage(source: Path | str | Mapping[str, Any]) -> Carriage:
     path = Path(source)
     text = read_text(path, "carriage file")
     values = parse_mapping(text, str(path))
-    with errors_by_line(text, aliases=ALIASES), files_beside(path):
+    with errors_by_line(text, aliases=WRITTEN), files_beside(path):
         return carriage_of({"name": path.stem} | values)
 
 
@@ -314,7 +334,7 @@ def written_out(source: Path | str | Mapping[str, Any], field: str = "carriage")
     if not isinstance(values, Mapping):
         path = find_beside(str(source), field)
         text = read_text(path, "carriage file")
-        with errors_by_line(text, file=str(path), aliases=ALIASES), files_beside(path):
+        with errors_by_line(text, file=str(path), aliases=WRITTEN), files_beside(path):
             values = {"name": path.stem} | parse_mapping(text, str(path))
             return written_out(values, field)
     whole = carriage_of(values)
@@ -350,7 +370,9 @@ def carriage_of(values: Mapping[str, Any]) -> Carriage:
     wrong = Collector()
     fields: dict[str, Any] = {}
     with wrong.part():
-        check_names("carriage: key", values, FILE_FIELDS)
+        values = with_options(values)
+    with wrong.part():
+        check_names("carriage: key", values, (*FILE_FIELDS, *OTHER_OPTIONS))
     for key, read in (
         ("mass", lambda value: _mass(value, "mass")),
         (
@@ -378,6 +400,9 @@ def carriage_of(values: Mapping[str, Any]) -> Carriage:
         if values.get("preload") is not None:
             fields["preloads"] = _preloads(values["preload"], fields["rollers"])
     with wrong.part():
+        if values.get(CHANCE) is not None:
+            fields["rollers"] = _with_chance(fields["rollers"], values[CHANCE])
+    with wrong.part():
         check_curves(fields["cases"], fields["rollers"])
     with wrong.part():
         if is_of_strokes(fields.get("duty")):
@@ -385,13 +410,34 @@ def carriage_of(values: Mapping[str, Any]) -> Carriage:
     with wrong.part():
         _check_payloads(values["cases"], fields)
     with wrong.part():
-        fields["name"] = checked_text(str(values.get("name", "carriage")), "name")
+        fields["name"] = text_of(values.get("name"), "name", "carriage")
     with wrong.part():
-        fields["description"] = checked_text(
-            str(values.get("description", "")), "description", lines=True
-        )
+        fields["description"] = text_of(values.get("description"), "description", lines=True)
     wrong.check()
     return Carriage(**fields)
+
+
+def _with_chance(rollers: Sequence[MountedRoller], value: Any) -> tuple[MountedRoller, ...]:
+    """Return the rollers with the failure probability of their carriage; refuse a file of a roller
+    that states another one.
+    """
+    chance = number_in(value, CHANCE, "a share between 0 and 1, such as 5%", 1e-9, 1.0 - 1e-9, "-")
+    wrong = Collector()
+    out = []
+    for roller in rollers:
+        own = roller.options.get(CHANCE)
+        if own is not None and number_or_nan(own) != chance:
+            where = f"rollers.{roller.name}.roller.{CHANCE}"
+            remedy = f"Remove it there: the carriage states {chance:g} for all rollers."
+            wrong.errors.append(
+                InputError(where, own, "one failure probability", remedy, "is another one")
+            )
+        stated = {CHANCE: chance}
+        out.append(
+            replace(roller, options={**roller.options, **stated}, given={**roller.given, **stated})
+        )
+    wrong.check()
+    return tuple(out)
 
 
 def _by_strokes(
@@ -519,7 +565,7 @@ def _rollers(value: Any) -> tuple[MountedRoller, ...]:
     files: dict[object, Any] = {}
     for name, entry in value.items():
         with wrong.part("rollers", str(name)):
-            rollers.append(_roller(checked_text(str(name), "name of a roller"), entry, files))
+            rollers.append(_roller(_roller_name(name), entry, files))
     wrong.check()
     if not any(roller.locating for roller in rollers):
         remedy = "Write kind: locating for the rollers that guide the carriage along their axes."
@@ -644,7 +690,7 @@ def _read_roller(value: Any, where: str) -> dict[str, Any]:
     path = find_beside(value, where)
     text = read_text(path, "roller file")
     given = parse_mapping(text, str(path))
-    with errors_by_line(text, file=str(path), aliases=ALIASES):
+    with errors_by_line(text, file=str(path), aliases=WRITTEN):
         case, options, beside = checked_case(given)
     return {"case": case, "options": options, "given": given, "required": _required(beside)}
 
@@ -779,9 +825,16 @@ def _with_share(case: LoadCase, share: float) -> LoadCase:
     return new
 
 
+def _roller_name(value: Any) -> str:
+    name = text_of(value, "name of a roller")
+    if not name:
+        raise InputError("name of a roller", None, "a name such as FL", "Write the name.")
+    return name
+
+
 def _load_case(value: Any, number: int) -> LoadCase:
     entry = _entries(value, f"cases[{number}]", CASE_FIELDS, "{name: run, share: 1, speed: 1 m/s}")
-    name = checked_text(str(entry.get("name", f"case {number}")), "name of a load case")
+    name = text_of(entry.get("name"), "name of a load case", f"case {number}")
     where = f"case '{name}'"
     wrong = Collector()
     fields = {}
@@ -804,7 +857,8 @@ def _angle(value: Any, where: str) -> float:
             return 0.0
         raise InputError(where, value, allowed, f"Write {value} % or {value} deg.", "has no unit")
     if parts[1] == "%":
-        return math.atan(float(parts[0]) / 100.0)
+        share = _number(parts[0], where, "-", "a slope in % or degrees")
+        return math.atan(share / 100.0)
     return math.radians(
         _number(value, where, "deg", "a slope in % or degrees, from -90 to 90", -90.0, 90.0)
     )
@@ -812,11 +866,12 @@ def _angle(value: Any, where: str) -> float:
 
 def _radius(value: Any, where: str) -> float:
     radius = number_or_nan(value, "mm", where)
-    if math.isnan(radius) or radius == 0:
+    is_straight = math.isinf(radius)
+    if not (0 < abs(radius) <= LARGEST_RADIUS or is_straight):
         raise InputError(
             where,
             value,
-            "a radius, > 0 to the left and < 0 to the right",
+            "a radius, > 0 to the left and < 0 to the right, at most 1e12 mm or inf",
             "Write curve_radius: 1.5 m.",
         )
     return radius

@@ -14,7 +14,14 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from trackroller.carriage.file import IN_LINE, OF_LOADS, Carriage, MountedRoller, load_carriage
+from trackroller.carriage.file import (
+    CHANCE,
+    IN_LINE,
+    OF_LOADS,
+    Carriage,
+    MountedRoller,
+    load_carriage,
+)
 from trackroller.carriage.lives import Lives, hours_per_km
 from trackroller.carriage.loads import Loads, loads_of, swing_of
 from trackroller.carriage.statics import (
@@ -36,6 +43,7 @@ from trackroller.damage import LIMITS, verdict
 from trackroller.damage.miner import block_damage
 from trackroller.errors import InputError
 from trackroller.materials import load_database
+from trackroller.numerics.numbers import number_or_nan
 from trackroller.parameters import BODIES, MATERIAL_FIELDS
 from trackroller.parameters.example import used_of
 from trackroller.roller.case import Case, to_table
@@ -571,11 +579,12 @@ def doubts_of_rollers(whole: Carriage, ds: xr.Dataset) -> list[str]:
 
 def _doubted_ratings(roller: MountedRoller, radial: np.ndarray) -> Iterator[str]:
     """Yield a sentence for each rating of a maker's catalogue that is small beside the radial
-    forces (n,) [N].
+    forces (n,) [N], or unusual.
     """
     if roller.catalogue is None:
         return
-    rated = {name: getattr(roller.catalogue, name) for name in ("radial_force", "axial_force")}
+    names = ("radial_force", "axial_force", "basic_life")
+    rated = {name: getattr(roller.catalogue, name) for name in names}
     yield from ratings({"radial_force": radial, "catalogue": rated})
     if np.isfinite(roller.catalogue.moment):
         yield (
@@ -766,7 +775,17 @@ def with_lives(
         worst = ds["roller"].values[int(np.argmin(known))]
     attrs = checks.attributes() | {NOT_GIVEN: json.dumps(_not_given(whole))}
     attrs |= {MATERIALS: json.dumps(_each_once(materials), default=str)}
-    return ds.assign(variables).assign_attrs(attrs, worst_roller=str(worst))
+    return ds.assign(variables).assign_attrs(attrs, worst_roller=str(worst), **_chance(whole))
+
+
+def _chance(whole: Carriage) -> dict[str, float]:
+    """Return the failure probability of the lives by its name; {} where the rollers differ in
+    it.
+    """
+    chances = {number_or_nan(roller.options.get(CHANCE, 0.5), "-") for roller in whole.rollers}
+    if len(chances) > 1:
+        return {}
+    return {CHANCE: chances.pop()}
 
 
 class _Checks:

@@ -7,7 +7,7 @@ import os
 import sys
 from pathlib import Path
 
-from trackroller.environment import forget_working_folder
+from trackroller.environment import forget_working_folder, leave_out
 
 if __name__ == "__main__":
     forget_working_folder()
@@ -26,7 +26,7 @@ def run() -> None:
     """Import the command line and run it; Ctrl-C during the import ends in one sentence, too."""
     gc.set_threshold(ALLOCATIONS)
     if sys.argv[1:2] == ["solve"]:
-        sys.modules["dask"] = None  # type: ignore[assignment] # xarray imports it where it can, which takes 0.35 s
+        leave_out("dask", "pint")  # xarray imports them where it can
     try:
         # read before the line is parsed: the import registers the limits
         if ALLOW_CODE in sys.argv:

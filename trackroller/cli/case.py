@@ -5,9 +5,9 @@ from __future__ import annotations
 import json
 import os
 import sys
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from trackroller.cli.usage import print_doubts, print_line
 from trackroller.errors import InputError, WorkError
@@ -30,6 +30,7 @@ from trackroller.yaml_file import (
 if TYPE_CHECKING:
     import xarray as xr
 
+Checked = TypeVar("Checked")
 COMPLETE = ("forces", "contact", "peak_stress", "life")
 WORKBOOK = "A name that ends in .xlsx writes a workbook."
 PRINTED = " --json prints the result as text, and --report writes a page."
@@ -85,6 +86,13 @@ def case_of(
 
     Without any of them it is the roller with which the live page begins.
     """
+    return read_case(path, words, checked_case)
+
+
+def read_case(
+    path: Path | None, words: list[str] | None, checked: Callable[[dict[str, Any]], Checked]
+) -> Checked:
+    """Return what a function makes of the values of a case file, over which --set words stand."""
     if path is not None and "=" in path.name and not path.exists():
         remedy = f"Write --set {path}: each key has a --set of its own."
         raise InputError("case file", str(path), "the path of a file", remedy, "does not exist")
@@ -99,7 +107,7 @@ def case_of(
         values = {} if given else dict(LASTING)
     named = {*given, *(WRITTEN.get(name, name) for name in given)}
     with errors_by_line(text, named, aliases=WRITTEN), files_beside(path):
-        return checked_case(overridden(values, given))
+        return checked(overridden(values, given))
 
 
 def tell_start(path: Path | None, words: list[str] | None) -> None:

@@ -154,6 +154,34 @@ def fit_wear(
     _finish(fitted(table, values, body=body, name=name, like=like), file, replace, report)
 
 
+@fit.command("catalogue")
+def fit_catalogue(
+    table: Annotated[
+        Path,
+        typer.Argument(help="permissible loads and lives (CSV or .xlsx)", show_default=False),
+    ],
+    offset: Annotated[
+        float | None, typer.Option(help="offset c that is held; fitted if not given")
+    ] = None,
+    report: Annotated[Path | None, typer.Option("--report", help="page of the rule")] = None,
+) -> None:
+    """Find exponent and offset of the rule BL/(c + (1 - c) LF)^p behind a maker's lives of one
+    series.
+    """
+    from trackroller.cli.case import writable_page
+    from trackroller.fit.catalogue import fit_catalogue as fitted
+    from trackroller.report.pages.life_rule import entry_note, entry_text, sentences, write_rule
+
+    page = None if report is None else writable_page(report)
+    fit = fitted(table, offset=offset)
+    for text in [*fit.notes, *sentences(fit), entry_note(fit)]:
+        print(text)
+    print(entry_text(fit.catalogue))
+    if page is not None:
+        write_rule(fit, page)
+        print(f"page: {page}")
+
+
 @fit.command("example")
 def fit_example(
     folder: Annotated[

@@ -332,7 +332,10 @@ def shelf(
 def size(  # noqa: PLR0913 - one argument for each option of the command
     case: Annotated[
         Path,
-        typer.Argument(help="case or study file (YAML) with loads, rail, duty", show_default=False),
+        typer.Argument(
+            help="case, carriage, spectrum or study file (YAML) with loads, rail, duty",
+            show_default=False,
+        ),
     ],
     shelf: Annotated[Path, typer.Option("--shelf", help="table of rollers", show_default=False)],
     life: Annotated[
@@ -346,6 +349,12 @@ def size(  # noqa: PLR0913 - one argument for each option of the command
     ] = None,
     least: Annotated[
         str | None, typer.Option("--least", help="column of the shelf, such as price")
+    ] = None,
+    each: Annotated[
+        bool, typer.Option("--each", help="each place of a carriage takes its own roller")
+    ] = False,
+    out: Annotated[
+        Path | None, typer.Option("-o", "--out", help="with --each: write this carriage (.yaml)")
     ] = None,
     results: Results = Path("results"),
     as_json: Annotated[bool, typer.Option("--json", help="print JSON")] = False,

@@ -9,10 +9,12 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from trackroller.cli.case import case_of
+from trackroller.cli.case import YAML, read_case, writable, write_yaml_file
 from trackroller.cli.usage import print_doubts
+from trackroller.damage import limit_word
 from trackroller.damage.bearing import FIELD as BEARING
 from trackroller.damage.catalogue import FIELD as CATALOGUE
+from trackroller.damage.stud import FIELD as STUD
 from trackroller.errors import InputError
 from trackroller.files import files_beside
 from trackroller.numerics.units import PLAIN
@@ -21,12 +23,14 @@ from trackroller.report.terminal import print_table, print_text
 from trackroller.study.design.entries import SHELVES, SIZES
 from trackroller.study.design.levels import entries, in_words
 from trackroller.study.file.load import parse_study
-from trackroller.study.file.shelf import ROLLER, base_of_case, with_rows, without_overridden
+from trackroller.study.file.shelf import ROLLER, base_beside_shelf, with_rows, without_overridden
 from trackroller.study.file.study import Study
 from trackroller.study.store.crate import write_crate
 from trackroller.study.store.ledger import study_folder
 
 if TYPE_CHECKING:
+    from trackroller.results.mounting import Mounting
+    from trackroller.results.results import Results
     from trackroller.results.size import Sizing
 
 
@@ -55,11 +59,19 @@ def print_size(  # noqa: PLR0913 - one argument for each option of the command
     failures: str | None,
     safety: str | None,
     least: str | None,
+    each: bool,
+    out: Path | None,
     results: Path,
     as_json: bool,
     quiet: bool,
 ) -> int:
-    """Print which rollers of a shelf are enough, and return the exit code: 0 if one is."""
+    """Print which rollers of a shelf are enough, and return the exit code: 0 if one is.
+
+    With `each`, `out` receives the carriage file with the roller of each place.
+    """
+    target = None
+    if out is not None:
+        target = _target(out, each)
     from trackroller.results.size import size  # heavy: analysis
 
     sizing = size(
@@ -69,15 +81,28 @@ def print_size(  # noqa: PLR0913 - one argument for each option of the command
         failures=failures,
         safety=safety,
         least=least,
+        each=each,
         results=results,
         progress=not quiet,
     )
-    solved = [own for own in (sizing.results, sizing.overload) if own is not None]
-    for own in solved:
+    for own in _studies_of(sizing):
         write_crate(study_folder(own.study.name, results).root)
+    is_met = bool(sizing.least)
+    if sizing.mounting is not None:
+        is_met = sizing.mounting.enough
+    if target is not None and sizing.mounting is not None and sizing.mounting.enough:
+        write_yaml_file(target, sizing.mounting.carriage)
     if as_json:
         print(json.dumps(sizing.to_dict(), ensure_ascii=False, allow_nan=False))
-        return int(not sizing.least)
+        return int(not is_met)
+    _print_sizing(sizing, target)
+    return int(not is_met)
+
+
+def _print_sizing(sizing: Sizing, target: Path | None) -> None:
+    """Print the least roller, the table of rollers, their load ratios, and the places of a
+    carriage.
+    """
     print_text(_first_sentence(sizing))
     if sizing.open_and_less:
         print_text(
@@ -86,14 +111,53 @@ def print_size(  # noqa: PLR0913 - one argument for each option of the command
         )
     if sizing.unranked:
         print_text(f"{', '.join(sizing.unranked)}: no {sizing.least_of}, and so not ranked by it")
-    units = {**solved[0].study.parsed[ROLLER].units, "life_hours": "h"}
+    units = {**sizing.units, "life_hours": "h"}
     heads = [_head(str(name), units) for name in sizing.table]
     print_table(
         heads, [[_shown(value) for value in row] for row in sizing.table.itertuples(index=False)]
     )
-    for own in solved:
+    if sizing.ratios is not None:
+        _print_ratios(sizing)
+    if sizing.mounting is not None:
+        _print_mounting(sizing.mounting, target)
+    for own in _studies_of(sizing):
         print_text(f"study {own.study.name}: trackroller report {own.study.name} writes its page")
-    return int(not sizing.least)
+
+
+def _studies_of(sizing: Sizing) -> list[Results]:
+    """Return the solved studies of a sizing."""
+    return [own for own in (sizing.results, sizing.overload) if own is not None]
+
+
+def _target(out: Path, each: bool) -> Path:
+    """Return the path of the carriage file, checked before anything is solved."""
+    if not each:
+        raise InputError("--out", str(out), "a file beside --each", "Add --each, or leave it out.")
+    if out.suffix.lower() not in YAML:
+        raise InputError("--out", str(out), "a name that ends in .yaml", "Give another name.")
+    return writable(out)
+
+
+def _print_mounting(mounting: Mounting, target: Path | None) -> None:
+    """Print the roller of each place of a carriage."""
+    if mounting.enough:
+        print_text("each place with its own roller, solved together:")
+    else:
+        print_text("No rollers are enough together; these are at their place alone:")
+    heads = [_head(str(name), {"life_hours": "h"}) for name in mounting.table]
+    rows = [[_shown(value) for value in row] for row in mounting.table.itertuples(index=False)]
+    print_table(heads, rows)
+    if target is not None and mounting.enough:
+        print_text(f"{target}: the carriage with these rollers")
+
+
+def _print_ratios(sizing: Sizing) -> None:
+    """Print what all forces of the case may be multiplied by until each limit is reached."""
+    assert sizing.ratios is not None
+    table = sizing.ratios.table.reindex(sizing.table[ROLLER])
+    print_text("all forces may be multiplied by, until a limit is at 100 %:")
+    rows = [[name, *map(_shown, row)] for name, *row in table.itertuples()]
+    print_table([ROLLER, *(limit_word(str(name)) for name in table)], rows)
 
 
 def _first_sentence(sizing: Sizing) -> str:
@@ -117,6 +181,8 @@ def _shown(value: Any) -> str:
     if isinstance(value, float):
         if math.isnan(value):
             return "–"
+        if math.isinf(value):
+            return "any"
         return f"{value:.4g}"
     return str(value) or "–"
 
@@ -127,8 +193,7 @@ def shelf_study(file: Path, of: str, case: Path | None, settings: list[str] | No
     """
     base: dict[str, Any] = {}
     if case is not None or settings:
-        given, _, _ = case_of(case, settings)
-        base = base_of_case(given)
+        base, _, _ = read_case(case, settings, base_beside_shelf)
     with files_beside(file):
         keys, places = with_rows(
             {"name": "shelf", "base": base, "factors": {of: {"file": file.name}}}
@@ -153,6 +218,6 @@ def _cell(name: str, value: Any) -> str:
     """Return a value of a row as text."""
     if value is None or value == "" or (isinstance(value, float) and math.isnan(value)):
         return "–"
-    if name in (BEARING.name, CATALOGUE.name):
+    if name in (BEARING.name, CATALOGUE.name, STUD.name):
         return entries(json.loads(value))
     return in_words(name, value)

@@ -58,7 +58,7 @@ def run_with_progress(
     """Run a study with a progress bar of cases/s and the time left; with `report`, make its
     report.
     """
-    from trackroller.results.solving import run_any  # heavy: analysis
+    from trackroller.results.run import run_any  # heavy: analysis
 
     checked = load_study(study)
     _print_not_given({**checked.config.base, **checked.factors}, checked.not_given, sys.stderr)

@@ -17,13 +17,14 @@ from trackroller.damage import (
     rating,
     shakedown,
     static,
+    stud,
     verdict,
     wear,
 )
 from trackroller.damage.limit import Limit
 from trackroller.errors import InputError, check_names
 
-_FILES = (static, fatigue, rating, bearing, catalogue, shakedown, heat, wear, multiaxial)
+_FILES = (static, fatigue, rating, bearing, catalogue, shakedown, heat, wear, multiaxial, stud)
 LIMITS: dict[str, Limit] = {file.LIMIT.name: file.LIMIT for file in _FILES}
 
 

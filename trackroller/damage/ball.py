@@ -192,35 +192,26 @@ def ball_of_plane(stress):  # pragma: no cover (compiled)
 
 
 @compiled
-def shakedown_shears(stress, log_depth):  # pragma: no cover (compiled)
-    """Return the shear stress k at which the stresses of planes just shake down, the largest over
-    the depths.
+def top_of_depths(shear, log_depth):  # pragma: no cover (compiled)
+    """Return the largest of the values of planes, (depth,), and between the planes by the parabola
+    through the largest value and its neighbours.
 
     Parameters
     ----------
-    stress : numpy.ndarray
-        Stresses of bodies on planes, (body, depth, 6, y, x) [MPa].
+    shear : numpy.ndarray
+        Values on planes, (depth,) [MPa].
     log_depth : numpy.ndarray
         Logarithms of the depths, (depth,) [1].
-
-    Returns
-    -------
-    numpy.ndarray
-        k, (body,) [MPa]; between the planes by the parabola through the largest value and its
-        neighbours.
     """
-    out = np.empty(len(stress))
-    for body in range(len(stress)):
-        k = np.array([math.sqrt(ball_of_plane(stress[body, d])) for d in range(len(log_depth))])
-        top = np.argmax(k)
-        out[body] = k[top]
-        if 0 < top < len(k) - 1:
-            left, right = log_depth[top] - log_depth[top - 1], log_depth[top + 1] - log_depth[top]
-            fall, rise = (k[top] - k[top - 1]) / left, (k[top + 1] - k[top]) / right
-            curve, slope = (
-                (rise - fall) / (left + right),
-                (fall * right + rise * left) / (left + right),
-            )
-            if curve < 0.0:
-                out[body] -= 0.25 * slope**2 / curve
+    top = np.argmax(shear)
+    out = shear[top]
+    if 0 < top < len(shear) - 1:
+        left, right = log_depth[top] - log_depth[top - 1], log_depth[top + 1] - log_depth[top]
+        fall, rise = (shear[top] - shear[top - 1]) / left, (shear[top + 1] - shear[top]) / right
+        curve, slope = (
+            (rise - fall) / (left + right),
+            (fall * right + rise * left) / (left + right),
+        )
+        if curve < 0.0:
+            out -= 0.25 * slope**2 / curve
     return out

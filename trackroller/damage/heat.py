@@ -12,8 +12,7 @@ a material has a table, see `roller.temperature`.
 
 from __future__ import annotations
 
-import math
-from typing import Any
+from collections.abc import Mapping
 
 import numpy as np
 
@@ -29,62 +28,7 @@ from trackroller.damage.limit import (
     worst,
 )
 from trackroller.numerics.parameter import Parameter
-from trackroller.numerics.variable import LARGEST, SUM
-
-# step of the logarithm of the diffusion length, and its end over the sides of the grid
-STEP, REACH = 0.3, 1e4
-SPREAD = 5.0  # diffusion lengths beyond which no heat arrives
-
-
-def cell_temperature(
-    steps: tuple[float, float], nodes: tuple[int, int], decay: float
-) -> np.ndarray:
-    """Return the surface temperature beside a cell that is heated uniformly while the surface moves
-    towards -y.
-
-    Parameters
-    ----------
-    steps : tuple of float
-        Sides of the cell along x and y [mm].
-    nodes : tuple of int
-        Numbers of nodes along x and y.
-    decay : float
-        V/(4 kappa), travel speed over four times the diffusivity [1/mm].
-
-    Returns
-    -------
-    numpy.ndarray
-        Temperature times conductivity over heat density, at node offsets from -(n - 1) to n - 1,
-        (2 ny - 1, 2 nx - 1) [mm].
-
-    Notes
-    -----
-    The mean over the cell of exp(-V (r + y)/(2 kappa))/(2 pi r), written as an integral over the
-    diffusion length w = sqrt(4 kappa t) of the time t since the heat was released; it holds for V =
-    0 and under the cell itself.
-    """
-    from scipy.special import erf  # heavy, and planning reads only the declaration below
-
-    (hx, hy), (nx, ny) = steps, nodes
-    small, long = min(hx, hy), ny * hy
-    # Below the first w all heat is still in its cell, and above the last it has spread or moved
-    # beyond the grid.
-    low = small / 8.0
-    high = REACH * max(nx * hx, long)
-    if decay > 0:
-        low = min(low, math.sqrt(0.1 * small / decay))
-        high = min(
-            high, (SPREAD + math.sqrt(SPREAD**2 + 4.0 * decay * (long + hy))) / (2.0 * decay)
-        )
-    # heat that moves fast passes a cell in a short part of the logarithm of w
-    step = STEP / max(1.0, math.sqrt(decay * long))
-    w = np.exp(np.arange(math.log(low), math.log(max(high, 2.0 * low)) + step, step))[:, None]
-    across = np.diff(erf(hx * (np.arange(nx + 1) - 0.5) / w))
-    along = np.diff(erf((hy * (np.arange(1 - ny, ny + 1) - 0.5) + decay * w**2) / w))
-    half = (along * w).T @ across
-    half[ny - 1, 0] += 4.0 * w[0, 0] / math.expm1(step)  # the sum over all smaller w
-    half *= 0.25 * step / math.sqrt(math.pi)
-    return np.concatenate([half[:, :0:-1], half], axis=1)
+from trackroller.numerics.variable import BODIES, LARGEST, SUM
 
 
 def heat_density(t: RollerTractions, speed: np.ndarray) -> np.ndarray:
@@ -95,58 +39,53 @@ def heat_density(t: RollerTractions, speed: np.ndarray) -> np.ndarray:
     return np.asarray(1e-3 * work * speed[:, None, None, None])
 
 
-def flash(
-    t: RollerTractions,
-    heat: np.ndarray,
-    speed: np.ndarray,
-    conductivity: np.ndarray,
-    diffusivity: np.ndarray,
-) -> np.ndarray:
-    """Return the largest temperature rise of each body if it took all heat of the contact.
+def of_patches(solved: SolvedRollers) -> Values:
+    """Return what the tractions give, at the values of the materials and at both ends of their
+    placeholders.
 
-    Parameters
-    ----------
-    t, heat : RollerTractions and numpy.ndarray
-        The patches, and their heat density, (n, contact, y, x) [W/mm2].
-    speed : numpy.ndarray
-        v, (n,) [mm/s].
-    conductivity, diffusivity : numpy.ndarray
-        K [W/(mm K)] and kappa [mm2/s] of roller and guide, (n, 2).
-
-    Returns
-    -------
-    numpy.ndarray
-        Rise, (n, contact, body) [K].
+    These are the largest temperature rise of each body if it took all heat of the contact, `_rise`,
+    (n, contact, body, place) [K], the power of friction, `_heat_power` [W], and the mean of
+    pressure times velocity, `_pressure_velocity` [MPa m/s], (n, contact).
     """
-    from scipy import fft  # heavy, and planning reads only the declaration below
+    # numba compiles on import, and planning needs none of it
+    from trackroller.damage.moving_source import largest_rises
 
-    def of_patch(case: int, contact: int) -> Any:
-        at = case, contact
-        if not np.isfinite(heat[at]).all() or not np.isfinite(diffusivity[case]).all():
-            return np.nan
-        steps = [(axis[-1] - axis[0]) / (axis.size - 1) for axis in (t.x[at], t.y[at])]
-        nodes = heat[at].shape[::-1]
-        decays = (speed[case] / (4.0 * diffusivity[case])).tolist()
-        kernels = {
-            decay: cell_temperature((steps[0], steps[1]), nodes, decay)
-            for decay in dict.fromkeys(decays)
-        }
-        lengths = [fft.next_fast_len(2 * n - 1, real=True) for n in heat[at].shape]
-        spectra = fft.rfft2(heat[at], lengths) * fft.rfft2(
-            np.stack(list(kernels.values())), lengths
-        )
-        rises = fft.irfft2(spectra, lengths)[_middle(heat)].max(axis=(1, 2), initial=0.0)
-        return [rises[list(kernels).index(decay)] for decay in decays] / conductivity[case]
+    t = solved.tractions()
+    v = solved.values
+    speed = solved.cases["velocity"] * 1e3 / 60.0
+    heat = heat_density(t, speed)
+    places = [solved]
+    if solved.ends:
+        places += [solved.at_end(end) for end in (0, 1)]
+    # (n, body, place)
+    conductivity, diffusivity = (
+        np.stack([values_of(place.materials) for place in places], axis=2)
+        for values_of in (_conductivity, _diffusivity)
+    )
+    decays = speed[:, None, None] / (4.0 * diffusivity)
+    case, contact = t.solved_patches
+    steps = np.stack(t.steps, axis=2)[case, contact]
+    own_decays = decays[case].reshape(case.size, len(BODIES) * len(places))
+    rises = largest_rises(steps, heat[case, contact], own_decays)
+    whole = t.of_all_patches(rises.reshape(-1, *decays.shape[1:]) / conductivity[case])
+    cell = (t.x[:, :, 1] - t.x[:, :, 0]) * (t.y[:, :, 1] - t.y[:, :, 0])
+    slides = (np.hypot(t.slip_lateral, t.slip_rolling) * t.pressure).sum(axis=(2, 3))
+    return {
+        "_rise": whole,
+        "_heat_power": heat.sum(axis=(2, 3)) * cell,
+        "_pressure_velocity": 1e-3 * speed[:, None] * slides * cell / v["patch_area"],
+    }
 
-    return t.by_patch(of_patch, 2)
+
+def _conductivity(materials: Mapping[str, np.ndarray]) -> np.ndarray:
+    """Return K of roller and guide, (n, 2) [W/(mm K)]."""
+    return np.asarray(1e-3 * materials["thermal_conductivity"])
 
 
-def _middle(heat: np.ndarray) -> tuple[Any, slice, slice]:
-    """Return the part of a convolution with a kernel of all offsets that lies on the patch; nothing
-    wraps onto it.
-    """
-    ny, nx = heat.shape[2:]
-    return ..., slice(ny - 1, 2 * ny - 1), slice(nx - 1, 2 * nx - 1)
+def _diffusivity(materials: Mapping[str, np.ndarray]) -> np.ndarray:
+    """Return kappa of roller and guide, (n, 2) [mm2/s]."""
+    m = materials
+    return np.asarray(1e6 * m["thermal_conductivity"] / (m["density"] * m["heat_capacity"]))
 
 
 def hysteresis_moments(
@@ -174,31 +113,25 @@ def hysteresis_moments(
 
 
 def evaluate(solved: SolvedRollers) -> Values:
-    """Return temperature rises [K], (n, contact, body), partition, hysteresis and
-    pressure-velocity, (n, contact).
+    """Return temperature rises [K], (n, contact, body), partition and hysteresis, (n, contact).
 
-    `drive_torque` [N mm], (n,), takes in the hysteresis of both contacts.
+    `drive_torque` [N mm] and `rolling_resistance` [N], (n,), take in the hysteresis of both
+    contacts.
     """
     m = solved.materials
     v = solved.values
     c = solved.cases
-    t = solved.tractions()
     speed = c["velocity"] * 1e3 / 60.0
-    conductivity = 1e-3 * m["thermal_conductivity"]
-    diffusivity = 1e6 * m["thermal_conductivity"] / (m["density"] * m["heat_capacity"])
-    heat = heat_density(t, speed)
-    whole = flash(t, heat, speed, conductivity, diffusivity)
+    whole = v["_rise"][..., solved.place]
     total = whole.sum(axis=2)
     with np.errstate(divide="ignore", invalid="ignore"):
         partition = np.where(total > 0, whole[:, :, 1] / total, 0.5 + 0.0 * total)
-    cell = (t.x[:, :, 1] - t.x[:, :, 0]) * (t.y[:, :, 1] - t.y[:, :, 0])
-    slides = np.hypot(t.slip_lateral, t.slip_rolling) * t.pressure
     soft = (1.0 - m["poisson_ratio"] ** 2) / m["youngs_modulus"]
     moments = hysteresis_moments(
         v["normal_force"], v["semi_axis_rolling"], m["loss_fraction"], soft
     )
     lost = 1e-3 * moments[:, :, 0] * (speed / solved.rolling_radius)[:, None]
-    power = (partition * heat.sum(axis=(2, 3)) * cell + lost).sum(axis=1)
+    power = (partition * v["_heat_power"] + lost).sum(axis=1)
     bulk = power / (1e-6 * c["heat_transfer_coefficient"] * c["cooled_area"])
     flashes = whole * np.stack([partition, 1.0 - partition], axis=2)
     bulks = np.stack([bulk[:, None] + 0.0 * partition, 0.0 * partition], axis=2)
@@ -208,21 +141,23 @@ def evaluate(solved: SolvedRollers) -> Values:
     used = np.where(
         (room <= 0.0) & ~np.isnan(rise), np.inf, rise / np.where(room > 0.0, room, np.nan)
     )
+    lossy = np.nan_to_num(moments.sum(axis=2).sum(axis=1))
+    with_hysteresis = {}
+    if "rolling_resistance" in v:
+        resistance = v["rolling_resistance"] + lossy / solved.rolling_radius
+        with_hysteresis["rolling_resistance"] = resistance
     return {
         # the drive turns the roller against the loss; without a known loss the torque is that of
         # the tractions alone one axis after the other: the order of a sum over two depends on the
         # number of cases
-        "drive_torque": v["drive_torque"] + np.nan_to_num(moments.sum(axis=2).sum(axis=1)),
+        "drive_torque": v["drive_torque"] + lossy,
+        **with_hysteresis,
         "flash_temperature_rise": flashes,
         "bulk_temperature_rise": bulks,
         "heat_utilisation": used,
         "heat_partition": partition,
         "hysteresis_moment": moments.sum(axis=2),
-        "pressure_velocity": 1e-3
-        * speed[:, None]
-        * slides.sum(axis=(2, 3))
-        * cell
-        / v["patch_area"],
+        "pressure_velocity": v["_pressure_velocity"],
     }
 
 
@@ -234,6 +169,8 @@ LIMIT = Limit(
     short="heat",
     group="heat",
     meaning="flash and bulk temperature of roller and guide, hysteresis, pressure times velocity",
+    shared=of_patches,
+    shared_by_mechanics=False,
     evaluate=evaluate,
     verdict=lambda solved, results: Verdict(worst(results["heat_utilisation"]), None),
     needs=(TRACTIONS,),

@@ -103,6 +103,8 @@ class SolvedRollers:
     ends : mapping of str to numpy.ndarray
         By the name of a value that is a placeholder with a range, the worse and the better end of
         the range over the value, (n, body, 2) [1].
+    place : int
+        Where the placeholders are: 0 at their values, 1 at the worse and 2 at the better ends.
     """
 
     cases: Mapping[str, np.ndarray]
@@ -114,6 +116,7 @@ class SolvedRollers:
     unworn_gap: Callable[[int, int, np.ndarray], np.ndarray] = _no_gap
     regime: np.ndarray | None = None
     ends: Mapping[str, np.ndarray] = field(default_factory=dict)
+    place: int = 0
 
     def at_end(self, end: int) -> SolvedRollers:
         """Return the rollers with the values of `ends` at the worse (0) or the better (1) ends of
@@ -122,7 +125,7 @@ class SolvedRollers:
         moved = {
             name: self.materials[name] * shares[..., end] for name, shares in self.ends.items()
         }
-        return replace(self, materials=dict(self.materials) | moved, ends={})
+        return replace(self, materials=dict(self.materials) | moved, ends={}, place=end + 1)
 
     @property
     def skids(self) -> np.ndarray:
@@ -188,9 +191,12 @@ class Limit:
         What has to be computed first: the groups "peak_stress" and "friction_work" of the solver,
         and `TRACTIONS`.
     shared : callable, optional
-        Function of a `SolvedRollers` that returns what `evaluate` needs of the tractions. Cases
-        with equal forces and tractions share its values, so it must not use the speed or values of
-        strength and wear. A name that begins with an underscore is no result.
+        Function of a `SolvedRollers` that returns what `evaluate` needs of the tractions, once for
+        the values of the materials and both ends of their placeholders. A name that begins with an
+        underscore is no result.
+    shared_by_mechanics : bool
+        Whether cases with equal forces and tractions share these values. `shared` must then not use
+        the speed or values of strength and wear.
     results : tuple of Variable
         What `evaluate` returns.
     parameters : tuple of Parameter
@@ -235,6 +241,7 @@ class Limit:
     meaning: str = ""
     needs: tuple[str, ...] = ()
     shared: Callable[[SolvedRollers], Values] | None = None
+    shared_by_mechanics: bool = True
     results: tuple[Variable, ...] = ()
     parameters: tuple[Parameter, ...] = ()
     materials: tuple[Parameter, ...] = ()

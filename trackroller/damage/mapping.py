@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from trackroller.errors import Collector, InputError, check_names
+from trackroller.errors import Collector, InputError, check_names, checked_text
 from trackroller.numerics.numbers import number_in
 from trackroller.numerics.parameter import Parameter
 from trackroller.numerics.rows import once_each
@@ -32,6 +32,8 @@ class MappingField:
         Keys that are words, with the words that each allows.
     lists : tuple of Parameter
         Keys that are lists of numbers.
+    texts : tuple of str
+        Keys that are names of the user's, such as that of a material.
     may_miss : tuple of str
         Keys that may be left out.
     renamed : mapping of str to str
@@ -45,6 +47,7 @@ class MappingField:
     numbers: tuple[Parameter, ...] = ()
     words: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     lists: tuple[Parameter, ...] = ()
+    texts: tuple[str, ...] = ()
     may_miss: tuple[str, ...] = ()
     renamed: Mapping[str, str] = field(default_factory=dict)
     check: Callable[[dict[str, Any]], None] | None = None
@@ -53,7 +56,7 @@ class MappingField:
         """Return the checked mapping; raise the errors of unknown, missing or impossible entries
         together.
         """
-        keys = [*self.words, *(number.name for number in (*self.numbers, *self.lists))]
+        keys = [*self.words, *self.texts, *(number.name for number in (*self.numbers, *self.lists))]
         for old, new in self.renamed.items():
             if old in value:
                 known = ", ".join(keys)
@@ -67,19 +70,32 @@ class MappingField:
             raise InputError(f"{self.name}.{missing[0]}", None, "", "Add these values.", lacks)
         given: dict[str, Any] = {}
         wrong = Collector()
-        for key, allowed in self.words.items():
+        for key in (key for key in keys if value.get(key) is not None):
             with wrong.part():
-                if value.get(key) is not None:
-                    check_names(f"{self.name}.{key}", [value[key]], allowed)
-                    given[key] = str(value[key])
-        for number in (*self.numbers, *self.lists):
-            with wrong.part():
-                if value.get(number.name) is not None:
-                    given[number.name] = self._entry(number, value[number.name])
+                given[key] = self._checked(key, value[key])
         wrong.check()
         if self.check is not None:
             self.check(given)
         return given
+
+    def _checked(self, key: str, value: Any) -> Any:
+        """Return the checked value of a key."""
+        if key in self.words:
+            check_names(f"{self.name}.{key}", [value], self.words[key])
+            return str(value)
+        if key in self.texts:
+            return self._text(key, value)
+        numbers = {number.name: number for number in (*self.numbers, *self.lists)}
+        return self._entry(numbers[key], value)
+
+    def _text(self, key: str, value: Any) -> str:
+        """Return a checked name."""
+        where = f"{self.name}.{key}"
+        if not isinstance(value, str) or not value.strip():
+            raise InputError(
+                where, value, "a name", "Put a name that looks like a number in quotes."
+            )
+        return checked_text(value.strip(), where)
 
     def _entry(self, number: Parameter, value: Any) -> Any:
         """Return a checked number, or the checked numbers of a list."""
@@ -113,5 +129,6 @@ class MappingField:
             for n in self.numbers
         }
         return out | {
-            key: np.array([own.get(key, "") for own in parsed], dtype=object) for key in self.words
+            key: np.array([own.get(key, "") for own in parsed], dtype=object)
+            for key in (*self.words, *self.texts)
         }

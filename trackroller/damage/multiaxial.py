@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from trackroller.damage.histories import RollerTractions, deep_planes, planes
+from trackroller.damage.histories import RollerTractions, planes
 from trackroller.damage.limit import TRACTIONS, Limit, SolvedRollers, Values, optional, variables
 from trackroller.numerics.variable import LARGEST
 
@@ -68,6 +68,9 @@ def stress_paths(
     numpy.ndarray
         Stresses, (body, path, time, 6) [MPa]. Each path ends with the unloaded state.
     """
+    # numba compiles on import, and planning reads only the declaration
+    from trackroller.damage.deep_planes import deep_planes
+
     loads = t.loads(case, contact)
     surface = planes(loads, np.zeros(1), poisson_ratio)
     below = deep_planes(loads, poisson_ratio)

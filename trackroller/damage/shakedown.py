@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from trackroller.damage.histories import DEPTHS, RollerTractions, deep_planes
+from trackroller.damage.histories import RollerTractions
 from trackroller.damage.limit import (
     TRACTIONS,
     Limit,
@@ -25,7 +25,7 @@ from trackroller.damage.limit import (
     variables,
     worst,
 )
-from trackroller.numerics.variable import LARGEST
+from trackroller.numerics.variable import BODIES, LARGEST
 
 
 def shears(t: RollerTractions, poisson_ratio: np.ndarray) -> np.ndarray:
@@ -44,14 +44,17 @@ def shears(t: RollerTractions, poisson_ratio: np.ndarray) -> np.ndarray:
         k, (n, contact, body) [MPa].
     """
     # numba compiles on import, and planning needs none of it
-    from trackroller.damage.ball import shakedown_shears
+    from trackroller.damage.deep_planes import Loads, shakedown_shears
 
-    def of_patch(*at: int) -> np.ndarray:
-        surface = np.sqrt(np.max(t.shear_lateral[at] ** 2 + t.shear_rolling[at] ** 2))
-        below = shakedown_shears(deep_planes(t.loads(*at), poisson_ratio[at[0]]), np.log(DEPTHS))
-        return np.asarray(np.maximum(below, surface))
-
-    return t.by_patch(of_patch, 2)
+    at = t.solved_patches
+    lateral, rolling, pressure = (
+        field[at] for field in (t.shear_lateral, t.shear_rolling, t.pressure)
+    )
+    steps = np.stack(t.steps, axis=2)[at]
+    wanted = np.ones((len(steps), len(BODIES)), dtype=bool)
+    own = Loads(lateral, rolling, pressure, steps, poisson_ratio[at[0]], wanted)
+    surface = np.sqrt(np.max(lateral**2 + rolling**2, axis=(1, 2)))
+    return t.of_all_patches(np.maximum(shakedown_shears(own), surface[:, None]))
 
 
 def of_mechanics(solved: SolvedRollers) -> Values:

@@ -20,6 +20,8 @@ last slope, and below its first one with its first loss. The flag `wear_extrapol
 
 from __future__ import annotations
 
+import functools
+import json
 import math
 from typing import Any
 
@@ -112,6 +114,32 @@ def mass_loss(work: np.ndarray, rates: ArrayLike, losses: ArrayLike) -> np.ndarr
     x, y = np.asarray(rates, float), np.asarray(losses, float)
     slope = (y[-1] - y[-2]) / (x[-1] - x[-2])
     return np.asarray(np.interp(work, x, y) + slope * np.maximum(work - x[-1], 0.0))
+
+
+@functools.lru_cache(maxsize=256)
+def table_of_laws(roller: str, guide: str) -> str:
+    """Return the table of the energy law of a pair as canonical JSON.
+
+    Parameters
+    ----------
+    roller, guide : str
+        `work_rate` and `loss` of each body as JSON.
+
+    Returns
+    -------
+    str
+        Both losses at the work rates of either body, up to the smaller of the last ones: beyond it
+        the loss of one body is not known.
+    """
+    laws = [json.loads(text) for text in (roller, guide)]
+    rates = np.union1d(*(law["work_rate"] for law in laws))
+    first = max(law["work_rate"][0] for law in laws)
+    last = min(law["work_rate"][-1] for law in laws)
+    rates = rates[(rates >= first) & (rates <= last)]
+    table = {"work_rate": rates.tolist()}
+    for body, law in zip(BODIES, laws, strict=True):
+        table[body] = mass_loss(rates, law["work_rate"], law["loss"]).tolist()
+    return json.dumps(TABLE.canonical(table), sort_keys=True)
 
 
 def deepest(x: np.ndarray, depth: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -433,7 +461,7 @@ _CB = ("contact", "body")
 TABLE = MappingField(
     "wear_table",
     "for wear_law: energy, loss of mass of each body [ug/(m mm2)] over the frictional work "
-    "[N/mm2], such as the "
+    "[N/mm2]; without it that of the materials holds (energy_wear) if both have one; such as the "
     "railway values for wheel R8T on rail 900A, to be checked before use: {work_rate: [0, "
     "10.4, 77.2, 100], roller: "
     "[0, 55, 55, 1466], guide: [0, 55, 55, 1466]}",

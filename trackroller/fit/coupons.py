@@ -55,6 +55,10 @@ NO_LIMIT = (
     "long lives: the line was "
     "fitted without a limit."
 )
+SHOWS_NO_LIMIT = (
+    "The run-outs do not show a fatigue limit, as two or more would that are as long as the "
+    "longest failures: they count as long lives on the line."
+)
 DEFAULT_KNEE = 2e6  # cycles at which a line without run-outs states its strength
 
 
@@ -160,9 +164,9 @@ def fit_sn(  # noqa: PLR0913 - one argument for each choice of a fit
         "stress ratio": "not given" if stress_ratio is None else f"{ratio:g}",
     }
     notes = [*_read_as(tests, failed), *_notes(load_type, ratio, bool(has_limit), observed)]
-    if knee is None and has_limit and not line.limit_matters:
-        line = replace(line, knee=False)
-        notes.append(NO_LIMIT)
+    if knee is None:
+        line, sentences = _decided(line)
+        notes += sentences
     fatigue = Group("fatigue", line, priors, at=_stated_at(line))
     return Fit("sn", name or "fitted material", (fatigue,), tests, like, given, notes)
 
@@ -515,6 +519,15 @@ def _limit_shows(observed: Tests) -> bool:
     if (~failed).sum() < 2 or failed.sum() < 2:
         return False
     return bool(observed.low[~failed].max() >= observed.middle[failed].max() - 0.1)
+
+
+def _decided(line: Line) -> tuple[Line, list[str]]:
+    """Return a line without the limit that the tests do not ask for, and the sentence about it."""
+    if line.knee and not line.limit_matters:
+        return replace(line, knee=False), [NO_LIMIT]
+    if not line.knee and not line.tests.failed.all():
+        return line, [SHOWS_NO_LIMIT]
+    return line, []
 
 
 def _stated_at(line: Line) -> float:

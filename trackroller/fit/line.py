@@ -33,7 +33,6 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
-from scipy import optimize
 from scipy.special import log_ndtr, ndtr, ndtri, stdtrit
 
 # bounds of the values; an estimate at a bound says that the tests do not identify the value
@@ -648,7 +647,9 @@ class Line:
         def excess(value: float) -> float:
             return float(self.log_likelihood(np.atleast_1d(solved(value, none)))) - goal
 
-        return Interval(float(optimize.brentq(excess, -FARTHEST, 2.0 * FARTHEST)), math.inf)
+        from scipy.optimize import brentq  # heavy, and a single roller imports this file
+
+        return Interval(float(brentq(excess, -FARTHEST, 2.0 * FARTHEST)), math.inf)
 
 
 def least(

@@ -10,7 +10,7 @@ from itertools import product
 from typing import Any
 
 from trackroller.errors import InputError, nearest, unknown_name
-from trackroller.materials.entries import inline_material
+from trackroller.materials.entries import Hardness, inline_material
 from trackroller.materials.material import Material
 from trackroller.materials.properties import Value
 from trackroller.parameters import FRICTION_LEVELS
@@ -35,14 +35,18 @@ class MaterialDatabase:
         Friction coefficients of each pair of names or families, by level.
     files : tuple of str
         Files from which the database was read, the built-in file first.
-    wear_table : mapping of tuple of str to Value
-        Wear coefficients by the name or family of the body that wears, and by that of its partner.
+    wear_table : mapping of tuple of str to mapping of Hardness to Value
+        Wear coefficients by the name or family of the body that wears, and by that of its partner;
+        then by the range of hardness [HB] of the body that wears. None stands for a body whose
+        hardness is not known or lies in no range.
     """
 
     materials: Mapping[str, Material]
     friction_table: Mapping[frozenset[str], Mapping[str, Value]]
     files: tuple[str, ...] = ()
-    wear_table: Mapping[tuple[str, str], Value] = field(default_factory=dict)
+    wear_table: Mapping[tuple[str, str], Mapping[Hardness | None, Value]] = field(
+        default_factory=dict
+    )
 
     def names(self) -> tuple[str, ...]:
         """Return the names of all materials."""
@@ -158,16 +162,18 @@ class MaterialDatabase:
     def on(self, body: str | Material, partner: str | Material) -> Material:
         """Return the material of a body with its wear coefficient on the material of its partner.
 
-        A wear coefficient of the material itself has priority over that of the pair. Without
-        either, the material has no wear coefficient.
+        A wear coefficient of the material itself has priority over that of the pair, and that of
+        the hardness of the body over that of any hardness. Without all of them, the material has
+        no wear coefficient.
         """
         own = self.material(body)
         other = self.material(partner)
         if own.wear_coefficient is not None:
             return own
         for pair in product(self._names_of(own), self._names_of(other)):
-            if pair in self.wear_table:
-                return _worn(own, id(own.records), self.wear_table[pair], other.name)
+            known = _of_hardness(self.wear_table.get(pair, {}), own.hardness)
+            if known is not None:
+                return _worn(own, id(own.records), known, other.name)
         return own
 
     def friction_record(
@@ -176,7 +182,8 @@ class MaterialDatabase:
         """Return the friction coefficient of a pair as a result records it: pair, level, value,
         source, mark and note.
 
-        Without a level it is the typical coefficient.
+        Without a level it is the typical coefficient. Where tests of the dry pair lie above the
+        typical coefficient, `dry_tests` holds their range and the levels that say more.
         """
         level = level or "typical"
         friction = self.friction(roller, guide, level)
@@ -187,7 +194,26 @@ class MaterialDatabase:
             "placeholder": friction.placeholder,
         }
         note = {"note": friction.note} if friction.note else {}
-        return {"material_pair": pair, "level": level, **values, **note}
+        tests = {}
+        if level == "typical":
+            tests = self._dry_tests(roller, guide, friction.value)
+        return {"material_pair": pair, "level": level, **values, **note, **tests}
+
+    def _dry_tests(
+        self, roller: str | Material, guide: str | Material, typical: float
+    ) -> dict[str, Any]:
+        """Return the range of the tests of a dry pair as `dry_tests`, if it lies above the typical
+        coefficient; otherwise nothing.
+        """
+        names = [self._names_of(body) for body in (roller, guide)]
+        levels: dict[str, Value] = {}
+        for pair in product(*names):
+            levels = {**self.friction_table.get(frozenset(pair), {}), **levels}
+        dry = levels.get("dry")
+        if dry is None or dry.range is None or typical >= dry.range[0]:
+            return {}
+        words = [name for name in ("dry", "lubricated") if name in levels]
+        return {"dry_tests": {"range": list(dry.range), "words": words}}
 
     def _names_of(self, body: str | Material) -> tuple[str, ...]:
         """Return the keys of a body in the friction table: its name first, then its family."""
@@ -226,6 +252,14 @@ class MaterialDatabase:
         return InputError(
             "friction_coefficient of the pair", "-".join(label), allowed, remedy, wrong
         )
+
+
+def _of_hardness(classes: Mapping[Hardness | None, Value], hardness: float | None) -> Value | None:
+    """Return the wear coefficient of a body of a hardness [HB]; None if there is none."""
+    for ends, value in classes.items():
+        if ends is not None and hardness is not None and ends[0] <= hardness < ends[1]:
+            return value
+    return classes.get(None)
 
 
 @functools.lru_cache(maxsize=256)

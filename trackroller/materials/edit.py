@@ -18,12 +18,13 @@ from ruamel.yaml.scalarstring import DoubleQuotedScalarString
 from trackroller.damage.own import check_fields
 from trackroller.errors import InputError, WorkError, checked_text
 from trackroller.files import read_text, write_whole
+from trackroller.materials.energy_wear import FIELD as ENERGY_WEAR
 from trackroller.materials.entries import NUMBERS, TEXTS, VALUE_KEYS
 from trackroller.materials.file import build_database, own_file, read_database
 from trackroller.materials.material import Material
 from trackroller.materials.properties import PROPERTIES
 from trackroller.materials.sn_curve import POINTS
-from trackroller.materials.temperature import FIELD
+from trackroller.materials.temperature import FIELD as TEMPERATURE
 from trackroller.numerics.numbers import read_number
 from trackroller.numerics.units import split_quantity
 from trackroller.yaml_file import needs_quotes
@@ -31,7 +32,8 @@ from trackroller.yaml_file import needs_quotes
 HEADER = """\
 # Your own materials and friction coefficients; they replace built-in ones of the same name.
 """
-FIELDS = (*NUMBERS, *TEXTS, POINTS, FIELD, "source", "placeholder")
+TABLES = (TEMPERATURE, ENERGY_WEAR)
+FIELDS = (*NUMBERS, *TEXTS, POINTS, *TABLES, "source", "placeholder")
 
 
 def add_material(
@@ -51,8 +53,8 @@ def add_material(
     **values
         Fields of `Material`, each a number in the unit of the field, or a mapping with value, unit,
         source, placeholder and note. Also `family`, `description` and `like`, the points
-        `sn_points`, the table `temperature_dependence`, and `source`, `placeholder` and `note` for
-        all numbers, for the points and for the table.
+        `sn_points`, the tables `temperature_dependence` and `energy_wear`, and `source`,
+        `placeholder` and `note` for all numbers, for the points and for the tables.
 
     Returns
     -------
@@ -127,12 +129,16 @@ def _entry(values: Mapping[str, Any]) -> dict[str, Any]:
         else:
             line = {"value": values[POINTS]}
         entry[POINTS] = {"value": None, **common, **note, **line}
-    if FIELD in values:
-        if isinstance(values[FIELD], Mapping):
-            entry[FIELD] = {**common, **note, **values[FIELD]}
-        else:
-            entry[FIELD] = values[FIELD]
-    return entry
+    return entry | _tables(values, {**common, **note})
+
+
+def _tables(values: Mapping[str, Any], marks: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the tables of a material for the file, with the marks that the values share."""
+    tables = {name: values[name] for name in TABLES if name in values}
+    for name, table in tables.items():
+        if isinstance(table, Mapping):
+            tables[name] = {**marks, **table}
+    return tables
 
 
 def _plain(field: str, value: Any) -> Any:

@@ -5,10 +5,12 @@ coefficients.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
 from trackroller.damage.own import check_fields
 from trackroller.errors import Collector, InputError, check_names, checked_text, unknown_name
+from trackroller.materials.energy_wear import FIELD as ENERGY_WEAR
 from trackroller.materials.material import UNNAMED, Material, contradictions
 from trackroller.materials.properties import ALTERNATIVES, PROPERTIES, REQUIRED, Value, check_number
 from trackroller.materials.sn_curve import (
@@ -36,6 +38,10 @@ STRENGTH = "tensile_strength"
 TEXTS = ("family", "description", "like", "note")
 VALUE_KEYS = ("value", "unit", "source", "placeholder", "note", "range")
 NUMBERS = PROPERTIES | ALTERNATIVES
+HARDNESS = "hardness"  # key of an entry of the wear list: the hardness for which it holds
+_HARDNESS = replace(PROPERTIES[HARDNESS], open_lower=False, open_upper=False)
+Hardness = tuple[float, float]  # lowest and highest hardness [HB], the highest one left out
+WearClass = tuple[Hardness | None, Value]
 BODIES_OF_PAIR = ("first", "second")  # keys of a wear coefficient: the body of the pair that wears
 
 
@@ -191,9 +197,7 @@ class EntryParser:
         # inherited, but a given value excludes it
         for key in contradictions(numbers).keys() - given.keys():
             del records[key]
-        table: Any = entry.get(FIELD)
-        if isinstance(table, Mapping) and isinstance(table.get("source"), str):
-            table = {**table, "source": self.source(table["source"])}
+        table = self._with_source(entry.get(FIELD))
         if (
             FIELD not in entry
             and base
@@ -204,12 +208,22 @@ class EntryParser:
         fields: dict[str, Any] = {key: value.value for key, value in records.items()}
         if points:
             fields[POINTS] = points
-        fields |= {"name": name, FIELD: table, "records": records, **_words(entry, base)}
+        law = self._with_source(entry.get(ENERGY_WEAR))
+        if ENERGY_WEAR not in entry and base:
+            law = base.energy_wear
+        fields |= {"name": name, FIELD: table, ENERGY_WEAR: law}
+        fields |= {"records": records, **_words(entry, base)}
         try:
             return Material(**fields)
         except InputError as error:
             field = error.field.removeprefix(f"material '{name}'")
             raise error.named(f"{where}{field}") from None
+
+    def _with_source(self, table: Any) -> Any:
+        """Return a table of an entry with the full reference of its source."""
+        if isinstance(table, Mapping) and isinstance(table.get("source"), str):
+            return {**table, "source": self.source(table["source"])}
+        return table
 
     def _with_curve(
         self,
@@ -316,7 +330,7 @@ class EntryParser:
         wrong = Collector()
         given = {}
         with wrong.part():
-            check_fields(f"{where}: field", entry, (*NUMBERS, *TEXTS, POINTS, FIELD))
+            check_fields(f"{where}: field", entry, (*NUMBERS, *TEXTS, POINTS, FIELD, ENERGY_WEAR))
         for key in TEXTS:
             if entry.get(key) is not None and not isinstance(entry[key], str):
                 wrong.errors.append(
@@ -347,16 +361,35 @@ class EntryParser:
         pair, levels = self._of_pair(entry, "friction", "level", FRICTION_LEVELS, prop)
         return frozenset(pair), levels
 
-    def wear(self, entry: Any) -> dict[tuple[str, str], Value]:
+    def wear(self, entry: Any) -> dict[tuple[str, str], WearClass]:
         """Return the wear coefficients of one entry of the wear list, by the body that wears and
-        its partner.
+        its partner, each with the hardness of the body for which it holds.
         """
+        hardness = None
+        if isinstance(entry, Mapping) and HARDNESS in entry:
+            hardness = self._hardness(entry)
+            entry = {key: value for key, value in entry.items() if key != HARDNESS}
         pair, given = self._of_pair(
             entry, "wear", "body", BODIES_OF_PAIR, PROPERTIES["wear_coefficient"]
         )
         first, second = pair
         by_bodies = {"first": (first, second), "second": (second, first)}
-        return {by_bodies[body]: value for body, value in given.items()}
+        return {by_bodies[body]: (hardness, value) for body, value in given.items()}
+
+    def _hardness(self, entry: Mapping[Any, Any]) -> Hardness:
+        """Return the checked range of hardness [HB] of an entry of the wear list."""
+        given = entry[HARDNESS]
+        pair = entry.get("pair")
+        field = "wear"
+        if isinstance(pair, list):
+            field = f"wear.{'-'.join(map(str, pair))}"
+        if not isinstance(given, (list, tuple)) or len(given) != 2:
+            allowed = "[lowest, highest] hardness [HB] of the body that wears"
+            raise InputError(f"{field}.{HARDNESS}", given, allowed, "Write hardness: [0, 400].")
+        low, high = (check_number(_HARDNESS, end, field) for end in given)
+        if not low < high:
+            raise InputError(f"{field}.{HARDNESS}", given, "a range that rises", "Swap its ends.")
+        return low, high
 
     def _of_pair(
         self, entry: Any, section: str, kind: str, keys: tuple[str, ...], prop: Parameter

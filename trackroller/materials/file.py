@@ -7,6 +7,7 @@ from __future__ import annotations
 import functools
 import os
 import re
+from collections.abc import Mapping
 from contextlib import nullcontext
 from pathlib import Path
 from typing import Any
@@ -164,12 +165,21 @@ def _checked(data: Any, file: str, over: MaterialDatabase | None) -> MaterialDat
             friction[pair] = {**friction.get(pair, {}), **levels}
     for i, entry in enumerate(sections["wear"]):
         with wrong.part("wear", str(i)):
-            wear |= parser.wear(entry)
+            for bodies, (hardness, value) in parser.wear(entry).items():
+                classes = wear.get(bodies, {})
+                if hardness is None:  # it holds for every hardness, instead of what was known
+                    classes = {}
+                wear[bodies] = {hardness: value, **_without(classes, hardness)}
     wrong.check()
     files: tuple[str, ...] = (file,)
     if over:
         files = (*over.files, file)
     return MaterialDatabase(materials, friction, files, wear)
+
+
+def _without(classes: Mapping[Any, Any], key: Any) -> dict[Any, Any]:
+    """Return a mapping without a key."""
+    return {other: value for other, value in classes.items() if other != key}
 
 
 def _sections(data: Any, file: str, wrong: Collector) -> dict[str, Any]:

@@ -14,6 +14,8 @@ import numpy as np
 
 from trackroller.damage.sn_curve import SNCurve, curve_exponent
 from trackroller.errors import InputError
+from trackroller.materials.energy_wear import FIELD as ENERGY_WEAR
+from trackroller.materials.energy_wear import EnergyWear, read_energy_wear
 from trackroller.materials.properties import OF_LIMITS, PROPERTIES, Value, check_number
 from trackroller.materials.sn_curve import CURVE, POINTS, numbers_of_line, read_points
 from trackroller.materials.temperature import FIELD, FOLLOW_STRENGTH, TemperatureTable, read_table
@@ -86,6 +88,9 @@ class Material(_OfLimits):  # type: ignore[misc, valid-type]
         follow from them. Empty: none.
     temperature_dependence : TemperatureTable or mapping, optional
         E and R_m over temperature, for the output `heat`; see `trackroller.materials.temperature`.
+    energy_wear : EnergyWear or mapping, optional
+        Loss of mass over frictional work, for `wear_law: energy`; see
+        `trackroller.materials.energy_wear`.
     records : mapping of str to Value
         Unit, source and mark of each value, as far as known.
 
@@ -114,6 +119,7 @@ class Material(_OfLimits):  # type: ignore[misc, valid-type]
     description: str = ""
     sn_points: tuple[tuple[float, float], ...] = ()
     temperature_dependence: Any = None
+    energy_wear: Any = None
     records: Mapping[str, Value] = field(
         default_factory=dict, compare=False, repr=False, hash=False
     )
@@ -148,6 +154,8 @@ class Material(_OfLimits):  # type: ignore[misc, valid-type]
             object.__setattr__(
                 self, FIELD, read_table(self.temperature_dependence, vars(self), where)
             )
+        if self.energy_wear is not None:
+            object.__setattr__(self, ENERGY_WEAR, read_energy_wear(self.energy_wear, where))
 
     @property
     def fatigue_limit(self) -> float:
@@ -197,10 +205,16 @@ class Material(_OfLimits):  # type: ignore[misc, valid-type]
 
     @property
     def guesses_of_limits(self) -> dict[str, Value]:
-        """Return the values of single limits that are guesses without a source."""
-        return {
+        """Return the values of single limits that are guesses without a source, or that were
+        measured on another material.
+        """
+        guesses = {
             name: own for name, own in self.records.items() if own.placeholder and name in OF_LIMITS
         }
+        law: EnergyWear | None = self.energy_wear
+        if law is not None and law.placeholder:
+            guesses[ENERGY_WEAR] = Value(law.work_rate[-1], "-", law.source, True, law.note)
+        return guesses
 
     @property
     def ends_of_limits(self) -> dict[str, tuple[float, float]]:
@@ -289,6 +303,8 @@ class Material(_OfLimits):  # type: ignore[misc, valid-type]
         }
         if self.temperature_dependence is not None:
             values[FIELD] = self.temperature_dependence.as_dict()
+        if self.energy_wear is not None:
+            values[ENERGY_WEAR] = self.energy_wear.as_dict()
         return {key: value for key, value in values.items() if value not in (None, "", ())}
 
     def with_sources(self) -> dict[str, Any]:

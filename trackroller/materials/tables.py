@@ -6,6 +6,8 @@ from math import nan
 
 from trackroller.errors import InputError
 from trackroller.materials.database import MaterialDatabase
+from trackroller.materials.energy_wear import FIELD as ENERGY_WEAR
+from trackroller.materials.energy_wear import LISTS
 from trackroller.materials.properties import PROPERTIES, REQUIRED, Value
 
 
@@ -75,6 +77,15 @@ def material_details(database: MaterialDatabase, name: str) -> list[dict[str, st
             )
             row = _row(f"{key} over temperature", f"{PROPERTIES[key].symbol}(theta)", record)
             rows.append(row | {"value": ", ".join(f"{value:g}" for value in column)})
+    law = material.energy_wear
+    if law is not None:
+        over = ", ".join(f"{value:g}" for value in law.work_rate)
+        note = f"at {over} N/mm2"
+        if law.note:
+            note += f"; {law.note}"
+        record = Value(law.loss[0], LISTS["loss"].unit, law.source, law.placeholder, note)
+        row = _row(ENERGY_WEAR, "", record)
+        rows.append(row | {"value": ", ".join(f"{value:g}" for value in law.loss)})
     return [*rows, _row("fatigue_limit", "sigma_D", limit), _row("woehler_exponent", "k", exponent)]
 
 
@@ -91,9 +102,14 @@ def friction_rows(database: MaterialDatabase) -> list[dict[str, str]]:
         for level, record in levels.items():
             head = {"pair": " - ".join(names), "level": level}
             rows.append(head | _row("friction_coefficient", "mu", record))
-    for (body, partner), record in database.wear_table.items():
-        head = {"pair": f"{body} on {partner}", "level": f"wear of {body}"}
-        rows.append(head | _row("wear_coefficient", PROPERTIES["wear_coefficient"].symbol, record))
+    symbol = PROPERTIES["wear_coefficient"].symbol
+    for (body, partner), classes in database.wear_table.items():
+        for hardness, record in classes.items():
+            level = f"wear of {body}"
+            if hardness is not None:
+                level += " of {:g} to {:g} HB".format(*hardness)
+            head = {"pair": f"{body} on {partner}", "level": level}
+            rows.append(head | _row("wear_coefficient", symbol, record))
     return rows
 
 

@@ -108,7 +108,7 @@ def number_or_nan(
         allowed = "0, and numbers between 1e-307 and 1e308 in size"
         remedy = "Write 0 if it is meant."
         if "large" in str(exc):
-            remedy = "Write inf for infinity."
+            remedy = "Write a smaller number."
         raise InputError(field, value, allowed, remedy, str(exc)) from None
     except ValueError:
         return math.nan

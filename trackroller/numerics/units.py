@@ -9,6 +9,7 @@ import re
 from collections.abc import Callable, Mapping
 from typing import Any
 
+from trackroller.environment import take_in
 from trackroller.errors import InputError
 
 _NUMBER = r"[-+]?(?:(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?|\.?inf)"
@@ -131,6 +132,7 @@ def in_unit(number: float, unit: str, target: str, field: str, difference: bool 
 
 @functools.cache
 def _registry() -> Any:
+    take_in("pint")
     import pint  # noqa: PLC0415 - takes half a second, and only a quantity in another unit needs it
 
     registry: Any = pint.UnitRegistry(cache_folder=None)

@@ -20,7 +20,7 @@ from typing import Any
 import numpy as np
 
 from trackroller.contact.friction_laws import FrictionLaw, at_rest, law_of
-from trackroller.errors import Collector, InputError, check_names, checked_text, unknown_name
+from trackroller.errors import Collector, InputError, check_names, text_of, unknown_name
 from trackroller.files import files_beside, read_text
 from trackroller.materials import load_database
 from trackroller.materials.properties import PROPERTIES, check_number
@@ -149,11 +149,9 @@ def checked_patch(values: Mapping[str, Any]) -> PatchInputs:
     with wrong.part():
         fields["accuracy"] = _rung(given.get("accuracy", "standard"))
     with wrong.part():
-        fields["name"] = checked_text(str(given.get("name", "patch")), "name")
+        fields["name"] = text_of(given.get("name"), "name", "patch")
     with wrong.part():
-        fields["description"] = checked_text(
-            str(given.get("description", "")), "description", lines=True
-        )
+        fields["description"] = text_of(given.get("description"), "description", lines=True)
     wrong.check()
     own_friction = at_rest(fields["law"])
     if own_friction is not None:
@@ -233,7 +231,7 @@ def _body(value: Any, field: str) -> Body:
     """
     own = mapping_of(value)
     if isinstance(own, Mapping) and set(own) - {"name"} == set(ELASTIC):
-        name = checked_text(str(own.get("name", "given")), f"{field}.name")
+        name = text_of(own.get("name"), f"{field}.name", "given")
         return Body(name, *(check_number(PROPERTIES[key], own[key], field) for key in ELASTIC))
     material = load_database().material(own, field)
     return Body(material.name, material.youngs_modulus, material.poisson_ratio)
@@ -272,7 +270,13 @@ def _check_discs(columns: Mapping[str, np.ndarray]) -> None:
     """Refuse discs without a width or with spin, a width of other bodies, and discs beside other
     bodies.
     """
-    flat = columns.get("curvature_lateral", np.ones(())) == 0.0
+    lateral = columns.get("curvature_lateral", np.ones(()))
+    least = PATCH_FIELDS["curvature_rolling"].lower
+    flat = lateral == 0.0
+    if np.any(~flat & (lateral < least)):
+        allowed = f"0, which stands for two discs, or a curvature >= {least:g} 1/mm"
+        remedy = "Write curvature_lateral: 0, and width: 10 mm."
+        raise InputError("curvature_lateral", float(lateral[lateral > 0].min()), allowed, remedy)
     if flat.any() and not flat.all():
         allowed = "0 in all cases, which stands for two discs, or > 0 in all cases"
         remedy = "Solve discs and ellipses one after the other."

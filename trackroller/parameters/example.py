@@ -6,6 +6,8 @@ import math
 from collections.abc import Iterable, Mapping
 from typing import Any
 
+import numpy as np
+
 from trackroller.parameters.numbers import OF_LIMITS, PARAMETERS
 
 
@@ -28,8 +30,7 @@ LASTING: dict[str, Any] = {
     "roller_profile_radius": -6.4,
     **dict.fromkeys(("roller_material", "guide_material"), "1.7225-quenched-tempered"),
 }
-# a default that means "none of it" is no value that somebody has to be told
-ABSENT = ("layer_flexibility",)
+_ABSENT = ("layer_flexibility",)  # parameters whose 0 means that there is none of it
 _PAIR = ("material_pair", "roller_material", "guide_material")
 
 
@@ -75,7 +76,30 @@ def used_of(values: Mapping[str, Any], names: Iterable[str]) -> dict[str, Any]:
     replaced = ""
     if all(levels):
         replaced = "roller_profile_radius"
-    return {name: values[name] for name in names if name != replaced and name not in ABSENT}
+    return {
+        name: values[name]
+        for name in names
+        if name != replaced and not is_absent(name, values[name])
+    }
+
+
+def is_absent(name: str, value: Any) -> bool:
+    """Return whether a value means that there is none of what a parameter describes, so that nobody
+    has to be told.
+
+    Parameters
+    ----------
+    name : str
+        Name of a parameter.
+    value : number or array
+        Its value, or its values in several cases.
+
+    Examples
+    --------
+    >>> is_absent("layer_flexibility", 0.0), is_absent("motor_force", 0.0)
+    (True, False)
+    """
+    return name in _ABSENT and not np.any(value)
 
 
 def with_unit(name: str, value: Any) -> str:

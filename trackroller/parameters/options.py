@@ -307,8 +307,8 @@ _OPTIONS = (
         "how friction wears a surface",
         {
             "archard": "depth by pressure times slip (wear_coefficient of the pair)",
-            "energy": "loss of mass by frictional work (wear_table of the case, density of the "
-            "material)",
+            "energy": "loss of mass by frictional work (wear_table of the case, or energy_wear of "
+            "both materials; density of the material)",
         },
     ),
     Option(

@@ -18,21 +18,22 @@ from trackroller.errors import InputError
 if TYPE_CHECKING:
     import xarray as xr
 
+    from trackroller.fit.catalogue import CatalogueFit
     from trackroller.fit.fitted import Fit
     from trackroller.results.results import Results
 
 
-def write(result: xr.Dataset | Results | Fit, path: Path | str) -> Path:
+def write(result: xr.Dataset | Results | Fit | CatalogueFit, path: Path | str) -> Path:
     """Write the page of a result as HTML or PDF.
 
     Parameters
     ----------
-    result : xarray.Dataset, Results or Fit
+    result : xarray.Dataset, Results, Fit or CatalogueFit
         Results of a study, its data set in `study.nc`, or what `trackroller.solve` returned for its
         design: the report. The data set of one case: its sheet. What `solve_spectrum`,
-        `trackroller.carriage`, `trackroller.wear`, `trackroller.patch`, `trackroller.fit_sn` or
-        `trackroller.fit_bench` returned: the page of a load spectrum, of a carriage, of wear, of
-        one contact, of a fit.
+        `trackroller.carriage`, `trackroller.wear`, `trackroller.patch`, `trackroller.fit_sn`,
+        `trackroller.fit_bench` or `trackroller.fit_catalogue` returned: the page of a load
+        spectrum, of a carriage, of wear, of one contact, of a fit, of a rule.
     path : Path or str
         The file to write, .html or .pdf. It stands alone and can be sent by mail. A browser prints
         the PDF: Chromium, Chrome or Edge.
@@ -62,12 +63,16 @@ def write(result: xr.Dataset | Results | Fit, path: Path | str) -> Path:
     if isinstance(result, xr.Dataset) and "study" not in result.attrs:
         return _write_without_study(result, path)
 
+    from trackroller.fit.catalogue import CatalogueFit
     from trackroller.fit.fitted import Fit
     from trackroller.report.pages.fit import write_fit
+    from trackroller.report.pages.life_rule import write_rule
     from trackroller.report.show import results_of, write_report  # heavy: pandas, SciPy and SALib
 
     if isinstance(result, Fit):
         return write_fit(result, path)
+    if isinstance(result, CatalogueFit):
+        return write_rule(result, path)
     return write_report(results_of(result, "report"), path)
 
 
@@ -93,7 +98,7 @@ def _write_without_study(ds: xr.Dataset, path: Path | str) -> Path:
 
 
 class _CallableModule(ModuleType):
-    def __call__(self, result: xr.Dataset | Results | Fit, path: Path | str) -> Path:
+    def __call__(self, result: xr.Dataset | Results | Fit | CatalogueFit, path: Path | str) -> Path:
         return write(result, path)
 
 

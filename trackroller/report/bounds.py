@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from trackroller.results.answer import Answer, Required
-from trackroller.results.lives import FIRST_LIMIT, OF_PAIR
+from trackroller.results.life_columns import FIRST_LIMIT, OF_PAIR
 
 
 def required_of_output(answer: Answer) -> list[Required]:
@@ -13,7 +13,9 @@ def required_of_output(answer: Answer) -> list[Required]:
     verdict is.
     """
     name = answer.output[0]
-    names = OF_PAIR if name == FIRST_LIMIT[0] else (name,)
+    names: tuple[str, ...] = (name,)
+    if name == FIRST_LIMIT[0]:
+        names = OF_PAIR
     return [one for one in answer.required if one.output in names]
 
 

@@ -78,7 +78,9 @@ def build_report(folder: StudyFolder, tell: Callable[[str], None] = log.info) ->
 
 def place_of_pages(results: Results, folder: StudyFolder) -> Path:
     """Return the folder for figures and pages of a study: its own, or `unfinished/` in it."""
-    return folder.root / UNFINISHED if results.unfinished else folder.root
+    if results.unfinished:
+        return folder.root / UNFINISHED
+    return folder.root
 
 
 def draw_solved(folder: StudyFolder, out_dir: Path | None = None) -> tuple[Path, list[Any]]:

@@ -113,12 +113,12 @@ class Headline:
     """A headline: the answer itself, and what follows it."""
 
     lead: str
-    rest: str = ""
+    ending: str = ""
 
     @property
     def text(self) -> str:
         """Return the whole headline."""
-        return self.lead + self.rest
+        return self.lead + self.ending
 
 
 def headline_of(answer: Answer) -> Headline:
@@ -148,7 +148,10 @@ def decide(answer: Answer) -> Headline:
         clauses = [_value_said(answer), *_goals_said(head), *_other_rules(head)]
         return Headline(lead, f": {'; '.join(clauses)}.")
     shares = _known(head, "share") and bool(answer.required)
-    clauses = _shares(answer) if shares and answer.kind != "none" else _lasts(answer)
+    if shares and answer.kind != "none":
+        clauses = _shares(answer)
+    else:
+        clauses = _lasts(answer)
     return _joined(lead, [*_up_to(answer), *clauses, *_nearest(answer)])
 
 
@@ -177,19 +180,27 @@ def _either(answer: Answer) -> str:
 
 
 def _none(answer: Answer) -> str:
-    wanted = _wanted(answer.required)
-    lead = f"None {wanted}" if wanted else "None holds every condition"
+    verb = _verb_of_requirement(answer.required)
+    lead = "None holds every condition"
+    if verb:
+        lead = f"None {verb}"
     nearest = answer.headline.get("nearest")
-    return f"{lead}; nearest {_name(answer, nearest['name'])}" if nearest else lead
+    if nearest:
+        return f"{lead}; nearest {_name(answer, nearest['name'])}"
+    return lead
 
 
 def _measure(answer: Answer) -> str:
-    asked = answer.headline.get("measure")
-    if not asked:
+    measure = answer.headline.get("measure")
+    if not measure:
         return f"Open whether {_leader(answer)} meets it"
-    of = f" of {asked['of']}" if asked.get("of") else ""
-    on = f" on {asked['on']}" if asked.get("on") else ""
-    return f"Measure the {plain(asked['what'])}{of}{on}"
+    of = ""
+    if measure.get("of"):
+        of = f" of {measure['of']}"
+    on = ""
+    if measure.get("on"):
+        on = f" on {measure['on']}"
+    return f"Measure the {plain(measure['what'])}{of}{on}"
 
 
 def _give(answer: Answer) -> str:
@@ -209,7 +220,9 @@ def _cannot_tell(answer: Answer) -> str:
     head = answer.headline
     if head.get("not_judged"):
         return f"Cannot tell: the model does not judge {_part(head['not_judged'], 'conditions')}"
-    return f"Cannot tell: {CAUSES[head['why']]}" if head.get("why") in CAUSES else "Cannot tell"
+    if head.get("why") in CAUSES:
+        return f"Cannot tell: {CAUSES[head['why']]}"
+    return "Cannot tell"
 
 
 CAUSES = {
@@ -245,13 +258,20 @@ def _lasts(answer: Answer) -> list[str]:
     if tenth and answer.kind not in SILENT:
         clauses.append(f"{tenth} in nine of ten drawn conditions{_then(head)}")
     elif _known(head, "low") and answer.kind not in SILENT and _has_leader(answer):
-        whose = f"{_leader(answer)} " if answer.kind in ("a_or_b", "measure", "give") else ""
-        place = "" if _one_condition(answer) else " at its worst condition"
+        whose = ""
+        if answer.kind in ("a_or_b", "measure", "give"):
+            whose = f"{_leader(answer)} "
+        place = " at its worst condition"
+        if _one_condition(answer):
+            place = ""
         clauses.append(f"{whose}{_value_said(answer)}{place}{_then(head)}")
         if answer.kind in ELSEWHERE:
             clauses += _goals_said(head)
     clauses += _turn(head)
-    others = [] if answer.kind == "cannot_tell" else _other_rules(head)
+    if answer.kind == "cannot_tell":
+        others = []
+    else:
+        others = _other_rules(head)
     return [*clauses, *others, *_required(answer)]
 
 
@@ -289,11 +309,13 @@ def _tenth(answer: Answer) -> str:
 def _shares(answer: Answer) -> list[str]:
     """Return the share of the drawn conditions that meets the requirement."""
     head = answer.headline
-    said = (
+    share = (
         f"{_share(head)} of {head['n']:,} drawn conditions {_reach(answer.required)}{_beyond(head)}"
     )
-    wanted = [f"{percent(head['wanted'])} are wanted"] if _known(head, "wanted") else []
-    return [said, *wanted, *_other_rules(head)]
+    notes = []
+    if _known(head, "wanted"):
+        notes = [f"{percent(head['wanted'])} are wanted"]
+    return [share, *notes, *_other_rules(head)]
 
 
 def _up_to(answer: Answer) -> list[str]:
@@ -306,7 +328,9 @@ def _up_to(answer: Answer) -> list[str]:
     ends = [_level(column, head[key]) for key in ("from_on", "up_to") if _known(head, key)]
     if len(ends) == 2:
         return [f"every condition meets it for {title} {' to '.join(ends)}"]
-    word = "up to" if _known(head, "up_to") else "from"
+    word = "from"
+    if _known(head, "up_to"):
+        word = "up to"
     return [f"every condition meets it {word} {title} {ends[0]}"]
 
 
@@ -315,13 +339,16 @@ def _nearest(answer: Answer) -> list[str]:
     near = answer.headline.get("nearest")
     if answer.kind != "none" or not near:
         return []
-    clauses = (
-        _reached(near) if answer.required else [f"holds {near['holds']} of {near['of']} conditions"]
-    )
+    if answer.required:
+        clauses = _reached(near)
+    else:
+        clauses = [f"holds {near['holds']} of {near['of']} conditions"]
     if _known(near, "low") and near["low"] > 0 and near["holds"] == near["of"]:
         clauses[0] += f", {_output(answer, near['low'])} at the worst"
     fails = _short(near.get("fails"))
-    return [*clauses, f"fails at {fails}"] if fails else clauses
+    if fails:
+        return [*clauses, f"fails at {fails}"]
+    return clauses
 
 
 def _reached(near: Mapping[str, Any]) -> list[str]:
@@ -331,13 +358,13 @@ def _reached(near: Mapping[str, Any]) -> list[str]:
 
 def _turn(head: Mapping[str, Any]) -> list[str]:
     """Return where a placeholder turns the answer."""
-    asked = head.get("measure")
-    if not asked or not _known(asked, "turn"):
+    measure = head.get("measure")
+    if not measure or not _known(measure, "turn"):
         return []
-    units = (
-        f" {unit_text(asked['units'])}" if asked.get("units") not in (None, "", "1", "-") else ""
-    )
-    return [f"the answer turns at {grouped(asked['turn'], 2)}{units}"]
+    units = ""
+    if measure.get("units") not in (None, "", "1", "-"):
+        units = f" {unit_text(measure['units'])}"
+    return [f"the answer turns at {grouped(measure['turn'], 2)}{units}"]
 
 
 def how_sure(answer: Answer) -> Headline:
@@ -347,9 +374,14 @@ def how_sure(answer: Answer) -> Headline:
         return Headline(_cannot_tell(answer), ".")
     if _known(head, "share"):
         lead = f"{_share(head)} of the {head['n']:,} drawn conditions {_reach(answer.required)}"
-        wanted = [f"{percent(head['wanted'])} are wanted"] if _known(head, "wanted") else []
-        clauses = [*wanted, *_worst(answer), *_other_rules(head)]
-        return Headline(lead, f"; {'; '.join(clauses)}." if clauses else ".")
+        notes = []
+        if _known(head, "wanted"):
+            notes = [f"{percent(head['wanted'])} are wanted"]
+        clauses = [*notes, *_worst(answer), *_other_rules(head)]
+        end = "."
+        if clauses:
+            end = f"; {'; '.join(clauses)}."
+        return Headline(lead, end)
     named = _name(answer, _first(head.get("names")))
     lead = capital(f"{named} meets {head['meets']:,} of {head['of']:,} loads".strip())
     return _joined(lead, [*_worst(answer), *_other_rules(head), *_required(answer)])
@@ -364,11 +396,14 @@ def _worst(answer: Answer) -> list[str]:
 
 def what_matters(answer: Answer) -> Headline:
     """Say the two largest factors, and from what to what the larger one takes the output."""
-    head, words = answer.headline, lowered(answer.output[1])
+    head = answer.headline
+    words = lowered(answer.output[1])
     factors = list(head.get("factors", ()))
     if not factors:
         return Headline(f"No factor changes the {words}", ".")
-    verb = "decides" if len(factors) == 1 else "decide"
+    verb = "decide"
+    if len(factors) == 1:
+        verb = "decides"
     lead = capital(f"{listing([lowered(one['title']) for one in factors])} {verb} the {words}")
     if _known(factors[0], "index") and _in_shares(answer):
         sizes = f"index {listing([_index(one) for one in factors])}"
@@ -426,11 +461,9 @@ def which_model(answer: Answer) -> Headline:
         "verdict and order": "Verdict and order change with the contact model",
     }[changes]
     if not answer.required:
-        lead = (
-            "The order changes with the contact model"
-            if changes
-            else "The order is the same by each contact model"
-        )
+        lead = "The order is the same by each contact model"
+        if changes:
+            lead = "The order changes with the contact model"
     if changes:
         return _joined(lead, [_by_models(answer, models)])
     clauses = []
@@ -445,7 +478,9 @@ def _by_models(answer: Answer, models: Sequence[Mapping[str, Any]]) -> str:
     shown = models[:MOST_NAMES]
     leaders = [_name(answer, one.get("leader") or {}) for one in shown]
     if len(set(leaders)) == 1:
-        first = f"{leaders[0]} is " if leaders[0] and answer.required else ""
+        first = ""
+        if leaders[0] and answer.required:
+            first = f"{leaders[0]} is "
         return first + ", ".join(_by_model(answer, one, "") for one in shown)
     return ", ".join(
         _by_model(answer, one, leader) for one, leader in zip(shown, leaders, strict=True)
@@ -456,7 +491,9 @@ def _by_model(answer: Answer, model: Mapping[str, Any], leader: str) -> str:
     value = carried_range(
         model["low"], model.get("high", model["low"]), model.get("error", math.nan)
     )
-    state = str(model["verdict"]) if answer.required and model.get("verdict") else ""
+    state = ""
+    if answer.required and model.get("verdict"):
+        state = str(model["verdict"])
     what = " ".join(text for text in (leader, state) if text)
     return f"{what} by {model['model']} ({_measured(value, answer.output[2])})".strip()
 
@@ -471,10 +508,12 @@ def best(answer: Answer) -> Headline:
         return _front(answer, designs)
     first = designs[0]
     values = [one for one in (*first["goals"], *first["required"]) if not one.get("is_choice")]
-    accuracy = f" at {head['accuracy']}" if head.get("accuracy") else ""
-    clauses = (
-        [f"{listing([_goal(one) for one in values])}{_beyond(head)}{accuracy}"] if values else []
-    )
+    accuracy = ""
+    if head.get("accuracy"):
+        accuracy = f" at {head['accuracy']}"
+    clauses = []
+    if values:
+        clauses = [f"{listing([_goal(one) for one in values])}{_beyond(head)}{accuracy}"]
     binds = _short(head.get("binds"))
     if binds:
         clauses.append(f"bound by {binds}")
@@ -490,9 +529,9 @@ def _without_design(answer: Answer) -> Headline:
     near = answer.headline.get("nearest")
     if answer.kind == "none" or not near:
         return _joined(_none(answer), _nearest(answer))
-    only = (
-        "Solve finer: only the error leaves" if answer.kind == "solve_finer" else "A range leaves"
-    )
+    only = "A range leaves"
+    if answer.kind == "solve_finer":
+        only = "Solve finer: only the error leaves"
     return _joined(
         f"{only} {_name(answer, near['name'])} open", [*_reached(near), *_required(answer)]
     )
@@ -500,26 +539,29 @@ def _without_design(answer: Answer) -> Headline:
 
 def _front(answer: Answer, designs: Sequence[Mapping[str, Any]]) -> Headline:
     count = {1: "one design", 2: "two designs"}.get(len(designs), "three designs")
-    said = []
+    texts = []
     for design in designs[:3]:
-        knee = " (knee)" if design.get("at") == "knee" else ""
+        knee = ""
+        if design.get("at") == "knee":
+            knee = " (knee)"
         goals = ", ".join(_goal(one, units_only=True) for one in design["goals"])
-        said.append(f"{goals}{knee}")
+        texts.append(f"{goals}{knee}")
     stopped = [design for design in designs if design.get("stopped")]
     tail = {0: "", 1: "; the search stopped before one corner"}.get(
         len(stopped), "; the search stopped before both corners"
     )
-    return Headline(f"No requirement, {count}", f": {'; '.join(said)}{tail}.")
+    return Headline(f"No requirement, {count}", f": {'; '.join(texts)}{tail}.")
 
 
 def _goal(goal: Mapping[str, Any], units_only: bool = False) -> str:
     """Return a goal with its value; the words of a life are left to its hours."""
     value = carried(goal["value"])
     if goal["units"] == "h":
-        years = years_of(goal["value"])
-        return _noted(f"{value} h", [years] if years else [])
+        return _noted(f"{value} h", [years_of(goal["value"])])
     text = _measured(value, goal["units"])
-    return text if units_only and text != value else f"{lowered(goal['words'])} {text}"
+    if units_only and text != value:
+        return text
+    return f"{lowered(goal['words'])} {text}"
 
 
 def how_it_behaves(answer: Answer) -> Headline:
@@ -542,13 +584,18 @@ def _ends(head: Mapping[str, Any]) -> list[str]:
         return []
     of = int(head.get("of", 0))
     if len(ends) == 1 and ends[0]["count"] == of:
-        return [f"{_end(ends[0])} ends {'every case' if of > 1 else 'it'}"]
-    said = [f"{_end(one)} ends {one['count']:,}" for one in ends[:3]]
-    return [f"{', '.join(said)} of {of:,} cases"]
+        whole = "it"
+        if of > 1:
+            whole = "every case"
+        return [f"{_end(ends[0])} ends {whole}"]
+    texts = [f"{_end(one)} ends {one['count']:,}" for one in ends[:3]]
+    return [f"{', '.join(texts)} of {of:,} cases"]
 
 
 def _end(end: Mapping[str, Any]) -> str:
-    return f"{end['limit']} of the {end['body']}" if end.get("body") else str(end["limit"])
+    if end.get("body"):
+        return f"{end['limit']} of the {end['body']}"
+    return str(end["limit"])
 
 
 def roller(answer: Answer) -> Headline:
@@ -556,11 +603,7 @@ def roller(answer: Answer) -> Headline:
     head = answer.headline
     if answer.kind in STOPS:
         return STOPS[answer.kind](answer)
-    unsure = (
-        f"if the model holds ({listing(head['not_judged'])}: not judged), "
-        if head["not_judged"]
-        else ""
-    )
+    unsure = _if_model_holds(head)
     clauses = [*_open_limits(head), *_unknown_hours(answer), *_required_states(answer)]
     if answer.kind == "no_life":
         lasts = "no limit with hours is known"
@@ -599,13 +642,18 @@ def _first_limits(head: Mapping[str, Any]) -> str:
     """Return the limits that may end one roller first, behind its life."""
     if math.isinf(head["low"]):
         return ""
-    body = "" if head["body"] == "pair" else f" of the {head['body']}"
+    if head["body"] == "pair":
+        body = ""
+    else:
+        body = f" of the {head['body']}"
     return f", then {' or '.join(head['ends'])}{body}"
 
 
 def _limit_of(one: Mapping[str, Any]) -> str:
     """Return a limit with its body; the pair is not named."""
-    return one["limit"] if one["body"] == "pair" else f"{one['limit']} of the {one['body']}"
+    if one["body"] == "pair":
+        return one["limit"]
+    return f"{one['limit']} of the {one['body']}"
 
 
 def _bodies_of(listed: Sequence[Mapping[str, Any]]) -> list[str]:
@@ -619,16 +667,23 @@ def _open_limits(head: Mapping[str, Any]) -> list[str]:
     if not listed:
         return []
     named = ", ".join(_limit_of(one) for one in listed[:2])
-    more = f" and {len(listed) - 2} more" if len(listed) > 2 else ""
-    return [f"open by placeholders: {named}{more}"]
+    further = ""
+    if len(listed) > 2:
+        further = f" and {len(listed) - 2} more"
+    return [f"open by placeholders: {named}{further}"]
 
 
 def _unknown_hours(answer: Answer) -> list[str]:
     """Say whose hours are not known; they count for nothing then."""
     head = answer.headline
-    clauses = [f"the hours of the {head['unknown']} are not known"] if head["unknown"] else []
+    clauses = []
+    if head["unknown"]:
+        clauses = [f"the hours of the {head['unknown']} are not known"]
     if head["unrated"]:
-        whose = "" if len(head["unrated"]) > 1 else f" of the {head['unrated'][0]}"
+        if len(head["unrated"]) > 1:
+            whose = ""
+        else:
+            whose = f" of the {head['unrated'][0]}"
         clauses.append(
             f"fatigue{whose} at {percent(answer.facts['probability'])} failed is not known"
         )
@@ -664,27 +719,30 @@ def _breaks(answer: Answer) -> Headline:
     broken = answer.headline["broken"]
     use = max(one["use"] for one in broken)
     bodies = listing(_bodies_of(broken))
-    verb = "break" if len(broken) > 1 or " and " in bodies else "breaks"
+    verb = "breaks"
+    if len(broken) > 1 or " and " in bodies:
+        verb = "break"
     lead = f"The {bodies} {verb} at once"
-    return Headline(
-        lead, f": peak stress {percent(use)} of what the material bears." if use == use else "."
-    )
+    end = "."
+    if not math.isnan(use):
+        end = f": peak stress {percent(use)} of what the material bears."
+    return Headline(lead, end)
 
 
 def _skids(answer: Answer) -> Headline:
     """Say between which motor forces the roller rolls."""
     head = answer.headline
-    rest = [
+    others = [
         f"friction transmits {grouped(head['motor_low'], 3)} to {grouped(head['motor_high'], 3)} N"
     ]
     if not math.isfinite(head["motor_low"] + head["motor_high"]):
-        rest = ["the motor force exceeds what friction transmits"]
+        others = ["the motor force exceeds what friction transmits"]
     if answer.kind == "skids" and math.isfinite(head["low"]):
-        rest.append(f"{_roller_life(answer)}{_first_limits(head)}")
+        others.append(f"{_roller_life(answer)}{_first_limits(head)}")
     if head["exceeded"]:
         worst = head["exceeded"][0]
-        rest.append(f"{_limit_of(worst)} exceeded ({percent(worst['use'])})")
-    return Headline("The roller skids", f": {'; '.join(rest)}.")
+        others.append(f"{_limit_of(worst)} exceeded ({percent(worst['use'])})")
+    return Headline("The roller skids", f": {'; '.join(others)}.")
 
 
 def spectrum(answer: Answer) -> Headline:
@@ -692,25 +750,21 @@ def spectrum(answer: Answer) -> Headline:
     it.
     """
     head = answer.headline
-    clauses = (
-        [f"the life of the {body} is not known" for body in head["unknown"]]
-        if answer.kind != "unknown"
-        else []
-    )
+    clauses = []
+    if answer.kind != "unknown":
+        clauses = [f"the life of the {body} is not known" for body in head["unknown"]]
     clauses = [*_exceeded_in_blocks(head["exceeded"]), *_open_limits(head), *clauses]
     if answer.kind == "breaks":
         broken = head["broken"]
         bodies = listing(_bodies_of(broken))
-        verb = "break" if len(_bodies_of(broken)) > 1 else "breaks"
+        verb = "breaks"
+        if len(_bodies_of(broken)) > 1:
+            verb = "break"
         blocks = listing(list(dict.fromkeys(name for one in broken for name in one["blocks"])))
         return _joined(f"The {bodies} {verb} at once in {blocks}", clauses)
     if answer.kind == "unknown":
         return _joined("The life is not known", [*head["why"][:2], *clauses])
-    unsure = (
-        f"if the model holds ({listing(head['not_judged'])}: not judged), "
-        if head["not_judged"]
-        else ""
-    )
+    unsure = _if_model_holds(head)
     if head["state"]:
         required = answer.required[0]
         clauses.append(f"required {_amount(required, required.least)}: {head['state']}")
@@ -729,9 +783,13 @@ def wear(answer: Answer) -> Headline:
     """
     head = answer.headline
     depths = [f"{body} {grouped(depth, 3)} µm" for body, depth in head["depths"].items()]
-    worn = f"{listing(depths)} worn" if depths else "neither body has worn"
+    worn = "neither body has worn"
+    if depths:
+        worn = f"{listing(depths)} worn"
     lead = f"{worn} after {grouped(head['travel'], 3)} km ({_hours_said(head['hours'])})"
-    notes = ["placeholders"] if head["guessed"] else []
+    notes = []
+    if head["guessed"]:
+        notes = ["placeholders"]
     pressures = f"{grouped(head['pressure_first'], 3)} → {grouped(head['pressure_last'], 3)} MPa"
     clauses = [f"pressure of contact {head['contact']} {pressures}"]
     most = head["pressure_most"]
@@ -771,39 +829,41 @@ def carriage(answer: Answer) -> Headline:
         lead = (
             f"Roller {head['roller']} carries most, {grouped(head['force'], 3)} N in {head['case']}"
         )
-    clauses = ["the life of no roller is known"] if answer.kind == "no_life" else []
+    clauses = []
+    if answer.kind == "no_life":
+        clauses = ["the life of no roller is known"]
     return _joined(lead, [*clauses, *margins])
 
 
 def _carriage_lasts(answer: Answer, margins: Sequence[str]) -> Headline:
     """Say which roller ends first; a limit that is exceeded comes before it."""
     head = answer.headline
-    years = years_of(head["low"], head["high"])
-    life = _noted(f"{carried_range(head['low'], head['high'])} h", [years] if years else [])
-    unsure = (
-        f"if the model holds ({listing(head['not_judged'])}: not judged), "
-        if head["not_judged"]
-        else ""
-    )
-    lasts = f"{unsure}roller {head['roller']} ends first: {life}, {grouped(head['km'], 3)} km"
-    clauses = [f"then {head['limit']} of the {head['body']}"] if head["limit"] else []
+    life = _life_to_end(head)
+    lasts = f"roller {head['roller']} ends first: {life}, {grouped(head['km'], 3)} km"
+    lasts = f"{_if_model_holds(head)}{lasts}"
+    clauses = []
+    if head["limit"]:
+        clauses = [f"then {head['limit']} of the {head['body']}"]
     if _known(head, "part"):
         clauses.append(f"{percent(head['part'])} of it by {head['case']}")
     if head["unknown"]:
         clauses.append(f"the life of {listing(head['unknown'])} is not known")
     if head["state"]:
-        of = f" of {listing(head['of'])}" if head["of"] else ""
+        of = ""
+        if head["of"]:
+            of = f" of {listing(head['of'])}"
         clauses.append(f"required {_bound(answer.required[0], answer)}{of}: {head['state']}")
         margins = ()  # its table has them
     if not head["exceeded"]:
         return _joined(capital(lasts), [*clauses, *margins])
     worst = head["exceeded"][0]
-    amount = (
-        f"{grouped(worst['km'], 2)} km"
-        if _known(worst, "km")
-        else f"{grouped(worst['hours'], 2)} h"
-    )
-    after = f", after {amount} by its rule" if _known(worst, "km") or _known(worst, "hours") else ""
+    if _known(worst, "km"):
+        amount = f"{grouped(worst['km'], 2)} km"
+    else:
+        amount = f"{grouped(worst['hours'], 2)} h"
+    after = ""
+    if _known(worst, "km") or _known(worst, "hours"):
+        after = f", after {amount} by its rule"
     lead = f"{capital(_limit_of(worst))} {worst['roller']} exceeded ({percent(worst['use'])})"
     return Headline(lead, f"{after}. {'; '.join([capital('otherwise ' + lasts), *clauses])}.")
 
@@ -815,14 +875,25 @@ def end_of_carriage(answer: Answer) -> str:
     head = answer.headline
     if answer.kind != "lasts" or not head["limit"]:
         return ""
-    place = (
-        f"the rail under roller {head['roller']}"
-        if head["body"] == "guide"
-        else f"roller {head['roller']}"
-    )
-    years = years_of(head["low"], head["high"])
-    life = _noted(f"{carried_range(head['low'], head['high'])} h", [years] if years else [])
-    return f"The carriage lasts {life}: then {place} reaches its first limit, {head['limit']}."
+    if head["body"] == "guide":
+        place = f"the rail under roller {head['roller']}"
+    else:
+        place = f"roller {head['roller']}"
+    reaches = f"then {place} reaches its first limit, {head['limit']}"
+    return f"The carriage lasts {_life_to_end(head)}: {reaches}."
+
+
+def _life_to_end(head: Mapping[str, Any]) -> str:
+    """Return the range of a life in hours, with its years where the duty is known."""
+    text = f"{carried_range(head['low'], head['high'])} h"
+    return _noted(text, [years_of(head["low"], head["high"])])
+
+
+def _if_model_holds(head: Mapping[str, Any]) -> str:
+    """Return the condition of a life that the model does not judge; '' for one that it judges."""
+    if not head["not_judged"]:
+        return ""
+    return f"if the model holds ({listing(head['not_judged'])}: not judged), "
 
 
 PEAK = 1.01  # times the pressure at both ends, from which on a larger one between them is said
@@ -830,8 +901,7 @@ PEAK = 1.01  # times the pressure at both ends, from which on a larger one betwe
 
 def _hours_said(hours: float) -> str:
     """Return hours with their years where the duty is known."""
-    years = years_of(hours)
-    return f"{grouped(hours, 3)} h{f', {years}' if years else ''}"
+    return ", ".join(filter(None, [f"{grouped(hours, 3)} h", years_of(hours)]))
 
 
 def _exceeded_in_blocks(listed: Sequence[Mapping[str, Any]]) -> list[str]:
@@ -839,15 +909,14 @@ def _exceeded_in_blocks(listed: Sequence[Mapping[str, Any]]) -> list[str]:
     if not listed:
         return []
     worst = listed[0]
-    use = (
-        f" ({percent(worst['use'])})"
-        if worst["use"] is not None and math.isfinite(worst["use"])
-        else ""
-    )
-    more = f" and {len(listed) - 1} more" if len(listed) > 1 else ""
-    return [
-        f"{_limit_of(worst)} exceeded{use} in {listing(list(worst['blocks'])[:MOST_NAMES])}{more}"
-    ]
+    use = ""
+    if worst["use"] is not None and math.isfinite(worst["use"]):
+        use = f" ({percent(worst['use'])})"
+    further = ""
+    if len(listed) > 1:
+        further = f" and {len(listed) - 1} more"
+    blocks = listing(list(worst["blocks"])[:MOST_NAMES])
+    return [f"{_limit_of(worst)} exceeded{use} in {blocks}{further}"]
 
 
 STOPS: dict[str, Callable[[Answer], Headline]] = {  # kinds of one roller without a usual life
@@ -887,9 +956,10 @@ WARNING_HEADS = {
 
 def warning_line(caution: Caution) -> str:
     """Return a warning in one line: its head, how many rows of how many, and where."""
-    where = f": {caution.where}" if caution.where else ""
-    rows = warning_rows(caution)
-    return f"{WARNING_HEADS[caution.code]}{f', {rows}' if rows else ''}{where}"
+    head = ", ".join(filter(None, [WARNING_HEADS[caution.code], warning_rows(caution)]))
+    if caution.where:
+        return f"{head}: {caution.where}"
+    return head
 
 
 def warning_rows(caution: Caution) -> str:
@@ -903,8 +973,12 @@ def warning_rows(caution: Caution) -> str:
 
 def _joined(lead: str, clauses: Sequence[str]) -> Headline:
     """Return a headline of its lead and the clauses behind it."""
-    separator = "; " if ":" in lead else ": "
-    return Headline(lead, f"{separator if clauses else ''}{'; '.join(clauses)}.")
+    if not clauses:
+        return Headline(lead, ".")
+    separator = ": "
+    if ":" in lead:
+        separator = "; "
+    return Headline(lead, f"{separator}{'; '.join(clauses)}.")
 
 
 def _known(head: Mapping[str, Any], key: str) -> bool:
@@ -916,7 +990,9 @@ def _known(head: Mapping[str, Any], key: str) -> bool:
 
 
 def _first(names: Any) -> Mapping[str, Any]:
-    return names[0] if names else {}
+    if names:
+        return names[0]
+    return {}
 
 
 def _name(answer: Answer, name: Mapping[str, Any]) -> str:
@@ -929,20 +1005,28 @@ def _name(answer: Answer, name: Mapping[str, Any]) -> str:
         alone = isinstance(level, str) and len(texts) == 1
         alone = alone or (key in NAMED and not isinstance(level, str))
         text = _level(column, level)
-        spoken.append(text if alone else f"{lowered(column.title)} {text}")
+        if not alone:
+            text = f"{lowered(column.title)} {text}"
+        spoken.append(text)
     shown = spoken[:1]
     for text in spoken[1:]:
         if len(" ".join([*shown, text]).split()) > NAME_WORDS:
             break
         shown.append(text)
     left = len(spoken) - len(shown)
-    return ", ".join(shown) + (f" and {left} more" if left else "")
+    further = ""
+    if left:
+        further = f" and {left} more"
+    return ", ".join(shown) + further
 
 
 def _column_of(key: str) -> Column:
     """Return the column of a choice that the table does not show."""
     known = parameter_of(key)
-    units = "" if known is None or known.unit == "-" else known.unit
+    if known is None or known.unit == "-":
+        units = ""
+    else:
+        units = known.unit
     return Column(key, long_name(key), units, kind="level", role="name")
 
 
@@ -969,7 +1053,9 @@ def _alternatives(answer: Answer, names: Sequence[Mapping[str, Any]]) -> str:
 def _level(column: Column, level: Any) -> str:
     """Return a level with its unit."""
     if isinstance(level, bool):
-        return "yes" if level else "no"
+        if level:
+            return "yes"
+        return "no"
     if column.name in NAMED or isinstance(level, str):
         return level_text(column.name, level)
     unit = unit_text(column.units).replace("–", "")
@@ -977,7 +1063,9 @@ def _level(column: Column, level: Any) -> str:
 
 
 def _plain_level(level: Any) -> str:
-    return level if isinstance(level, str) else grouped(float(level))
+    if isinstance(level, str):
+        return level
+    return grouped(float(level))
 
 
 def _value_said(answer: Answer) -> str:
@@ -990,8 +1078,12 @@ def _notes(head: Mapping[str, Any]) -> list[str]:
     """Return what stands in brackets behind a value: why nothing lasts, and whether the value is
     extrapolated.
     """
-    reason = [str(head["ends"])] if head.get("ends") and not head.get("body") else []
-    return [*reason, "extrapolated"] if head.get("extrapolated") else reason
+    reason = []
+    if head.get("ends") and not head.get("body"):
+        reason = [str(head["ends"])]
+    if head.get("extrapolated"):
+        return [*reason, "extrapolated"]
+    return reason
 
 
 def _output(
@@ -999,7 +1091,9 @@ def _output(
 ) -> str:
     """Return a value of the output of an answer, or a range; hours alone say that it is a life."""
     value = _value(answer, low, high, notes)
-    return value if answer.output[2] == "h" else f"{lowered(answer.output[1])} {value}"
+    if answer.output[2] == "h":
+        return value
+    return f"{lowered(answer.output[1])} {value}"
 
 
 def _value(answer: Answer, low: float, high: float | None = None, notes: Sequence[str] = ()) -> str:
@@ -1012,8 +1106,7 @@ def _value(answer: Answer, low: float, high: float | None = None, notes: Sequenc
     text = carried_range(low, high, answer.headline.get("error", math.nan), bounds)
     if answer.output[2] != "h":
         return _noted(_measured(text, answer.output[2]), notes)
-    years = years_of(low, high)
-    return _noted(f"{text} h", [years, *notes] if years else notes)
+    return _noted(f"{text} h", [years_of(low, high), *notes])
 
 
 def _measured(text: str, units: str) -> str:
@@ -1023,11 +1116,17 @@ def _measured(text: str, units: str) -> str:
 
 
 def _noted(text: str, notes: Sequence[str]) -> str:
-    return f"{text} ({', '.join(notes)})" if notes else text
+    """Return a text with notes in brackets behind it; blank notes are left out."""
+    words = ", ".join(note for note in notes if note)
+    if words:
+        return f"{text} ({words})"
+    return text
 
 
 def _beyond(head: Mapping[str, Any]) -> str:
-    return " (extrapolated)" if head.get("extrapolated") else ""
+    if head.get("extrapolated"):
+        return " (extrapolated)"
+    return ""
 
 
 def _then(head: Mapping[str, Any]) -> str:
@@ -1070,8 +1169,10 @@ def _bound(required: Required, answer: Answer) -> str:
     the table's; one life needs no words.
     """
     lives = sum(one.units == "h" for one in answer.required)
-    is_plain = required.output == answer.output[0] or (required.units == "h" and lives == 1)
-    words = "" if is_plain else f"{lowered(required.words)} "
+    if required.output == answer.output[0] or (required.units == "h" and lives == 1):
+        words = ""
+    else:
+        words = f"{lowered(required.words)} "
     if math.isfinite(required.least) and math.isfinite(required.most):
         return f"{words}{grouped(required.least, 6)} to {_amount(required, required.most)}"
     if math.isfinite(required.most):
@@ -1083,8 +1184,10 @@ def _bound(required: Required, answer: Answer) -> str:
 
 def _amount(required: Required, value: float) -> str:
     text = _measured(as_required(value), required.units)
-    years = years_of(value) if required.units == "h" else ""
-    return _noted(text, [years] if years else [])
+    years = ""
+    if required.units == "h":
+        years = years_of(value)
+    return _noted(text, [years])
 
 
 def _reach(required: Sequence[Required]) -> str:
@@ -1099,7 +1202,7 @@ def _reach(required: Sequence[Required]) -> str:
     return f"reach {_amount(one, one.least)}"
 
 
-def _wanted(required: Sequence[Required]) -> str:
+def _verb_of_requirement(required: Sequence[Required]) -> str:
     """Return the verb of one candidate that meets a requirement: 'reaches 5,000 h'; '' without a
     requirement.
     """
@@ -1123,7 +1226,10 @@ def _share(head: Mapping[str, Any]) -> str:
 def _part(lost: Mapping[str, Any], what: str) -> str:
     """Return 'COUNT of ALL conditions', with the levels that hold them where they are short."""
     where = _short(lost.get("where"))
-    return f"{lost['count']:,} of {lost['of']:,} {what}" + (f" ({where})" if where else "")
+    place = ""
+    if where:
+        place = f" ({where})"
+    return f"{lost['count']:,} of {lost['of']:,} {what}" + place
 
 
 def _short(text: Any) -> str:

@@ -14,13 +14,15 @@ import subprocess
 import tempfile
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-import jinja2
 from markupsafe import Markup, escape
 
 from trackroller.errors import InputError, WorkError
 from trackroller.study.store.put import put, put_text
+
+if TYPE_CHECKING:
+    from jinja2 import Template
 
 _KINDS = {".svg": "image/svg+xml", ".png": "image/png"}
 _BROWSERS = ("chromium", "chromium-browser", "google-chrome", "chrome", "msedge")
@@ -48,10 +50,12 @@ def render(template: str, content: dict[str, Any], **filters: Callable[..., Any]
 
 
 @functools.cache
-def _template(name: str, filters: tuple[tuple[str, Callable[..., Any]], ...]) -> jinja2.Template:
+def _template(name: str, filters: tuple[tuple[str, Callable[..., Any]], ...]) -> Template:
     """Return a compiled template; compiling takes half of the time of a drawing, which the live
     page repeats.
     """
+    import jinja2  # noqa: PLC0415 - heavy, and a terminal needs no template
+
     environment = jinja2.Environment(
         loader=jinja2.PackageLoader("trackroller.report", "templates"),
         autoescape=True,
@@ -131,7 +135,7 @@ def write_page(path: Path, text: str) -> Path:
 
 
 def _browser() -> str | None:
-    return next((found for name in _BROWSERS if (found := shutil.which(name))), None)
+    return next(filter(None, map(shutil.which, _BROWSERS)), None)
 
 
 def _print(text: str, path: Path) -> None:
@@ -139,11 +143,14 @@ def _print(text: str, path: Path) -> None:
     with tempfile.TemporaryDirectory(
         prefix="trackroller-print-", ignore_cleanup_errors=True
     ) as place:
-        page, made = Path(place, "page.html"), Path(place, "page.pdf")
+        page = Path(place, "page.html")
+        pdf = Path(place, "page.pdf")
         page.write_text(text, encoding="utf-8")
         # root has no sandbox
-        alone = ["--no-sandbox"] if getattr(os, "geteuid", lambda: 1)() == 0 else []
-        own = [f"--user-data-dir={place}/profile", f"--print-to-pdf={made}", page.as_uri()]
+        alone = []
+        if getattr(os, "geteuid", lambda: 1)() == 0:
+            alone = ["--no-sandbox"]
+        own = [f"--user-data-dir={place}/profile", f"--print-to-pdf={pdf}", page.as_uri()]
         try:
             subprocess.run(
                 [str(_browser()), *_PRINT, *alone, *own],
@@ -151,7 +158,7 @@ def _print(text: str, path: Path) -> None:
                 timeout=_PATIENCE,
                 check=True,
             )
-            shutil.copyfile(made, path)
+            shutil.copyfile(pdf, path)
         except (subprocess.SubprocessError, OSError) as exc:
             raise WorkError(
                 f"{_browser()} does not print the page: {exc}. Give a name that ends in .html."

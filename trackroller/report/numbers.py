@@ -70,15 +70,23 @@ def number(value: float, figures: int = 0) -> str:
     if math.isnan(value):
         return "–"
     if math.isinf(value):
-        return "∞" if value > 0 else "−∞"
-    small = 1e-3 <= abs(value) < 1e4 or value == 0
-    figures = figures or (4 if small else 3)
+        if value > 0:
+            return "∞"
+        return "−∞"
+    if figures == 0:
+        figures = 3
+        if 1e-3 <= abs(value) < 1e4 or value == 0:
+            figures = 4
     value = float(f"{value:.{figures}g}") + 0.0  # -0 is 0
     size = abs(value)
     if size >= 1e7 or (0 < size < 1e-3):
         mantissa, exponent = f"{value:e}".split("e")
         return f"{float(mantissa):g}·10{str(int(exponent)).translate(_RAISED)}".replace("-", "−")
-    return (f"{value:,.0f}" if size >= 1e4 else f"{value:.10g}").replace("-", "−")
+    if size >= 1e4:
+        text = f"{value:,.0f}"
+    else:
+        text = f"{value:.10g}"
+    return text.replace("-", "−")
 
 
 def rounded(value: float, figures: int = 3) -> str:
@@ -99,7 +107,11 @@ def near(value: float, span: float) -> str:
 
 def life(value: float) -> str:
     """Write a life: three figures, 'unlimited', or 'unknown'."""
-    return "unknown" if math.isnan(value) else "unlimited" if value == math.inf else rounded(value)
+    if math.isnan(value):
+        return "unknown"
+    if value == math.inf:
+        return "unlimited"
+    return rounded(value)
 
 
 _duty: ContextVar[Mapping[str, float] | None] = ContextVar("duty", default=None)
@@ -124,7 +136,11 @@ def lives_in_years(function: Callable[..., Any]) -> Callable[..., Any]:
 
     @functools.wraps(function)
     def on_its_duty(result: Any, *args: Any, **settings: Any) -> Any:
-        with on_duty(duty_of(result) if hasattr(result, "data_vars") else result.config.duty):
+        if hasattr(result, "data_vars"):
+            duty = duty_of(result)
+        else:
+            duty = result.config.duty
+        with on_duty(duty):
             return function(result, *args, **settings)
 
     return on_its_duty
@@ -159,17 +175,24 @@ def year_text(lasts: float) -> str:
     """
     if not lasts >= LEAST_YEARS:
         return "–"
-    return f"> {count(MOST_YEARS)}" if lasts > MOST_YEARS else rounded(lasts, 2)
+    if lasts > MOST_YEARS:
+        return f"> {count(MOST_YEARS)}"
+    return rounded(lasts, 2)
 
 
 def _year_words(*ends: str) -> str:
     """Write years, or a range of them: '1 year', '1 to 4.2 years'."""
-    return f"{' to '.join(dict.fromkeys(ends))} year{'s' * (set(ends) != {'1'})}"
+    unit = "years"
+    if set(ends) == {"1"}:
+        unit = "year"
+    return f"{' to '.join(dict.fromkeys(ends))} {unit}"
 
 
 def life_unit(unit: str, value: float) -> str:
     """Return the unit behind a life, with its years if it is in hours; see `hour_unit`."""
-    return hour_unit(value) if unit == "h" else unit
+    if unit == "h":
+        return hour_unit(value)
+    return unit
 
 
 def lasting(value: float, unit: str = "", beyond: bool = False) -> str:
@@ -178,7 +201,14 @@ def lasting(value: float, unit: str = "", beyond: bool = False) -> str:
     """
     if value == math.inf:
         return f"{NO_FAILURE} ({BEYOND})"
-    return f"{rounded(value)} {life_unit(unit, value)}".strip() + (f" ({BEYOND})" if beyond else "")
+    return _with_beyond(f"{rounded(value)} {life_unit(unit, value)}".strip(), beyond)
+
+
+def _with_beyond(text: str, beyond: bool) -> str:
+    """Return a life with the words for one that lies beyond the data of its rule."""
+    if beyond:
+        return f"{text} ({BEYOND})"
+    return text
 
 
 def between(low: float, high: float, beyond: bool = False) -> str:
@@ -189,16 +219,17 @@ def between(low: float, high: float, beyond: bool = False) -> str:
         return lasting(low, "h", beyond)
     if math.isinf(high):
         return f"{lasting(low, 'h')} or more ({BEYOND})"
-    return f"{rounded(low)} to {rounded(high)} {range_unit(low, high)}" + (
-        f" ({BEYOND})" if beyond else ""
-    )
+    return _with_beyond(f"{rounded(low)} to {rounded(high)} {range_unit(low, high)}", beyond)
 
 
 def years_of(low: float, high: float | None = None) -> str:
     """Return a life in hours, or a range of lives, in years: '4.2 years'; '' without a duty or
     below a year.
     """
-    unit = hour_unit(low) if high is None or high == low else range_unit(low, high)
+    if high is None or high == low:
+        unit = hour_unit(low)
+    else:
+        unit = range_unit(low, high)
     return unit.removeprefix("h").strip(" ()")
 
 
@@ -226,9 +257,9 @@ class Life(float):
 
     def __new__(cls, value: float, beyond: bool = False) -> Life:
         """Return the life, marked if it lies beyond the S-N data."""
-        made = super().__new__(cls, value)
-        made.beyond = bool(beyond)
-        return made
+        life = super().__new__(cls, value)
+        life.beyond = bool(beyond)
+        return life
 
 
 def count(cases: int) -> str:
@@ -256,8 +287,11 @@ def share(part: int, whole: int) -> str:
     ('33 %', '99.98 %', '100 %')
     """
     if part in (0, whole):
-        return "100 %" if part else "0 %"
-    exact, digits = 100 * part / whole, 0
+        if part:
+            return "100 %"
+        return "0 %"
+    exact = 100 * part / whole
+    digits = 0
     while not 0.5 * 10**-digits < exact < 100 - 10**-digits:
         digits += 1
     return f"{exact:.{digits}f} %"
@@ -294,29 +328,28 @@ def percent(value: float, low: float = math.nan, high: float = math.nan) -> str:
     """
     if math.isinf(value):
         return "unlimited"
-    exact, half = 100 * max(0.0, value), 50 * (high - low)
+    exact = 100 * max(0.0, value)
+    half = 50 * (high - low)
     if math.isfinite(half):
         if 100 * min(value - low, high - value) < LOPSIDED * half:
             return f"{percent(value)} ({percent(low).removesuffix(' %')} to {percent(high)})"
-        return (
-            f"{exact:.0f} ± {max(1.0, half):.0f} %"
-            if half >= 0.5 or exact >= 1
-            else f"{exact:.1f} ± {half:.1f} %"
-        )
-    return (
-        f"{exact:.0f} %"
-        if exact == 0 or 1 <= exact <= 99 or exact > 100
-        else f"{exact:.2g} %"
-        if exact < 1
-        else f"{exact:.4g} %"
-    )
+        if half >= 0.5 or exact >= 1:
+            return f"{exact:.0f} ± {max(1.0, half):.0f} %"
+        return f"{exact:.1f} ± {half:.1f} %"
+    if exact == 0 or 1 <= exact <= 99 or exact > 100:
+        return f"{exact:.0f} %"
+    if exact < 1:
+        return f"{exact:.2g} %"
+    return f"{exact:.4g} %"
 
 
 def percent_up(error: float) -> str:
     """Write an error in percent with two figures, rounded up, so that no error is larger: '1.5 %'
     for 0.01482.
     """
-    step = 10.0 ** (math.floor(math.log10(100 * error)) - 1) if error > 0 else 1.0
+    step = 1.0
+    if error > 0:
+        step = 10.0 ** (math.floor(math.log10(100 * error)) - 1)
     return f"{rounded(math.ceil(100 * error / step - 1e-9) * step, 2)} %"
 
 
@@ -325,7 +358,10 @@ def times(ratio: float) -> str:
     '2.64-fold'.
     """
     ratio = max(ratio, 1 / ratio)
-    return f"{rounded(ratio, 3 if ratio < 10 else 2)}-fold"
+    figures = 2
+    if ratio < 10:
+        figures = 3
+    return f"{rounded(ratio, figures)}-fold"
 
 
 def capital(text: str) -> str:
@@ -335,7 +371,9 @@ def capital(text: str) -> str:
 
 def lowered(text: str) -> str:
     """Write the first letter small, unless the word is a symbol or a name such as POM."""
-    return text[:1].lower() + text[1:] if text[1:2].islower() else text
+    if text[1:2].islower():
+        return text[:1].lower() + text[1:]
+    return text
 
 
 def shortened(words: Sequence[str], most: int = 4) -> str:
@@ -359,15 +397,21 @@ def row_unit(units: str) -> str:
 def year_words() -> str:
     """Return the hours of a year on the duty: '4,000 h are 1 year'; '' without a duty."""
     duty = _duty.get()
-    return f"{grouped(1 / years(1.0, duty), 3)} h are 1 year" if duty else ""
+    if duty:
+        return f"{grouped(1 / years(1.0, duty), 3)} h are 1 year"
+    return ""
 
 
 def head_unit(units: str) -> str:
     """Return the unit at the head of a column or axis; behind hours the hours of a year, if the
     duty is known.
     """
-    duty = _duty.get() if units == "h" else None
-    return f"h; {rounded(1 / years(1.0, duty))} h = 1 year" if duty else unit_text(units)
+    duty = None
+    if units == "h":
+        duty = _duty.get()
+    if duty:
+        return f"h; {rounded(1 / years(1.0, duty))} h = 1 year"
+    return unit_text(units)
 
 
 def with_unit(text: str, units: str) -> str:
@@ -377,8 +421,13 @@ def with_unit(text: str, units: str) -> str:
 
 def quantity(value: float, units: str, figures: int = 3) -> str:
     """Write a number with its unit, for running text; pure numbers stand alone."""
-    unit = hour_unit(value) if units == "h" else unit_text(units)
-    return f"{rounded(value, figures)} {unit if unit != '–' else ''}".strip().replace(" °", "°")
+    if units == "h":
+        unit = hour_unit(value)
+    else:
+        unit = unit_text(units)
+    if unit == "–":
+        unit = ""
+    return f"{rounded(value, figures)} {unit}".strip().replace(" °", "°")
 
 
 def as_given(value: float, units: str) -> str:
@@ -407,9 +456,11 @@ def symbol(text: str) -> str:
     if "/" in text:
         return "/".join(symbol(part) for part in text.split("/"))
     letter, _, index = text.partition("_")
-    is_greek = len(letter) > 1 and letter.islower()  # alpha, mu
-    letter = f"\\{letter}" if is_greek else letter
-    return f"${letter}_\\mathrm{{{index}}}$" if index else f"${letter}$"
+    if len(letter) > 1 and letter.islower():  # alpha, mu
+        letter = f"\\{letter}"
+    if index:
+        return f"${letter}_\\mathrm{{{index}}}$"
+    return f"${letter}$"
 
 
 def factor_label(name: str) -> str:
@@ -430,19 +481,25 @@ def level_text(name: str, value: Any, unit: bool = True, words: bool = True) -> 
     alone.
     """
     if isinstance(value, str):
-        return short(name, value) if name in MAPPING_FIELDS else _pair(value)
+        if name in MAPPING_FIELDS:
+            return short(name, value)
+        return _pair(value)
     value = float(value)
     words = words and unit
     if name == "motor_force" and words:
-        return (
-            "free rolling"
-            if value == 0
-            else f"{'driven' if value < 0 else 'braked'} {number(value)} N"
-        )
+        if value == 0:
+            return "free rolling"
+        drive = "braked"
+        if value < 0:
+            drive = "driven"
+        return f"{drive} {number(value)} N"
     if name == "guide_curve_radius" and words:
         if math.isinf(value):
             return "straight"
-        return f"{'outer' if value > 0 else 'inner'} curve {number(abs(value))} mm"
+        side = "inner"
+        if value > 0:
+            side = "outer"
+        return f"{side} curve {number(abs(value))} mm"
     parameter = parameter_of(name)
     if not unit or parameter is None or parameter.unit == "-":
         return number(value)
@@ -453,29 +510,27 @@ def setting(name: str, value: Any) -> str:
     """Write a factor and its level, as 'friction coefficient 0.3' or 'driven −30 N'."""
     text = level_text(name, value)
     spoken = name in NAMED and not (name == "guide_curve_radius" and text == "straight")
-    return (
-        text
-        if spoken
-        else "straight track"
-        if name == "guide_curve_radius"
-        else f"{long_name(name)} {text}"
-    )
+    if spoken:
+        return text
+    if name == "guide_curve_radius":
+        return "straight track"
+    return f"{long_name(name)} {text}"
 
 
 def _pair(label: str) -> str:
     parts = label.split(" / ")
-    return (
-        f"{parts[0]} on itself" if len(parts) == 2 and parts[0] == parts[1] else " on ".join(parts)
-    )
+    if len(parts) == 2 and parts[0] == parts[1]:
+        return f"{parts[0]} on itself"
+    return " on ".join(parts)
 
 
 def _bounded(part: int, whole: int) -> str:
     """Write a probability as a share; nearer to 0 or 1 than `LEAST_CHANCE`, as a bound."""
     if 0 < whole - part < LEAST_CHANCE * whole:
         return f"over {100 * (1 - LEAST_CHANCE):g} %"
-    return (
-        f"below {100 * LEAST_CHANCE:g} %" if 0 < part < LEAST_CHANCE * whole else share(part, whole)
-    )
+    if 0 < part < LEAST_CHANCE * whole:
+        return f"below {100 * LEAST_CHANCE:g} %"
+    return share(part, whole)
 
 
 def chance(value: float, low: float = math.nan, high: float = math.nan, words: str = "") -> str:
@@ -488,7 +543,9 @@ def chance(value: float, low: float = math.nan, high: float = math.nan, words: s
     text, *ends = (
         _bounded(round(v * whole), whole) for v in (value, low, high) if math.isfinite(v)
     )
-    return f"{text} ({words}{' to '.join(ends)})" if ends else text
+    if ends:
+        return f"{text} ({words}{' to '.join(ends)})"
+    return text
 
 
 COARSE = 0.1  # error from which two figures are written
@@ -511,7 +568,9 @@ def carried(value: float, error: float = math.nan, beside: Sequence[float] = ())
     >>> carried(211634.0, 0.48), carried(211634.0, 0.02), carried(419.96, 0.002, [420.0])
     ('210,000', '212,000', '419.96')
     """
-    figures = 2 if error >= COARSE else 3
+    figures = 3
+    if error >= COARSE:
+        figures = 2
     others = [
         grouped(other, MOST_FIGURES) for other in beside if math.isfinite(other) and other != value
     ]
@@ -553,4 +612,7 @@ def as_required(value: float) -> str:
     ('10,500', '417')
     """
     given = math.isclose(value, float(f"{value:.6g}"), rel_tol=1e-12)
-    return grouped(value, 6 if given else 3)
+    figures = 3
+    if given:
+        figures = 6
+    return grouped(value, figures)

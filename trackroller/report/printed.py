@@ -27,7 +27,10 @@ def print_answer(answer: Answer) -> None:
 def print_below_headline(answer: Answer) -> None:
     """Print what `print_answer` prints below the headline."""
     with on_duty(answer.facts.get("duty")):
-        printed = MOST_ROWS if rows_before_fold(answer) < len(answer.table) else len(answer.table)
+        if rows_before_fold(answer) < len(answer.table):
+            printed = MOST_ROWS
+        else:
+            printed = len(answer.table)
         _print_rows(rows_of(answer), most=printed)
         left = len(answer.table) - printed
         if left > 0:
@@ -57,6 +60,9 @@ def _print_rows(table: Rows, title: str | None = None, most: int = MOST_ROWS) ->
     right = [i for i, head in enumerate(table.heads) if "n" in head.kind.split()]
     if rows:
         names = sum("u" in head.kind.split() for head in table.heads)
-        print_table(heads, rows, right, title, max(1, names) if names < len(heads) else 1)
+        name_columns = 1
+        if names < len(heads):
+            name_columns = max(1, names)
+        print_table(heads, rows, right, title, name_columns)
     if table.shared:
         print_text("; ".join(table.shared), "all rows")

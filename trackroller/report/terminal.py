@@ -20,9 +20,11 @@ def room() -> int:
     """Return the letters of a line: COLUMNS, else those of the terminal; a file or a pipe has no
     limit.
     """
-    asked = os.environ.get("COLUMNS", "").lstrip("0")
+    columns = os.environ.get("COLUMNS", "").lstrip("0")
     # not `Console.is_terminal`: that is true for a file, too, where FORCE_COLOR asks for colours
-    return Console().width if asked.isdigit() or sys.stdout.isatty() else WIDE
+    if columns.isdigit() or sys.stdout.isatty():
+        return Console().width
+    return WIDE
 
 
 def print_table(
@@ -49,7 +51,10 @@ def print_table(
     columns = [[head, *(row[i] for row in rows)] for i, head in enumerate(heads)]
     least = [_least(cells) for cells in columns]
     wide = sum(least[:names]) + FRAME * names > width / 2
-    repeated = [0] if wide else list(range(names))
+    if wide:
+        repeated = [0]
+    else:
+        repeated = list(range(names))
     parts = [list(repeated)]
     for i in range(len(repeated), len(heads)):
         if sum(least[j] + FRAME for j in (*parts[-1], i)) + 1 > width and len(parts[-1]) > len(
@@ -59,13 +64,18 @@ def print_table(
         parts[-1].append(i)
     console = Console(width=width, highlight=False, markup=False)
     for number, own in enumerate(parts):
-        table = Table(title=None if number else title, title_justify="left")
+        heading = title
+        if number:
+            heading = None
+        table = Table(title=heading, title_justify="left")
         spare = width - 1 - sum(least[i] + FRAME for i in own)
         for i in own:
-            more = max(0, min(spare, max(map(len, columns[i])) - least[i]))
-            spare -= more
-            table.add_column(heads[i], width=least[i] + more, overflow="fold")
-            table.columns[-1].justify = "right" if i in right else "left"
+            extra = max(0, min(spare, max(map(len, columns[i])) - least[i]))
+            spare -= extra
+            table.add_column(heads[i], width=least[i] + extra, overflow="fold")
+            table.columns[-1].justify = "left"
+            if i in right:
+                table.columns[-1].justify = "right"
         for row in rows:
             table.add_row(*(row[i] for i in own))
         console.print(table)
@@ -77,16 +87,23 @@ def _least(cells: Sequence[str]) -> int:
     """
     longest = max(map(len, cells))
     word = max((len(word) for cell in cells for word in cell.split()), default=0)
-    return longest if longest <= NARROW else max(word, NARROW)
+    if longest <= NARROW:
+        return longest
+    return max(word, NARROW)
 
 
 def print_text(text: str, head: str = "", to: TextIO | None = None) -> None:
     """Print a sentence after a head of its own column, broken between words where the line ends."""
+    first_indent = ""
+    indent = "  "
+    if head:
+        first_indent = f"{head:<9}"
+        indent = " " * 9
     lines = textwrap.wrap(
         text,
         room(),
-        initial_indent=f"{head:<9}" if head else "",
-        subsequent_indent=" " * 9 if head else "  ",
+        initial_indent=first_indent,
+        subsequent_indent=indent,
         break_long_words=False,
         break_on_hyphens=False,
     )

@@ -126,7 +126,11 @@ def _fields(name: str, value: Any) -> Iterator[tuple[str, Any]]:
         for place, one in enumerate(value, 1):
             yield from _fields(f"{name}.{place}", one)
     elif value is not None:
-        yield name, value if isinstance(value, (str, int, float)) else str(value)
+        if isinstance(value, (str, int, float)):
+            cell_value = value
+        else:
+            cell_value = str(value)
+        yield name, cell_value
 
 
 def _rows_sheet(answer: Answer) -> Table:
@@ -139,17 +143,17 @@ def _rows_sheet(answer: Answer) -> Table:
 def _sheet_of(name: str, title: str, table: pd.DataFrame, columns: Sequence[Column]) -> Table:
     """Return the rows of a table of a record as a sheet."""
     names = [one for column in columns for one in (column.name, column.until) if one]
-    kept = [one for one in dict.fromkeys(names) if one in table]
-    values = [table[one].astype(object).tolist() for one in kept]
-    return Table(name, title, kept, [list(row) for row in zip(*values, strict=True)])
+    names_kept = [one for one in dict.fromkeys(names) if one in table]
+    values = [table[one].astype(object).tolist() for one in names_kept]
+    return Table(name, title, names_kept, [list(row) for row in zip(*values, strict=True)])
 
 
 def _further_sheets(answer: Answer) -> list[Table]:
     """Return definitions of the columns, effects, ends and warnings."""
     heads = ["column", "title", "unit", "kind", "until", "definition"]
     every = [*answer.columns, *(one for part in answer.parts for one in part.columns)]
-    told = [[one.name, one.title, one.units, one.kind, one.until, one.meaning] for one in every]
-    sheets = [Table("columns", "Columns", heads, told)]
+    meanings = [[one.name, one.title, one.units, one.kind, one.until, one.meaning] for one in every]
+    sheets = [Table("columns", "Columns", heads, meanings)]
     sheets += [_sheet_of(part.name, part.title, part.table, part.columns) for part in answer.parts]
     effects = [
         [
@@ -225,7 +229,8 @@ def write_cases(table: pd.DataFrame, path: Path) -> Path:
 
 def write_results(results: Results, path: Path) -> Path:
     """Write the cases of a study with every limit, as a workbook or as CSV; see `write_cases`."""
-    data, dims = results.data, results.dims
+    data = results.data
+    dims = results.dims
     limits = [str(name) for name, variable in data.data_vars.items() if "limit" in variable.dims]
     columns = {}
     for name, part in parts_in(data, limits, dims).items():
@@ -243,7 +248,8 @@ def write_roller(ds: xr.Dataset, path: Path) -> Path:
     Further sheets hold the rest of its record: `headline`, `columns`, `warnings`, and one for each
     further table.
     """
-    inputs, example = record.inputs_of(ds), record.names_not_given(ds.attrs)
+    inputs = record.inputs_of(ds)
+    example = record.names_not_given(ds.attrs)
     own = record.radii_of(ds) | {name: value for name, value in inputs.items() if value is not None}
     units = dict.fromkeys(RADII, "mm")
     duty = duty_of(ds) or {}
@@ -257,7 +263,9 @@ def write_roller(ds: xr.Dataset, path: Path) -> Path:
         [name, _plain(value), units.get(name, unit_of(name)), sources[name]]
         for name, value in own.items()
     ]
-    by_strokes = {"hours_per_day": "strokes"} if strokes else {}
+    by_strokes = {}
+    if strokes:
+        by_strokes = {"hours_per_day": "strokes"}
     units_of_strokes = {"stroke": "m"}
     for name, value in (duty | strokes).items():
         rows.append([name, value, units_of_strokes.get(name, "-"), by_strokes.get(name, "given")])
@@ -266,17 +274,17 @@ def write_roller(ds: xr.Dataset, path: Path) -> Path:
     known = parts_in(
         ds, (str(name) for name, v in ds.data_vars.items() if v.dtype.kind in "fiu"), ()
     )
-    found = [
+    numbers = [
         (name, part.words, part.values(ds).item())
         for name, part in known.items()
         if "limit" not in part.at
     ]
-    told = [
+    meanings = [
         [name, words, in_words(name, [value])[0], unit_of(name)]
-        for name, words, value in found
+        for name, words, value in numbers
         if value == value
     ]
-    sheets.append(Table("results", "Results", ["result", "meaning", "value", "unit"], told))
+    sheets.append(Table("results", "Results", ["result", "meaning", "value", "unit"], meanings))
     answer = answer_of_roller(ds)
     limits = _rows_sheet(answer)
     sheets.append(Table("limits", "Limits", limits.heads, limits.rows))
@@ -286,7 +294,9 @@ def write_roller(ds: xr.Dataset, path: Path) -> Path:
 
 def _plain(value: Any) -> Any:
     """Return an input as a cell: a number, a name, or a mapping as JSON."""
-    return value if isinstance(value, (int, float, str)) else json.dumps(value, default=str)
+    if isinstance(value, (int, float, str)):
+        return value
+    return json.dumps(value, default=str)
 
 
 def unit_of(name: str) -> str:
@@ -298,11 +308,14 @@ def unit_of(name: str) -> str:
     >>> unit_of("radial_force"), unit_of("peak_stress_roller"), unit_of("regime")
     ('N', 'MPa', '-')
     """
-    if (parameter := parameter_of(name)) is not None:
+    parameter = parameter_of(name)
+    if parameter is not None:
         return parameter.unit
     if name not in PARTS and name.replace("years", "hours") in PARTS:
         return "year"
-    return unit_text(PARTS[name].variable.units).replace("–", "-") if name in PARTS else "-"
+    if name in PARTS:
+        return unit_text(PARTS[name].variable.units).replace("–", "-")
+    return "-"
 
 
 def in_words(name: str, values: Sequence[Any]) -> list[Any]:
@@ -318,12 +331,15 @@ def in_words(name: str, values: Sequence[Any]) -> list[Any]:
         key=len,
         default="",
     )
-    told: Callable[[Any], Any] = (
-        (lambda value: _WORDS[variable](int(value))) if variable else (lambda value: value)
-    )
-    return [
-        value if isinstance(value, float) and math.isnan(value) else told(value) for value in values
-    ]
+    if not variable:
+        return list(values)
+    return [_word_of(_WORDS[variable], value) for value in values]
+
+
+def _word_of(words: Callable[[int], str], value: Any) -> Any:
+    if isinstance(value, float) and math.isnan(value):
+        return value
+    return words(int(value))
 
 
 def _flags_set(bits: int) -> str:
@@ -332,7 +348,12 @@ def _flags_set(bits: int) -> str:
 
 
 def _word(words: Sequence[str]) -> Callable[[int], str]:
-    return lambda code: plain(words[code]) if 0 <= code < len(words) else str(code)
+    def word_of(code: int) -> str:
+        if 0 <= code < len(words):
+            return plain(words[code])
+        return str(code)
+
+    return word_of
 
 
 _WORDS: dict[str, Callable[[int], str]] = {
@@ -360,7 +381,9 @@ def _save(path: Path, tables: Sequence[Table], heads: int = 1) -> None:
     with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as file:
         file.comment = b"trackroller"  # which other programs drop as they save the workbook
         for name, (part, rows) in parts.items():
-            widths = [min(max(len(str(value)) + 3, 9), 40) for value in rows[0]] if rows else []
+            widths = []
+            if rows:
+                widths = [min(max(len(str(value)) + 3, 9), 40) for value in rows[0]]
             span = f"A{heads}:{_letters(len(widths))}{max(len(rows), heads)}"
             content = {
                 "part": part,
@@ -376,21 +399,28 @@ def _save(path: Path, tables: Sequence[Table], heads: int = 1) -> None:
 
 def _letters(column: int) -> str:
     """Return the letters of a column of a sheet, from 1."""
-    above, own = divmod(column - 1, 26) if column else (0, 0)
-    return (_letters(above) if above else "") + chr(ord("A") + own)
+    if column:
+        above, own = divmod(column - 1, 26)
+    else:
+        above = 0
+        own = 0
+    first_letters = ""
+    if above:
+        first_letters = _letters(above)
+    return first_letters + chr(ord("A") + own)
 
 
 def _figure(value: Any) -> str | None:
     """Return a finite number with all its figures, None for anything else."""
-    return (
-        repr(float(value))
-        if isinstance(value, (int, float, np.number)) and np.isfinite(value)
-        else None
-    )
+    if isinstance(value, (int, float, np.number)) and np.isfinite(value):
+        return repr(float(value))
+    return None
 
 
 def _printable(value: Any) -> str:
     """Return a text without the characters that XML forbids."""
-    return re.sub(
-        r"[\x00-\x08\x0b\x0c\x0e-\x1f]", " ", value if isinstance(value, str) else cell(value)
-    )
+    if isinstance(value, str):
+        text = value
+    else:
+        text = cell(value)
+    return re.sub(r"[\x00-\x08\x0b\x0c\x0e-\x1f]", " ", text)

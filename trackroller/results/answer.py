@@ -30,11 +30,18 @@ WARNINGS = {  # code -> what it means
     "at_end": "the named design stands at the end of a range, or the search stopped before it",
     "unlike": "loads, scatter or samples differ between the candidates",
     "guessed": "values of materials that nobody has measured",
-    "doubtful": "values that are unusual",
+    "doubtful": "values that are unusual, or that tests contradict",
     "flagged": "an assumption of the model or an accuracy is not kept",
 }
 # of a candidate; a limit has those of `trackroller.damage.verdict.STATES`
 STATES = ("met", "open", "missed", "none")
+
+
+def yes_or_blank(true: bool) -> str:
+    """Return the cell of a column that marks some rows: 'yes', or '' where it does not hold."""
+    if true:
+        return "yes"
+    return ""
 
 
 @dataclass(frozen=True)

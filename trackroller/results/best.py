@@ -16,17 +16,12 @@ from trackroller.errors import InputError, listing
 from trackroller.methods.optimise import nondominated_ranks
 from trackroller.parameters import BODIES, REGIMES
 from trackroller.parameters.carriage_fields import long_name_of, parameter_of
-from trackroller.results.answer import Answer, Caution, Column, Required
-from trackroller.results.answer_parts import (
-    case_cautions,
-    checks_left_out,
-    facts_of,
-    given_for_nothing,
-    not_given_words,
-)
+from trackroller.results.answer import Answer, Caution, Column, Required, yes_or_blank
 from trackroller.results.case_ranges import CaseRanges
 from trackroller.results.comparison import wilson
-from trackroller.results.judging import (
+from trackroller.results.life_columns import OF_PAIR, lacks_a_body
+from trackroller.results.requirement import required_of
+from trackroller.results.search_fitness import (
     Judged,
     Shares,
     beyond_data,
@@ -41,9 +36,14 @@ from trackroller.results.judging import (
     shares_of,
     shortfall,
 )
-from trackroller.results.lives import OF_PAIR, lacks_a_body
-from trackroller.results.requirement import required_of
 from trackroller.results.solved_cases import SAME_ENDS, SolvedCases
+from trackroller.results.study_facts import (
+    case_cautions,
+    checks_left_out,
+    facts_of,
+    given_for_nothing,
+    not_given_words,
+)
 from trackroller.roller.output_names import is_life
 from trackroller.study.design.levels import in_words
 from trackroller.study.file.search import judged_by
@@ -63,7 +63,7 @@ REQUIRED = "required_{}"  # column of the output of a requirement by its number
 
 
 @dataclass(frozen=True)
-class _Found:
+class _Outcome:
     """A search with its designs.
 
     Attributes
@@ -111,7 +111,7 @@ class _Found:
         return dict(self.search["goals"])
 
     @property
-    def wanted(self) -> bool:
+    def is_required(self) -> bool:
         """Return whether the designs have to meet a requirement."""
         return required(self.results)
 
@@ -152,10 +152,12 @@ class _Found:
         """Return the best design in each of several goals, and whether no step improves it, by its
         number.
         """
-        found: dict[int, bool] = {}
+        outcome: dict[int, bool] = {}
         for one in self.search.get("corners", ()):
-            found[int(one["design"])] = found.get(int(one["design"]), True) and bool(one["solved"])
-        return found
+            outcome[int(one["design"])] = outcome.get(int(one["design"]), True) and bool(
+                one["solved"]
+            )
+        return outcome
 
     @property
     def chosen(self) -> int:
@@ -174,7 +176,7 @@ class _Found:
         """
         if not self.usable:
             return []
-        if len(self.goals) == 1 or self.wanted:
+        if len(self.goals) == 1 or self.is_required:
             return [self.chosen]
         corners = list(self.corners)
         return list(dict.fromkeys([*corners[:1], self.chosen, *corners[1:]]))
@@ -188,7 +190,9 @@ class _Found:
         order = sorted(
             others, key=lambda number: tuple(np.nan_to_num(self.judged.costs[number], nan=np.inf))
         )
-        return list(dict.fromkeys([*self.named, *self.corners, *order])) if self.usable else []
+        if self.usable:
+            return list(dict.fromkeys([*self.named, *self.corners, *order]))
+        return []
 
 
 def answer_of_search(results: SolvedCases) -> Answer:
@@ -220,129 +224,140 @@ def answer_of_search(results: SolvedCases) -> Answer:
         raise InputError(
             "study", results.study.name, allowed, "Run the search to its end.", "holds no search"
         )
-    found = _Found(results, search)
-    kind = _kind(found)
-    first = next(iter(found.goals))
+    outcome = _Outcome(results, search)
+    kind = _kind(outcome)
+    first = next(iter(outcome.goals))
     _, units, words = goal_column(results, first)
-    table, columns = _table(found)
+    table, columns = _table(outcome)
     return Answer(
         question="best",
         kind=kind,
-        headline=_headline(found, kind),
+        headline=_headline(outcome, kind),
         output=(judged_by(first)[1], words, units),
         table=table,
         columns=columns,
         required=required_of(results),
-        picture=_picture(found),
+        picture=_picture(outcome),
         not_checked=checks_left_out(results),
         not_used=given_for_nothing(results),
         not_given=not_given_words(results),
-        warnings=_warnings(found),
-        facts=_facts(found),
+        warnings=_warnings(outcome),
+        facts=_facts(outcome),
     )
 
 
-def _kind(found: _Found) -> str:
+def _kind(outcome: _Outcome) -> str:
     """Return the kind of the answer, see `answer_of_search`."""
-    if not found.usable:
+    if not outcome.usable:
         return "none"
-    state = found.verdict[found.chosen]
-    if found.wanted and state == "open":
-        exact = shortfall(found.results, exact=True)[found.chosen]
-        return "open" if 1 <= exact < 2 else "solve_finer"
-    if found.wanted and state != "met":
+    state = outcome.verdict[outcome.chosen]
+    if outcome.is_required and state == "open":
+        exact = shortfall(outcome.results, exact=True)[outcome.chosen]
+        if 1 <= exact < 2:
+            return "open"
+        return "solve_finer"
+    if outcome.is_required and state != "met":
         return "none"
-    if len(found.goals) == 1:
+    if len(outcome.goals) == 1:
         return "one"
-    return "front_required" if found.wanted else "front"
+    if outcome.is_required:
+        return "front_required"
+    return "front"
 
 
-def _headline(found: _Found, kind: str) -> dict[str, Any]:
+def _headline(outcome: _Outcome, kind: str) -> dict[str, Any]:
     """Return the numbers and names of the headline."""
-    settled = kind in ("one", "front", "front_required")
-    head: dict[str, Any] = {
-        "designs": [_design(found, number) for number in found.named] if settled else []
-    }
-    if not found.usable:
+    head: dict[str, Any] = {"designs": []}
+    if kind in ("one", "front", "front_required"):
+        head["designs"] = [_design(outcome, number) for number in outcome.named]
+    if not outcome.usable:
         return head
-    chosen = found.chosen
+    chosen = outcome.chosen
     head |= {
         "accuracy": "reference",
-        "extrapolated": bool(_beyond(found)[chosen]),
-        "second": _second(found, chosen),
-        "exceeded": _exceeded(found, chosen),
-        "count": int(found.front.sum()),
+        "extrapolated": bool(_beyond(outcome)[chosen]),
+        "second": _second(outcome, chosen),
+        "exceeded": _exceeded(outcome, chosen),
+        "count": int(outcome.front.sum()),
     }
-    if not settled:
-        return head | {"nearest": _nearest(found, chosen)}
-    if found.wanted and _is_drawn(found):
-        own = _requirement(found, chosen)
+    if not head["designs"]:
+        return head | {"nearest": _nearest(outcome, chosen)}
+    if outcome.is_required and _is_drawn(outcome):
+        own = _requirement(outcome, chosen)
         head |= {key: own[key] for key in ("share", "share_low", "share_high")}
         head |= {
-            "wanted": max(one.wanted for one in found.shares),
-            "n": found.results.design.meta["inner_samples"],
+            "wanted": max(one.least for one in outcome.shares),
+            "n": outcome.results.design.meta["inner_samples"],
         }
     if kind != "front":
-        binds = _binds(found, chosen)[:2]
-        head["binds"] = listing(binds) if binds else ""
+        binds = _binds(outcome, chosen)[:2]
+        head["binds"] = ""
+        if binds:
+            head["binds"] = listing(binds)
     return head
 
 
-def _design(found: _Found, number: int) -> dict[str, Any]:
+def _design(outcome: _Outcome, number: int) -> dict[str, Any]:
     """Return a design of the headline: its choices and its goals at `reference`."""
     at = ""
-    if len(found.named) > 1:
-        at = "corner" if number in found.corners else "knee"
+    if len(outcome.named) > 1:
+        at = "knee"
+        if number in outcome.corners:
+            at = "corner"
     goals = []
-    for goal, value in zip(found.goals, found.optima[number]["reference"], strict=True):
-        _, units, words = goal_column(found.results, goal)
-        is_choice = judged_by(goal)[1] in found.results.design.meta["outer"]
+    for goal, value in zip(outcome.goals, outcome.optima[number]["reference"], strict=True):
+        _, units, words = goal_column(outcome.results, goal)
+        is_choice = judged_by(goal)[1] in outcome.results.design.meta["outer"]
         goals.append(
             {"words": words, "units": units, "value": float(value), "is_choice": is_choice}
         )
     required = []
-    for (_, own), value in zip(found.judges, found.optima[number]["required"][1], strict=True):
-        if own.output[0] not in {judged_by(goal)[1] for goal in found.goals} and not _is_drawn(
-            found
+    for (_, own), value in zip(outcome.judges, outcome.optima[number]["required"][1], strict=True):
+        if own.output[0] not in {judged_by(goal)[1] for goal in outcome.goals} and not _is_drawn(
+            outcome
         ):
             required.append({"words": own.output[1], "units": own.output[2], "value": float(value)})
-    stopped = _is_stopped(found, number)
+    stopped = _is_stopped(outcome, number)
     name = {
-        choice: _level(choice, value) for choice, value in choices_of(found.results, number).items()
+        choice: _level(choice, value)
+        for choice, value in choices_of(outcome.results, number).items()
     }
     return {"name": name, "at": at, "goals": goals, "required": required, "stopped": stopped}
 
 
-def _nearest(found: _Found, number: int) -> dict[str, Any]:
+def _nearest(outcome: _Outcome, number: int) -> dict[str, Any]:
     """Return the design that comes nearest to the requirement: its name, where it holds and meets,
     and its low end.
     """
-    rows = found.rows(number)
-    meets = min((own.sure[number] for own in found.shares), default=0.0)
+    rows = outcome.rows(number)
+    meets = min((own.sure[number] for own in outcome.shares), default=0.0)
     of = rows.stop - rows.start
-    worse = found.ranges.worse[rows]
-    low = float(worse.min() if found.ranges.rises else worse.max())
+    worse = outcome.ranges.worse[rows]
+    if outcome.ranges.rises:
+        low = float(worse.min())
+    else:
+        low = float(worse.max())
     return {
-        "name": _name(found, number),
-        "holds": int(found.results.held[rows].sum()),
+        "name": _name(outcome, number),
+        "holds": int(outcome.results.holds[rows].sum()),
         "meets": round(float(meets) * of),
         "of": of,
         "low": low,
-        "verdict": str(found.verdict[number]),
+        "verdict": str(outcome.verdict[number]),
     }
 
 
-def _name(found: _Found, number: int) -> dict[str, Any]:
+def _name(outcome: _Outcome, number: int) -> dict[str, Any]:
     """Return the choices of a design, those that have one value in all designs left out."""
-    own = choices_of(found.results, number)
-    varied = [name for name in own if _varies(found, name)]
+    own = choices_of(outcome.results, number)
+    varied = [name for name in own if _varies(outcome, name)]
     return {name: _level(name, own[name]) for name in varied or own}
 
 
-def _varies(found: _Found, name: str) -> bool:
+def _varies(outcome: _Outcome, name: str) -> bool:
     """Return whether a choice has several values among the designs of the table."""
-    texts = {str(choices_of(found.results, number)[name]) for number in found.shown}
-    return len(texts) > 1 or len(found.shown) == 1
+    texts = {str(choices_of(outcome.results, number)[name]) for number in outcome.shown}
+    return len(texts) > 1 or len(outcome.shown) == 1
 
 
 def _level(name: str, value: Any) -> Any:
@@ -352,26 +367,28 @@ def _level(name: str, value: Any) -> Any:
     return in_words(name, value)
 
 
-def _is_stopped(found: _Found, number: int) -> bool:
+def _is_stopped(outcome: _Outcome, number: int) -> bool:
     """Return whether the search stopped before a corner, or before its only optimum."""
-    if number in found.corners:
-        return not found.corners[number]
+    if number in outcome.corners:
+        return not outcome.corners[number]
     return (
-        number == found.chosen and len(found.goals) == 1 and not found.search.get("polished", False)
+        number == outcome.chosen
+        and len(outcome.goals) == 1
+        and not outcome.search.get("polished", False)
     )
 
 
-def _table(found: _Found) -> tuple[pd.DataFrame, tuple[Column, ...]]:
+def _table(outcome: _Outcome) -> tuple[pd.DataFrame, tuple[Column, ...]]:
     """Return one row a design that was solved at `reference`, with its columns."""
-    table = pd.DataFrame([_row(found, number) for number in found.shown])
-    columns = [*_choice_columns(found), *_goal_columns(found), *_required_columns(found)]
-    if found.wanted:
+    table = pd.DataFrame([_row(outcome, number) for number in outcome.shown])
+    columns = [*_choice_columns(outcome), *_goal_columns(outcome), *_required_columns(outcome)]
+    if outcome.is_required:
         columns.append(Column("verdict", "Requirement", kind="state", meaning=_MEANINGS["verdict"]))
-        if found.results.design.meta["inner_samples"] > 1:
+        if outcome.results.design.meta["inner_samples"] > 1:
             columns.append(
                 Column("share", "Conditions that meet it", "1", _MEANINGS["share"], "share")
             )
-        if _is_drawn(found):
+        if _is_drawn(outcome):
             title = "95 % interval of the share"
             columns.append(
                 Column("share_low", title, "1", _MEANINGS["share_low"], "share", "share_high")
@@ -404,18 +421,15 @@ def _table(found: _Found) -> tuple[pd.DataFrame, tuple[Column, ...]]:
 
 _MEANINGS = {
     "verdict": "met: enough conditions meet the requirement also with the told error; missed: "
-    "they do not; open: "
-    "between both",
+    "they do not; open: between both",
     "share": "share of the conditions that meet the requirement with the told error",
     "share_low": "Wilson's 95 % interval of this share for the number of drawn conditions",
     "binds": "what a design with a better goal would miss, and the choices that stand at an end "
     "of their range",
     "step": "smallest ratio (of a goal to be large) or largest one (of a goal to be small) if one "
-    "choice moves by its "
-    "tolerance",
+    "choice moves by its tolerance",
     "corner": "solved: neither an end of a range nor the smallest step improves the goal; "
-    "stopped: the search stopped "
-    "before",
+    "stopped: the search stopped before",
     "second": "shortest life by a second model of an end that another limit has",
     "exceeded": "largest use of a limit other than fatigue over the conditions, if it is above "
     "100 %",
@@ -428,29 +442,35 @@ def _is_known(table: pd.DataFrame, column: Column) -> bool:
     return bool(column.role) or bool((values.notna() & (values.astype(str) != "")).any())
 
 
-def _choice_columns(found: _Found) -> list[Column]:
+def _choice_columns(outcome: _Outcome) -> list[Column]:
     """Return a column for each choice."""
     columns = []
-    for name in found.results.design.meta["outer"]:
+    for name in outcome.results.design.meta["outer"]:
         known = parameter_of(name)
-        units = known.units if known else ""
-        role = "name" if _varies(found, name) else ""
+        units = ""
+        if known:
+            units = known.units
+        role = ""
+        if _varies(outcome, name):
+            role = "name"
         columns.append(
             Column(name, long_name_of(name), units, "choice of the designer", "level", role=role)
         )
     return columns
 
 
-def _goal_columns(found: _Found) -> list[Column]:
+def _goal_columns(outcome: _Outcome) -> list[Column]:
     """Return the columns of each goal: its value, the range of a life, and its value at
     `reference`.
     """
     columns = []
-    for number, (goal, way) in enumerate(found.goals.items(), 1):
-        if judged_by(goal)[1] in found.results.design.meta["outer"]:
+    for number, (goal, way) in enumerate(outcome.goals.items(), 1):
+        if judged_by(goal)[1] in outcome.results.design.meta["outer"]:
             continue  # its value stands in the column of the choice
-        _, units, words = goal_column(found.results, goal)
-        better = "larger is better" if way == "max" else "smaller is better"
+        _, units, words = goal_column(outcome.results, goal)
+        better = "smaller is better"
+        if way == "max":
+            better = "larger is better"
         name = GOAL.format(number)
         columns.append(Column(name, words, units, f"{words}; {better}"))
         columns.append(
@@ -466,102 +486,126 @@ def _goal_columns(found: _Found) -> list[Column]:
     return columns
 
 
-def _required_columns(found: _Found) -> list[Column]:
+def _required_columns(outcome: _Outcome) -> list[Column]:
     """Return a column for the output of each requirement at `reference`."""
     columns = []
-    for place, (_, own) in enumerate(found.judges, 1):
+    for place, (_, own) in enumerate(outcome.judges, 1):
         _, words, units = own.output
         meaning = f"{words} at the worst condition, at `reference`; of a range its worse end"
         columns.append(Column(REQUIRED.format(place), words, units, meaning))
     return columns
 
 
-def _row(found: _Found, number: int) -> dict[str, Any]:
+def _row(outcome: _Outcome, number: int) -> dict[str, Any]:
     """Return the row of a design."""
     row: dict[str, Any] = {"design": number}
-    row |= {name: _level(name, value) for name, value in choices_of(found.results, number).items()}
-    reference = found.optima[number]["reference"]
-    for place, (goal, value) in enumerate(zip(found.goals, reference, strict=True), 1):
+    row |= {
+        name: _level(name, value) for name, value in choices_of(outcome.results, number).items()
+    }
+    reference = outcome.optima[number]["reference"]
+    for place, (goal, value) in enumerate(zip(outcome.goals, reference, strict=True), 1):
         name = GOAL.format(place)
-        row[name] = float(found.judged.values[number, place - 1])
-        row |= dict(zip((f"{name}_low", f"{name}_high"), _range(found, goal, number), strict=True))
+        row[name] = float(outcome.judged.values[number, place - 1])
+        row |= dict(
+            zip((f"{name}_low", f"{name}_high"), _range(outcome, goal, number), strict=True)
+        )
         row[REFERENCE.format(place)] = float(value)
-    for place, value in enumerate(found.optima[number]["required"][1], 1):
+    for place, value in enumerate(outcome.optima[number]["required"][1], 1):
         row[REQUIRED.format(place)] = float(value)
-    if found.wanted:
-        row |= _requirement(found, number)
-    row |= _step(found) if number == found.chosen else {"step": np.nan, "step_of": ""}
-    row["binds"] = (
-        ", ".join(_binds(found, number)) if number in (*found.named, *found.corners) else ""
-    )
-    row["corner"] = _corner(found, number)
-    second = _second_life(found, number)
-    row["second"] = np.nan if second is None else second[1]
-    row["second_verdict"] = "" if second is None else second[2]
-    over = _exceeded(found, number)
-    row["exceeded"] = np.nan if over is None else over["use"]
-    row["extrapolated"] = "yes" if _beyond(found)[number] else ""
+    if outcome.is_required:
+        row |= _requirement(outcome, number)
+    if number == outcome.chosen:
+        row |= _step(outcome)
+    else:
+        row |= {"step": np.nan, "step_of": ""}
+    row["binds"] = ""
+    if number in (*outcome.named, *outcome.corners):
+        row["binds"] = ", ".join(_binds(outcome, number))
+    row["corner"] = _corner(outcome, number)
+    second = _second_life(outcome, number)
+    if second is None:
+        row["second"] = np.nan
+        row["second_verdict"] = ""
+    else:
+        row["second"] = second[1]
+        row["second_verdict"] = second[2]
+    over = _exceeded(outcome, number)
+    if over is None:
+        row["exceeded"] = np.nan
+    else:
+        row["exceeded"] = over["use"]
+    row["extrapolated"] = yes_or_blank(_beyond(outcome)[number])
     return row
 
 
-def _range(found: _Found, goal: str, number: int) -> tuple[float, float]:
+def _range(outcome: _Outcome, goal: str, number: int) -> tuple[float, float]:
     """Return both ends of a life that is a goal; NaN where it has no range."""
-    ends = ends_of_goal(found.results, goal)
+    ends = ends_of_goal(outcome.results, goal)
     if ends is None or not ends[1][number] > ends[0][number] * (1.0 + SAME_ENDS):
         return np.nan, np.nan
     return float(ends[0][number]), float(ends[1][number])
 
 
-def _corner(found: _Found, number: int) -> str:
+def _corner(outcome: _Outcome, number: int) -> str:
     """Return whether a design that ends the front, or the optimum of one goal, is solved."""
-    if number not in found.corners:
+    if number not in outcome.corners:
         return ""
-    return "stopped" if _is_stopped(found, number) else "solved"
+    if _is_stopped(outcome, number):
+        return "stopped"
+    return "solved"
 
 
-def _requirement(found: _Found, number: int) -> dict[str, Any]:
+def _requirement(outcome: _Outcome, number: int) -> dict[str, Any]:
     """Return whether a design meets the requirement, and in which share of the conditions."""
-    share = float(found.optima[number]["share"][1])
+    share = float(outcome.optima[number]["share"][1])
     low, high = (np.nan, np.nan)
-    if _is_drawn(found):
-        count = np.array([found.results.design.meta["inner_samples"]])
+    if _is_drawn(outcome):
+        count = np.array([outcome.results.design.meta["inner_samples"]])
         low, high = (float(end[0]) for end in wilson(share * count, count))
     return {
-        "verdict": str(found.verdict[number]),
+        "verdict": str(outcome.verdict[number]),
         "share": share,
         "share_low": low,
         "share_high": high,
     }
 
 
-def _is_drawn(found: _Found) -> bool:
+def _is_drawn(outcome: _Outcome) -> bool:
     """Return whether the conditions are drawn, so that a share has an interval."""
-    design = found.results.design
+    design = outcome.results.design
     inner = design.meta["inner"]
     return bool(inner) and not any(design.factors[name].discrete for name in inner)
 
 
-def _step(found: _Found) -> dict[str, Any]:
+def _step(outcome: _Outcome) -> dict[str, Any]:
     """Return to which part or multiple a tolerance takes the first goal of the recommended
     design.
     """
-    way = next(iter(found.goals.values()))
-    own = float(found.judged.values[found.chosen, 0])
-    worst, step = np.nan, ""
-    for one in found.search["neighbours"]:
-        ratio = float(one["values"][0]) / own if own else np.nan
-        if np.isnan(worst) or (ratio < worst if way == "max" else ratio > worst):
-            worst, step = ratio, f"{long_name_of(one['choice'])} {one['step']}"
+    way = next(iter(outcome.goals.values()))
+    own = float(outcome.judged.values[outcome.chosen, 0])
+    worst = np.nan
+    step = ""
+    for one in outcome.search["neighbours"]:
+        ratio = np.nan
+        if own:
+            ratio = float(one["values"][0]) / own
+        is_worse = ratio > worst
+        if way == "max":
+            is_worse = ratio < worst
+        if np.isnan(worst) or is_worse:
+            worst = ratio
+            step = f"{long_name_of(one['choice'])} {one['step']}"
     return {"step": worst, "step_of": step}
 
 
-def _binds(found: _Found, number: int) -> list[str]:
+def _binds(outcome: _Outcome, number: int) -> list[str]:
     """Return what binds a design: what the nearest design with a better goal misses, then ends of
     ranges.
 
     A goal in which a design that misses no more is better is bound by the other goals.
     """
-    judged, words = found.judged, []
+    judged = outcome.judged
+    words = []
     for costs in judged.costs.T:
         better = costs < costs[number]
         misses = judged.missed > judged.missed[number]
@@ -569,34 +613,34 @@ def _binds(found: _Found, number: int) -> list[str]:
             continue
         rows = np.flatnonzero(better)
         away = np.abs(judged.genes[rows] - judged.genes[number]).sum(axis=1)
-        words.append(_missed(found, int(rows[np.argmin(away)])))
-    return [*dict.fromkeys(word for word in words if word), *_at_ends(found, number)]
+        words.append(_missed(outcome, int(rows[np.argmin(away)])))
+    return [*dict.fromkeys(word for word in words if word), *_at_ends(outcome, number)]
 
 
-def _missed(found: _Found, number: int) -> str:
+def _missed(outcome: _Outcome, number: int) -> str:
     """Return what a design misses, in words that follow "bound by"."""
-    if found.judged.violation[number] == 0:
-        lacking = [own for own in found.shares if not own.enough(own.sure)[number]]
-        return f"the required {lacking[0].required.words}" if lacking else ""
-    causes = Counter(str(word) for word in found.ranges.reason[found.rows(number)] if word)
+    if outcome.judged.violation[number] == 0:
+        lacking = [own for own in outcome.shares if not own.enough(own.sure)[number]]
+        if lacking:
+            return f"the required {lacking[0].required.words}"
+        return ""
+    causes = Counter(str(word) for word in outcome.ranges.reason[outcome.rows(number)] if word)
     if not causes:
         return ""
     cause = causes.most_common(1)[0][0]
     return REASONS.get(cause, limit_word(cause.removeprefix("limit ")))
 
 
-def _at_ends(found: _Found, number: int) -> list[str]:
+def _at_ends(outcome: _Outcome, number: int) -> list[str]:
     """Return the choices of a design that stand at an end of the range that the search may take."""
     words = []
-    for name, value in choices_of(found.results, number).items():
-        factor = found.results.study.parsed[name]
+    for name, value in choices_of(outcome.results, number).items():
+        factor = outcome.results.study.parsed[name]
         tried = factor.numbers
         if factor.discrete:
-            tried = (
-                factor.levels
-                if factor.ordered and factor.numeric and len(factor.levels) > 2
-                else ()
-            )
+            tried = ()
+            if factor.ordered and factor.numeric and len(factor.levels) > 2:
+                tried = factor.levels
         if not tried:
             continue
         low, high = min(map(float, tried)), max(map(float, tried))
@@ -606,38 +650,41 @@ def _at_ends(found: _Found, number: int) -> list[str]:
     return words
 
 
-def _beyond(found: _Found) -> np.ndarray:
+def _beyond(outcome: _Outcome) -> np.ndarray:
     """Return the designs with a goal that is a life beyond its data, shape (designs,)."""
-    lives = [goal for goal in found.goals if is_life(judged_by(goal)[1])]
-    none = np.zeros(len(found.judged.values), dtype=bool)
-    return np.asarray(np.any([none, *(beyond_data(found.results, goal) for goal in lives)], axis=0))
+    lives = [goal for goal in outcome.goals if is_life(judged_by(goal)[1])]
+    none = np.zeros(len(outcome.judged.values), dtype=bool)
+    return np.asarray(
+        np.any([none, *(beyond_data(outcome.results, goal) for goal in lives)], axis=0)
+    )
 
 
-def _required_life(found: _Found) -> tuple[float, float]:
+def _required_life(outcome: _Outcome) -> tuple[float, float]:
     """Return the required life of the pair and the share of the conditions that has to reach it;
     NaN without one.
     """
     lives = [
-        own for own in found.shares if own.required.output in OF_PAIR and own.required.least > 0
+        own for own in outcome.shares if own.required.output in OF_PAIR and own.required.least > 0
     ]
     if not lives:
         return np.nan, np.nan
     longest = max(lives, key=lambda own: own.required.least)
-    return longest.required.least, longest.wanted
+    return longest.required.least, longest.least
 
 
-def _second_life(found: _Found, number: int) -> tuple[str, float, str] | None:
+def _second_life(outcome: _Outcome, number: int) -> tuple[str, float, str] | None:
     """Return the second model with the shortest life of a design, this life [h], and its verdict on
     the requirement.
 
     None where no second model knows its life in every condition that is judged.
     """
-    data, rows = found.results.data, found.rows(number)
+    data = outcome.results.data
+    rows = outcome.rows(number)
     if "life_hours_by_limit" not in data:
         return None
-    hours = flat(data, "life_hours_by_limit", found.results.dims)[rows]
-    valid = found.results.valid[rows]
-    least, wanted = _required_life(found)
+    hours = flat(data, "life_hours_by_limit", outcome.results.dims)[rows]
+    valid = outcome.results.valid[rows]
+    least, share = _required_life(outcome)
     shortest: tuple[str, float, str] | None = None
     limits = data["limit"].values.tolist()
     for place, limit in enumerate(limits):
@@ -652,34 +699,37 @@ def _second_life(found: _Found, number: int) -> tuple[str, float, str] | None:
             continue
         verdict = ""
         if not np.isnan(least):
-            verdict = "met" if (own >= least).sum() / len(valid) >= wanted - 1e-9 else "missed"
+            verdict = "missed"
+            if (own >= least).sum() / len(valid) >= share - 1e-9:
+                verdict = "met"
         if shortest is None or own.min() < shortest[1]:
             shortest = limit, float(own.min()), verdict
     return shortest
 
 
-def _second(found: _Found, number: int) -> dict[str, str] | None:
+def _second(outcome: _Outcome, number: int) -> dict[str, str] | None:
     """Return the second model that turns the verdict of a design; None if none does."""
-    second = _second_life(found, number)
-    if second is None or second[2] in ("", found.verdict[number]):
+    second = _second_life(outcome, number)
+    if second is None or second[2] in ("", outcome.verdict[number]):
         return None
     return {"limit": second[0], "verdict": second[2]}
 
 
-def _exceeded(found: _Found, number: int) -> dict[str, Any] | None:
+def _exceeded(outcome: _Outcome, number: int) -> dict[str, Any] | None:
     """Return the limit of a design that is exceeded most, second models included; None if all are
     kept.
 
     A use of the S-N curve above 1 is a finite life, and no excess.
     """
-    data, rows = found.results.data, found.rows(number)
+    data = outcome.results.data
+    rows = outcome.rows(number)
     if "utilisation" not in data:
         return None
-    use = flat(data, "utilisation", found.results.dims)[rows]
-    hours = flat(data, "life_hours_by_limit", found.results.dims)[rows]
+    use = flat(data, "utilisation", outcome.results.dims)[rows]
+    hours = flat(data, "life_hours_by_limit", outcome.results.dims)[rows]
     limits = data["limit"].values.tolist()
     counted = np.array([limit != "fatigue" for limit in limits])
-    known = np.where(counted[:, None] & found.results.valid[rows][:, None, None], use, np.nan)
+    known = np.where(counted[:, None] & outcome.results.valid[rows][:, None, None], use, np.nan)
     if not (known > 1.0).any():
         return None
     case, limit, body = np.unravel_index(np.nanargmax(known), known.shape)
@@ -692,79 +742,85 @@ def _exceeded(found: _Found, number: int) -> dict[str, Any] | None:
     }
 
 
-def _picture(found: _Found) -> dict[str, Any]:
+def _picture(outcome: _Outcome) -> dict[str, Any]:
     """Return the designs of the picture: their goals, those of the front, and those of the
     headline.
 
     Of one goal `history` holds the best value that was known after each design, among those that
     miss least.
     """
-    judged, names = found.judged, list(found.goals)
+    judged = outcome.judged
+    names = list(outcome.goals)
     picture: dict[str, Any] = {
         "goals": judged.values,
-        "front": found.front,
+        "front": outcome.front,
         "met": judged.missed == 0,
-        "named": np.array(found.named, dtype=int),
-        "words": [goal_column(found.results, goal)[2] for goal in names],
-        "units": [goal_column(found.results, goal)[1] for goal in names],
-        "ways": list(found.goals.values()),
+        "named": np.array(outcome.named, dtype=int),
+        "words": [goal_column(outcome.results, goal)[2] for goal in names],
+        "units": [goal_column(outcome.results, goal)[1] for goal in names],
+        "ways": list(outcome.goals.values()),
     }
     if len(names) == 1:
         costs = np.where(judged.missed == 0, judged.costs[:, 0], np.inf)
         best = np.minimum.accumulate(np.where(np.isnan(costs), np.inf, costs))
-        sign = -1.0 if found.goals[names[0]] == "max" else 1.0
+        sign = 1.0
+        if outcome.goals[names[0]] == "max":
+            sign = -1.0
         picture["history"] = np.where(np.isfinite(best), sign * best, np.nan)
     return picture
 
 
-def _warnings(found: _Found) -> tuple[Caution, ...]:
+def _warnings(outcome: _Outcome) -> tuple[Caution, ...]:
     """Return the warnings of a search."""
-    results = found.results
-    if not found.usable:
-        said = ", ".join(
-            f"{word.replace('_', ' ')} {n:,}" for word, n in found.search["reasons"].items()
+    results = outcome.results
+    if not outcome.usable:
+        texts = ", ".join(
+            f"{word.replace('_', ' ')} {n:,}" for word, n in outcome.search["reasons"].items()
         )
-        tried = int(found.search["designs"])
-        return (Caution("not_held", tried, tried, said, "candidates"),)
+        tried = int(outcome.search["designs"])
+        return (Caution("not_held", tried, tried, texts, "candidates"),)
     rows = np.zeros(len(results.table), dtype=bool)
-    rows[found.rows(found.chosen)] = True
-    warnings = case_cautions(results, found.ranges, rows)
+    rows[outcome.rows(outcome.chosen)] = True
+    warnings = case_cautions(results, outcome.ranges, rows)
     # of the designs of the table, below
     warnings = [one for one in warnings if one.code != "extrapolated"]
-    shown = np.array(found.shown)
-    beyond = int(_beyond(found)[shown].sum())
+    shown = np.array(outcome.shown)
+    beyond = int(_beyond(outcome)[shown].sum())
     if beyond:
         warnings.append(
             Caution("extrapolated", beyond, len(shown), "designs of the table", "candidates")
         )
-    turned = [number for number in found.shown if _second(found, number) is not None]
+    turned = [number for number in outcome.shown if _second(outcome, number) is not None]
     if turned:
-        limits = sorted({str(_second_life(found, number)[0]) for number in turned})  # type: ignore[index]
+        limits = sorted({str(_second_life(outcome, number)[0]) for number in turned})  # type: ignore[index]
         warnings.append(
             Caution("second_model", len(turned), len(shown), listing(limits), "candidates")
         )
-    stopped = [number for number in found.named if _is_stopped(found, number)]
-    ends = _at_ends(found, found.chosen)
+    stopped = [number for number in outcome.named if _is_stopped(outcome, number)]
+    ends = _at_ends(outcome, outcome.chosen)
     if stopped or ends:
-        where = ["the search stopped before it", *ends] if stopped else ends
+        where = ends
+        if stopped:
+            where = ["the search stopped before it", *ends]
         warnings.append(
-            Caution("at_end", len(stopped) or 1, len(found.named), listing(where), "candidates")
+            Caution("at_end", len(stopped) or 1, len(outcome.named), listing(where), "candidates")
         )
     return tuple(warnings)
 
 
-def _facts(found: _Found) -> dict[str, Any]:
+def _facts(outcome: _Outcome) -> dict[str, Any]:
     """Return what the title line says, and how the search went."""
-    results, search = found.results, found.search
+    results = outcome.results
+    search = outcome.search
     conditions = int(results.design.meta["inner_samples"])
     return facts_of(results) | {
         "candidates": int(results.design.meta["design_points"]),
         "conditions": [conditions, conditions],
-        "drawn": _is_drawn(found),
+        "drawn": _is_drawn(outcome),
         "searched": int(search["designs"]),
         "searched_with": str(search["model"]),
         "stopped": str(search["stopped"]),
-        "alike": _are_alike(found.judged.values[found.front]),
+        "alike": _are_alike(outcome.judged.values[outcome.front]),
     }
 
 

@@ -13,8 +13,8 @@ from trackroller.parameters.carriage_fields import long_name_of, parameter_of
 from trackroller.results.answer import STATES, Column
 from trackroller.results.case_ranges import CaseRanges
 from trackroller.results.comparison import Comparison, wilson
-from trackroller.results.lives import BESIDE, OF_PAIR, lacks_a_body
-from trackroller.results.places import case_text, places_of, places_text, plain
+from trackroller.results.life_columns import BESIDE, OF_PAIR, lacks_a_body
+from trackroller.results.subgroups import case_text, places_of, places_text, plain
 from trackroller.roller.output_names import is_life
 from trackroller.study.outputs import flat, of_first_limit
 
@@ -50,7 +50,7 @@ def _worst_of(own: Comparison, other: CaseRanges) -> np.ndarray:
     """Return another output of each candidate at its worst condition that is held, shape
     (candidates,).
     """
-    rows = own.ranges.held & other.held & (own.own if own.drawn else own.reachable)
+    rows = own.ranges.holds & other.holds & (own.own if own.drawn else own.reachable)
     return other.sign * _least(own, other.sign * other.worse, rows)
 
 
@@ -99,6 +99,18 @@ def _goods_columns(own: Comparison, table: pd.DataFrame) -> list[Column]:
     return columns
 
 
+def _choice_column(name: str) -> Column:
+    """Return the column of a choice."""
+    words = long_name_of(name)
+    known = parameter_of(name)
+    if known is None:
+        return Column(name, words, "", words, "level", role="name")
+    unit = known.units
+    if unit == "1":
+        unit = ""
+    return Column(name, words, unit, known.meaning, "level", role="name")
+
+
 def candidate_columns(own: Comparison, table: pd.DataFrame) -> tuple[Column, ...]:
     """Return the columns of the table of candidates that a reader is shown, as far as the study has
     them.
@@ -107,26 +119,17 @@ def candidate_columns(own: Comparison, table: pd.DataFrame) -> tuple[Column, ...
     chance = 0.5
     if of_first_limit(name):
         chance = float(own.results.data.attrs.get("failure_probability", 0.5))
-    life = f"{words}, at {100 * chance:g} % failure probability" if is_life(name) else words
+    life = words
+    if is_life(name):
+        life = f"{words}, at {100 * chance:g} % failure probability"
     columns = []
     if own.required:
         meaning = (
-            "met: the low end over (1 + error) reaches the requirement. Missed: the high end "
-            "times (1 + error) does "
-            "not. Otherwise open; none: no condition is held"
+            "met: the low end over (1 + error) reaches the requirement. Missed: the high end times "
+            "(1 + error) does not. Otherwise open; none: no condition is held"
         )
         columns.append(Column("state", "Verdict", meaning=meaning, kind="state"))
-    for choice in own.choices:
-        known = parameter_of(choice)
-        unit = (
-            ""
-            if known is None
-            else known.units.replace("1", "")
-            if known.units == "1"
-            else known.units
-        )
-        meaning = long_name_of(choice) if known is None else known.meaning
-        columns.append(Column(choice, long_name_of(choice), unit, meaning, "level", role="name"))
+    columns += [_choice_column(choice) for choice in own.choices]
     columns += _goods_columns(own, table)
     columns += [
         Column(
@@ -248,12 +251,12 @@ def _drawn_columns(own: Comparison, units: str) -> list[Column]:
     """
     if not own.drawn:
         return []
-    share = (
-        "share of the drawn conditions that meet the requirement"
-        if own.required
-        else "share that is held"
-    )
-    reach = "reach" if own.ranges.rises else "stay within"
+    share = "share that is held"
+    if own.required:
+        share = "share of the drawn conditions that meet the requirement"
+    reach = "stay within"
+    if own.ranges.rises:
+        reach = "reach"
     return [
         Column("share", "Share", "1", share, "share"),
         Column(
@@ -333,16 +336,25 @@ def _ends(own: Comparison) -> dict[str, Any]:
     candidate.
     """
     ranges = own.ranges
-    rows = own.own if own.drawn else own.reachable
+    if own.drawn:
+        rows = own.own
+    else:
+        rows = own.reachable
     worse, case = own.smallest(ranges.worse, rows)
     better, case_better = _at_best_place(own, rows)
-    low, high = (worse, better) if ranges.rises else (better, worse)
-    best = -own.ranges.sign * _least(own, -own.ranges.sign * ranges.better, rows & ranges.held)
+    if ranges.rises:
+        low, high = worse, better
+    else:
+        low, high = better, worse
+    best = -own.ranges.sign * _least(own, -own.ranges.sign * ranges.better, rows & ranges.holds)
     with np.errstate(invalid="ignore", over="ignore"):
         middle = np.where((low > 0) & (high > 0), np.sqrt(low) * np.sqrt(high), 0.5 * (low + high))
     names = [name for name in own.conditions if own.results.table[name].nunique() > 1]
     worst = [_condition_text(own, names, row) for row in case]
-    at_worse = ("_low", "_high") if ranges.rises else ("_high", "_low")
+    if ranges.rises:
+        at_worse = ("_low", "_high")
+    else:
+        at_worse = ("_high", "_low")
     ends, body = _end_words(own, case, at_worse[0])
     ends_high, body_high = _end_words(own, case_better, at_worse[1])
     return {
@@ -350,7 +362,7 @@ def _ends(own: Comparison) -> dict[str, Any]:
         "low": low,
         "high": high,
         "middle": np.where(low == high, low, middle),
-        "median": own.median(ranges.middle, rows & ranges.held),
+        "median": own.median(ranges.middle, rows & ranges.holds),
         "best": best,
         "worst": worst,
         "ends": ends,
@@ -401,14 +413,25 @@ def _end_words(own: Comparison, case: np.ndarray, end: str) -> tuple[list[str], 
     known.
     """
     names, guide = own.ranges.first_at(end)
-    value = own.ranges.low if end == "_low" else own.ranges.high
-    words, bodies = [], []
+    if end == "_low":
+        value = own.ranges.low
+    else:
+        value = own.ranges.high
+    words = []
+    bodies = []
     for row in case:
-        word = "" if row < 0 else str(own.ranges.reason[row])
+        if row < 0:
+            word = ""
+        else:
+            word = str(own.ranges.reason[row])
         ended = row >= 0 and not word and np.isfinite(value[row])
-        word = str(names[row]) if ended else word
+        if ended:
+            word = str(names[row])
         words.append(limit_word(word.removeprefix("limit ")))
-        bodies.append(BODIES[int(guide[row])] if ended and word else "")
+        first_body = ""
+        if ended and word:
+            first_body = BODIES[int(guide[row])]
+        bodies.append(first_body)
     return words, bodies
 
 
@@ -425,7 +448,7 @@ def _counts(own: Comparison) -> dict[str, Any]:
     every = np.ones(len(own.pairs[0]), dtype=bool)
     sure, may = own.met()
     return {
-        "holds": own.counted(own.all_in_pair(own.ranges.held)),
+        "holds": own.counted(own.all_in_pair(own.ranges.holds)),
         "judged": own.counted(own.all_in_pair(own.ranges.judged)),
         "meets": own.counted(own.all_in_pair(sure)),
         "perhaps": own.counted(own.all_in_pair(may)),
@@ -439,12 +462,16 @@ def states_of(own: Comparison, table: pd.DataFrame, exact: bool = False) -> list
 
     Conditions that no candidate holds do not count. `exact` leaves the errors of the solution out.
     """
-    held, unjudged = table["holds"].to_numpy(), (table["of"] - table["judged"]).to_numpy()
-    never = (held == 0) & (unjudged == 0)
+    holds = table["holds"].to_numpy()
+    unjudged = (table["of"] - table["judged"]).to_numpy()
+    never = (holds == 0) & (unjudged == 0)
     if not own.required or (own.drawn and not np.isfinite(own.wanted_share)):
         return ["none" if gone else "" for gone in never]
     if own.drawn:
-        ends = ("share", "share") if exact else ("share_short", "share_long")
+        if exact:
+            ends = ("share", "share")
+        else:
+            ends = ("share_short", "share_long")
         surely, perhaps = (table[name].to_numpy() >= own.wanted_share for name in ends)
     else:
         sure, may = own.met(exact)
@@ -494,17 +521,23 @@ def _shares(own: Comparison) -> dict[str, Any]:
 
 def _fails(own: Comparison, table: pd.DataFrame) -> list[str]:
     """Return where each candidate misses its requirement, or is not held without one."""
-    good = own.met()[0] if own.required else own.ranges.held
+    if own.required:
+        good = own.met()[0]
+    else:
+        good = own.ranges.holds
     names = [name for name in own.conditions if own.results.table[name].nunique() > 1]
-    missed = (
-        table["of"].to_numpy() - (table["meets"] if own.required else table["holds"]).to_numpy()
-    )
+    if own.required:
+        good_count = table["meets"]
+    else:
+        good_count = table["holds"]
+    missed = table["of"].to_numpy() - good_count.to_numpy()
+    everywhere = np.where(table["of"] > 1, "everywhere", "")
     out = []
     for number in range(own.count):
         if missed[number] == 0:
             out.append("")
         elif missed[number] == table["of"].iloc[number]:
-            out.append("everywhere" if table["of"].iloc[number] > 1 else "")
+            out.append(everywhere[number])
         elif number < DESCRIBED and not own.drawn:
             out.append(_where(own, names, number, good))
         else:
@@ -518,13 +551,14 @@ def _where(own: Comparison, names: list[str], number: int, good: np.ndarray) -> 
     """
     rows = own.rows[number]
     part = own.results.table.iloc[rows]
-    found = places_of(part, names, ~good[rows], np.ones(len(rows), dtype=bool))
-    few = [place for place in found if len(place) <= MOST_FACTORS]
-    if found and len(few) == len(found):
-        return places_text(found, part)
-    reasons = pd.Series(own.ranges.reason[rows][~good[rows]]).replace(
-        "", "too short" if own.ranges.rises else "too much"
-    )
+    places = places_of(part, names, ~good[rows], np.ones(len(rows), dtype=bool))
+    few = [place for place in places if len(place) <= MOST_FACTORS]
+    if places and len(few) == len(places):
+        return places_text(places, part)
+    miss = "too much"
+    if own.ranges.rises:
+        miss = "too short"
+    reasons = pd.Series(own.ranges.reason[rows][~good[rows]]).replace("", miss)
     counts = reasons.map(lambda word: limit_word(str(word).removeprefix("limit "))).value_counts()
     return ", ".join(f"{word} in {count}" for word, count in counts.items())
 
@@ -544,7 +578,9 @@ def _second_models(own: Comparison) -> dict[str, Any]:
     if value is None or not is_life(own.ranges.output[0]):
         return nothing
     names = [str(name) for name in own.results.data["limit"].values]
-    rows = own.own & (own.ranges.held if own.drawn else own.reachable)
+    rows = own.own & own.reachable
+    if own.drawn:
+        rows = own.own & own.ranges.holds
     shortest = np.full(own.count, np.inf)
     longest = np.full(own.count, np.inf)
     which = np.full(own.count, "", dtype=object)
@@ -577,18 +613,24 @@ def _ends_by(own: Comparison, limits: list[str], name: str) -> np.ndarray | None
     that knows no life.
     """
     hours = [own.hours_by_limit(end) for end in ("", "_low", "_high")]
-    place = limits.index(name) if name in limits else -1
+    if name in limits:
+        place = limits.index(name)
+    else:
+        place = -1
     if hours[0] is None or place < 0:
         return None
     middle = hours[0][:, place]
     if np.isnan(middle[own.own]).all():
         return None
     lacks = lacks_a_body(hours[0], limits, name)
-    found = []
+    ends = []
     for end in hours[1:]:
-        values = middle if end is None else np.where(np.isnan(end[:, place]), middle, end[:, place])
-        found.append(np.where(lacks, np.nan, np.fmin.reduce(values, axis=1)))
-    return np.stack(found)
+        if end is None:
+            values = middle
+        else:
+            values = np.where(np.isnan(end[:, place]), middle, end[:, place])
+        ends.append(np.where(lacks, np.nan, np.fmin.reduce(values, axis=1)))
+    return np.stack(ends)
 
 
 def _second_states(own: Comparison, lives: np.ndarray) -> np.ndarray:
@@ -604,7 +646,8 @@ def _second_states(own: Comparison, lives: np.ndarray) -> np.ndarray:
         return np.full(own.count, "")
     sure, may = own.met(lives=lives)
     if not own.drawn:
-        surely, perhaps = _everywhere(own, sure), _everywhere(own, may)
+        surely = _everywhere(own, sure)
+        perhaps = _everywhere(own, may)
     elif np.isfinite(own.wanted_share):
         surely, perhaps = (own.shares(rows) >= own.wanted_share for rows in (sure, may))
     else:
@@ -634,7 +677,9 @@ def _exceeded(own: Comparison) -> dict[str, Any]:
     most = np.where(np.isnan(flattened), -np.inf, flattened)
     place = most.argmax(axis=1)
     worst = most[np.arange(len(place)), place]
-    rows = own.own & (own.reachable if not own.drawn else own.own) & np.isfinite(worst)
+    rows = own.own & np.isfinite(worst)
+    if not own.drawn:
+        rows &= own.reachable
     if not rows.any():
         return nothing
     names = [str(name) for name in data["limit"].values]
@@ -657,7 +702,10 @@ def _exceeded(own: Comparison) -> dict[str, Any]:
         out["exceeded_by"].append(limit_word(names[limit]))
         out["exceeded_body"].append(BODIES[body])
         out["use"].append(float(worst[row]))
-        out["use_hours"].append(np.nan if hours is None else float(hours[row, limit, body]))
+        own_hours = np.nan
+        if hours is not None:
+            own_hours = float(hours[row, limit, body])
+        out["use_hours"].append(own_hours)
     return out
 
 
@@ -665,7 +713,8 @@ def _edges(own: Comparison) -> list[str]:
     """Return the choices of each candidate that stand at the smallest or largest of at least three
     numbers.
     """
-    table, out = own.members, np.full(own.count, "", dtype=object)
+    table = own.members
+    out = np.full(own.count, "", dtype=object)
     for name in own.choices:
         levels = own.results.levels(name)
         if len(levels) < 3 or not own.results.numeric(name):
@@ -683,10 +732,10 @@ def names_of(own: Comparison, numbers: list[int]) -> list[dict[str, Any]]:
     Values that all candidates share are left out.
     """
     table = own.members.iloc[numbers]
-    told = [n for n in own.choices if own.members[n].nunique() > 1]
+    varying = [n for n in own.choices if own.members[n].nunique() > 1]
     if len(numbers) > 1:
-        told = [n for n in told if table[n].nunique() > 1] or told
-    return [{name: plain(table[name].iloc[i]) for name in told} for i in range(len(numbers))]
+        varying = [n for n in varying if table[n].nunique() > 1] or varying
+    return [{name: plain(table[name].iloc[i]) for name in varying} for i in range(len(numbers))]
 
 
 def shared_names(own: Comparison, numbers: list[int]) -> dict[str, Any]:

@@ -14,9 +14,9 @@ import pandas as pd
 
 from trackroller.methods.b10 import b10
 from trackroller.parameters import FIRST_TO_FAIL, REGIMES
-from trackroller.results.by_tests import beyond_sn_data
-from trackroller.results.columns import codes
-from trackroller.results.lives import FIRST_LIMIT, body_lives
+from trackroller.results.case_columns import codes
+from trackroller.results.life_columns import FIRST_LIMIT, body_lives
+from trackroller.results.lives_by_tests import beyond_sn_data
 from trackroller.results.robustness import material_deviations
 from trackroller.results.solved_cases import SolvedCases, made_once
 from trackroller.roller.output_names import is_life
@@ -45,11 +45,9 @@ def slip_margin(results: SolvedCases) -> np.ndarray:
     -----
     At full slip no lateral friction is left, and both contacts carry |F_rad|/cos alpha together.
     """
-    friction = (
-        "friction_coefficient_value"
-        if "friction_coefficient_value" in results.table
-        else "friction_coefficient"
-    )
+    friction = "friction_coefficient"
+    if "friction_coefficient_value" in results.table:
+        friction = "friction_coefficient_value"
     motor, mu, radial, angle = (
         _input(results, n) for n in ("motor_force", friction, "radial_force", "contact_angle")
     )
@@ -74,7 +72,10 @@ def _input(results: SolvedCases, name: str) -> np.ndarray:
     if name in results.table and results.numeric(name):
         return results.column(name)
     value = results.base.get(name)
-    return np.full(len(results.table), float(value) if isinstance(value, (int, float)) else np.nan)
+    filled = np.nan
+    if isinstance(value, (int, float)):
+        filled = float(value)
+    return np.full(len(results.table), filled)
 
 
 def mixed(results: SolvedCases) -> np.ndarray:
@@ -99,9 +100,11 @@ def _shared(place: np.ndarray, use: np.ndarray) -> np.ndarray:
     pairs = pd.DataFrame({"place": place[rows], "use": use[rows]})
     tried = pairs.drop_duplicates().groupby("use").size()
     shared = tried.index[tried == place.max() + 1].to_numpy()
-    kept = np.isin(use, shared) & (place >= 0)
-    each_once = not pairs[kept[rows]].duplicated().any()
-    return kept if len(shared) >= SHARED and each_once else np.zeros(len(use), dtype=bool)
+    in_common = np.isin(use, shared) & (place >= 0)
+    each_once = not pairs[in_common[rows]].duplicated().any()
+    if len(shared) >= SHARED and each_once:
+        return in_common
+    return np.zeros(len(use), dtype=bool)
 
 
 def goal_without_lives(results: SolvedCases) -> tuple[str, str, str] | None:
@@ -110,7 +113,9 @@ def goal_without_lives(results: SolvedCases) -> tuple[str, str, str] | None:
     """
     if STRESS[0] in results.table:
         return STRESS
-    return UNRANKED if results.config.requirement else None
+    if results.config.requirement:
+        return UNRANKED
+    return None
 
 
 @made_once
@@ -182,20 +187,26 @@ class Candidates:
         place = np.where(own, codes(results.table, choices), -1)
         place[own] = np.unique(place[own], return_inverse=True)[1]
         use = codes(results.table, conditions)
-        if conditions and (left_out := mixed(results)).any():
+        left_out = np.zeros(len(use), dtype=bool)
+        if conditions:
+            left_out = mixed(results)
+        if left_out.any():
             place = np.where(left_out, -1, place)
             place[place >= 0] = np.unique(place[place >= 0], return_inverse=True)[1]
-        shared = (
-            _shared(place, use)
-            if results.config.method.observed
-            else np.zeros(len(use), dtype=bool)
-        )
-        untried = own & ~shared if shared.any() else shared
-        design, place = place, np.where(untried, -1, place)
-        kept = place >= 0
-        several, many = place.max() + 1, len(np.unique(use[kept]))
-        pairs = len(np.unique(place[kept] * (use.max() + 1) + use[kept]))
-        matched = bool(pairs == kept.sum() == several * many)
+        if results.config.method.observed:
+            shared = _shared(place, use)
+        else:
+            shared = np.zeros(len(use), dtype=bool)
+        untried = shared
+        if shared.any():
+            untried = own & ~shared
+        design = place
+        place = np.where(untried, -1, place)
+        counted = place >= 0
+        several = place.max() + 1
+        many = len(np.unique(use[counted]))
+        pairs = len(np.unique(place[counted] * (use.max() + 1) + use[counted]))
+        matched = bool(pairs == counted.sum() == several * many)
         return cls(results, choices, conditions, goal, place, matched, untried, design)
 
     @cached_property
@@ -248,7 +259,7 @@ class Candidates:
         have a value.
         """
         rows: np.ndarray = (
-            self.results.held & (self.place >= 0) & ~np.isnan(self.results.column(self.goal[0]))
+            self.results.holds & (self.place >= 0) & ~np.isnan(self.results.column(self.goal[0]))
         )
         return rows
 
@@ -274,11 +285,9 @@ class Candidates:
         """Return the number of conditions in which at least one design is valid; 0 if designs share
         no conditions.
         """
-        return (
-            len(np.unique(codes(self.results.table, self.conditions)[self.usable]))
-            if self.matched
-            else 0
-        )
+        if self.matched:
+            return len(np.unique(codes(self.results.table, self.conditions)[self.usable]))
+        return 0
 
     @cached_property
     def members(self) -> pd.DataFrame:
@@ -328,17 +337,21 @@ class Candidates:
                 margin, self.reached & (results.rolling | (results.regime == REGIMES.index(lost)))
             )
             table[name] = np.where(case < 0, np.nan, margin[case])
-        sign = 1.0 if self.rising else -1.0
+        if self.rising:
+            sign = 1.0
+        else:
+            sign = -1.0
         key = sign * table["worst"]
         if self.goal == FIRST_LIMIT:
             case = self._least(results.sure_life, self.usable)
             key = pd.Series(np.where(case < 0, np.nan, results.sure_life[case]), table.index)
-        held = table["valid"] / table["cases"]
+        share = table["valid"] / table["cases"]
         if self.drawn and self.rising:
             table = table.assign(**self._quantile())
             sure = table["b10"] > 0
-            key, held = table["b10"].where(sure, key), held.where(~sure, 2.0)
-        return table, held, key, sign * table["median"]
+            key = table["b10"].where(sure, key)
+            share = share.where(~sure, 2.0)
+        return table, share, key, sign * table["median"]
 
     def cases_of(self, design: int) -> np.ndarray:
         """Return the cases of a row of `table` by its index, shape (n,) bool."""
@@ -354,7 +367,11 @@ class Candidates:
         values : of the cases, shape (n,)
         way : `max` if more is better, otherwise `min`
         """
-        return self._least(values if way == "max" else -values, self.usable)
+        if way == "max":
+            worse = values
+        else:
+            worse = -values
+        return self._least(worse, self.usable)
 
     def _count(self, rows: np.ndarray) -> np.ndarray:
         return np.bincount(self.place[rows & (self.place >= 0)], minlength=len(self.size))
@@ -374,10 +391,16 @@ class Candidates:
         """Return worst, median and best of the goal of each design, and whether they lie beyond the
         S-N data.
         """
-        values, rows = self.results.column(self.goal[0]), np.flatnonzero(self.usable)
-        order = rows[np.lexsort((values[rows] if self.rising else -values[rows], self.place[rows]))]
+        values = self.results.column(self.goal[0])
+        rows = np.flatnonzero(self.usable)
+        if self.rising:
+            rising_values = values[rows]
+        else:
+            rising_values = -values[rows]
+        order = rows[np.lexsort((rising_values, self.place[rows]))]
         number = self._count(self.usable)
-        start, some = np.cumsum(number) - number, number > 0
+        start = np.cumsum(number) - number
+        some = number > 0
         beyond = beyond_sn_data(self.results, self.goal[0])
         ends = {
             "worst": (0, 0),
@@ -403,7 +426,9 @@ class Candidates:
         """
         results = self.results
         lives = np.where(self.usable, results.column(self.goal[0]), 0.0)
-        own = material_deviations(results) if self.goal != FIRST_LIMIT else {}
+        own = {}
+        if self.goal != FIRST_LIMIT:
+            own = material_deviations(results)
         guide = results.first_failing(self.goal[0]) == FIRST_TO_FAIL.index("guide")
         scatter = np.where(guide, own.get("guide", 0.0), own.get("roller", 0.0))
         cases = [self.cases_of(i) for i in range(len(self.size))]
@@ -417,13 +442,14 @@ class Candidates:
 
 
 def _ranked(
-    table: pd.DataFrame, held: pd.Series, key: pd.Series, middle: pd.Series
+    table: pd.DataFrame, share: pd.Series, key: pd.Series, middle: pd.Series
 ) -> pd.DataFrame:
     """Sort designs by the share of cases that they hold, then by the key, and rank them; equal ones
     tie.
     """
-    order = np.lexsort((-middle.fillna(-np.inf), -key.fillna(-np.inf), -held))
-    shares, keys = held.to_numpy()[order], key.to_numpy()[order]
+    order = np.lexsort((-middle.fillna(-np.inf), -key.fillna(-np.inf), -share))
+    shares = share.to_numpy()[order]
+    keys = key.to_numpy()[order]
     same = np.isclose(shares[1:], shares[:-1], TIED, 0) & np.isclose(
         keys[1:], keys[:-1], TIED, 0, equal_nan=True
     )
@@ -439,11 +465,16 @@ def hardest_first(candidates: Candidates) -> np.ndarray:
 
     Cases of a less exact contact model have the number -1.
     """
-    table, own = candidates.results.table, candidates.place >= 0
+    table = candidates.results.table
+    own = candidates.place >= 0
     use = codes(table, candidates.conditions)
     use = np.unique(np.where(own, use, -1), return_inverse=True)[1] - int(not own.all())
     worst = np.full(use.max() + 1, np.inf)
-    values = candidates.results.column(candidates.goal[0]) * (1.0 if candidates.rising else -1.0)
+    if candidates.rising:
+        sign = 1.0
+    else:
+        sign = -1.0
+    values = candidates.results.column(candidates.goal[0]) * sign
     np.minimum.at(worst, use[candidates.usable], values[candidates.usable])
     valid = np.bincount(use[candidates.usable], minlength=len(worst))
     return np.where(own, np.argsort(np.lexsort((worst, valid)))[use], -1)

@@ -29,8 +29,8 @@ from trackroller.parameters import BODIES, MATERIAL_FIELDS, REGIME_LABELS, REGIM
 from trackroller.parameters.carriage_fields import long_name_of
 from trackroller.parameters.validity import VALIDITY
 from trackroller.results.answer import Answer, Caution, Column, Part, Required
-from trackroller.results.flags import OUTSIDE
-from trackroller.results.lives import FIRST_LIMIT
+from trackroller.results.friction import friction_cautions
+from trackroller.results.life_columns import FIRST_LIMIT
 from trackroller.results.placeholders import guess_cautions, placeholders_part
 from trackroller.results.roller_answer import (
     CODES,
@@ -40,6 +40,7 @@ from trackroller.results.roller_answer import (
     state_of_life,
 )
 from trackroller.results.spectrum_answer import not_given_values
+from trackroller.results.validity_flags import OUTSIDE
 from trackroller.roller.dataset import validity_bit
 from trackroller.roller.duty import strokes_words
 from trackroller.roller.stored_inputs import MATERIALS, doubts_of
@@ -166,12 +167,9 @@ PLACES = (
     Column("locating", "Locating", "", "whether it carries axial load", "text"),
 )
 OF_MARGINS = (
-    "A margin is a multiplier of the payload, or of all loads, with the same preload; ∞ is "
-    "not up to 1000. "
-    "One contact: "
-    "the axial force lifts the other contact of a roller; friction may do so earlier. The "
-    "model ends there: later "
-    "margins are not stated (–)."
+    "A margin is a multiplier of the payload, or of all loads, with the same preload; ∞ is not up "
+    "to 1000. One contact: the axial force lifts the other contact of a roller; friction may do so "
+    "earlier. The model ends there: later margins are not stated (–)."
 )
 
 
@@ -186,6 +184,9 @@ def answer_of_carriage(ds: xr.Dataset) -> Answer:
     table = _table(ds)
     guesses = placeholders_part(ds)
     known = [one for one in COLUMNS if one.name == "roller" or not _is_empty(table[one.name])]
+    parts = list(_parts(ds))
+    if not guesses.table.empty:
+        parts.append(guesses)
     return Answer(
         question="carriage",
         kind=_kind(ds),
@@ -194,7 +195,7 @@ def answer_of_carriage(ds: xr.Dataset) -> Answer:
         table=table,
         columns=tuple(known),
         required=_required(table),
-        parts=(*_parts(ds), *([] if guesses.table.empty else [guesses])),
+        parts=tuple(parts),
         not_checked=_not_checked(ds),
         not_given=not_given_values(ds),
         warnings=(*_warnings(ds), *guess_cautions(guesses), *_not_given(ds)),
@@ -206,6 +207,7 @@ def answer_of_carriage(ds: xr.Dataset) -> Answer:
             counted="load cases",
             models=[],
             accuracy="",
+            probability=float(ds.attrs.get("failure_probability", math.nan)),
         ),
     )
 
@@ -236,14 +238,25 @@ def _kind(ds: xr.Dataset) -> str:
     if ds.attrs.get("worst_roller"):
         return "lasts"
     unloaded = bool((ds["radial_force"] == 0).all())
-    return "unlimited" if unloaded or not np.isnan(ds["life_km"].values).any() else "no_life"
+    if unloaded or not np.isnan(ds["life_km"].values).any():
+        return "unlimited"
+    return "no_life"
 
 
 def _headline(ds: xr.Dataset, table: pd.DataFrame) -> dict[str, Any]:
     """Return the numbers and names of the headline."""
     roller, case = worst_place(ds)
     forces = ds["radial_force"].values
-    lives = ds["life_km"].values if "life_km" in ds else np.full(ds.sizes["roller"], np.nan)
+    if "life_km" in ds:
+        lives = ds["life_km"].values
+    else:
+        lives = np.full(ds.sizes["roller"], np.nan)
+    force = math.nan
+    if np.isfinite(forces).any():
+        force = -float(np.nanmin(forces))
+    unknown = []
+    if "life_km" in ds:
+        unknown = ds["roller"].values[np.isnan(lives)].tolist()
     head: dict[str, Any] = {
         "roller": roller,
         "case": case,
@@ -253,8 +266,8 @@ def _headline(ds: xr.Dataset, table: pd.DataFrame) -> dict[str, Any]:
         "km": math.nan,
         "body": "",
         "limit": "",
-        "force": -float(np.nanmin(forces)) if np.isfinite(forces).any() else math.nan,
-        "unknown": ds["roller"].values[np.isnan(lives)].tolist() if "life_km" in ds else [],
+        "force": force,
+        "unknown": unknown,
         "without_file": [name for name in ds.attrs.get("without_case", "").split(", ") if name],
         "unsettled": ds["load_case"].values[~ds["converged"].values].tolist(),
         "margins": list(_first_margins(ds)),
@@ -289,12 +302,18 @@ def _first_margins(ds: xr.Dataset) -> Iterator[dict[str, Any]]:
         if not np.isfinite(first).any():
             continue
         place = int(np.nanargmin(first))
+        end = "lift-off"
+        if before[place]:
+            end = "one contact"
+            tipping = math.nan
+        else:
+            tipping = float(ds[f"{part}_to_tipping"].values[place])
         yield {
             "of": words,
-            "end": "one contact" if before[place] else "lift-off",
+            "end": end,
             "times": float(first[place]),
             "case": str(ds["load_case"].values[place]),
-            "tipping": math.nan if before[place] else float(ds[f"{part}_to_tipping"].values[place]),
+            "tipping": tipping,
         }
 
 
@@ -303,7 +322,9 @@ def _required(table: pd.DataFrame) -> tuple[Required, ...]:
     requirement.
     """
     required = table["required"][table["state"] == _judged(table)["state"]]
-    return () if required.isna().all() else (Required(*FIRST_LIMIT, least=float(required.max())),)
+    if required.isna().all():
+        return ()
+    return (Required(*FIRST_LIMIT, least=float(required.max())),)
 
 
 def _judged(table: pd.DataFrame) -> dict[str, Any]:
@@ -313,7 +334,11 @@ def _judged(table: pd.DataFrame) -> dict[str, Any]:
     states = table["state"]
     worst = next((state for state in ("missed", "open", "met") if (states == state).any()), "")
     alike = (states == worst).all() or not worst
-    return {"state": worst, "of": [] if alike else table["roller"][states == worst].tolist()}
+    if alike:
+        worst_rollers = []
+    else:
+        worst_rollers = table["roller"][states == worst].tolist()
+    return {"state": worst, "of": worst_rollers}
 
 
 def _exceeded(ds: xr.Dataset) -> Iterator[dict[str, Any]]:
@@ -376,28 +401,30 @@ def _not_checked(ds: xr.Dataset) -> dict[str, tuple[str, ...]]:
     for roller in loaded:
         own = ds.sel(roller=roller).rename(roller_regime="regime")
         names = {field: {"name": str(own[field].item())} for field in MATERIAL_FIELDS}
-        # by that of the carriage
-        known = () if math.isnan(_by_catalogue(own)[0]) else (catalogue.LIMIT.name,)
-        for body, limits in checks_left_out(
-            own.assign_attrs({MATERIALS: json.dumps(names)}), known
-        ).items():
+        known = []
+        if not math.isnan(_by_catalogue(own)[0]):
+            known = [catalogue.LIMIT.name]  # the limit by the catalogue is that of the carriage
+        own = own.assign_attrs({MATERIALS: json.dumps(names)})
+        for body, limits in checks_left_out(own, known).items():
             for words in limits:
                 lacking[body].setdefault(words, []).append(roller)
-    return {
-        body: tuple(
-            words if rollers == loaded else f"{', '.join(rollers)}: {words}"
-            for words, rollers in own.items()
-        )
-        for body, own in lacking.items()
-    }
+    not_checked: dict[str, tuple[str, ...]] = {}
+    for body, rollers_by_limit in lacking.items():
+        texts = []
+        for words, rollers in rollers_by_limit.items():
+            if rollers != loaded:
+                words = f"{', '.join(rollers)}: {words}"
+            texts.append(words)
+        not_checked[body] = tuple(texts)
+    return not_checked
 
 
 def _not_given(ds: xr.Dataset) -> Iterator[Caution]:
     """Yield the values of the rollers that nobody gave."""
     words = not_given_values(ds)
     if words:
-        told = ", ".join(f"{long_name_of(name)} {value}" for name, value in words.items())
-        yield Caution("not_given", 1, 1, told, "")
+        text = ", ".join(f"{long_name_of(name)} {value}" for name, value in words.items())
+        yield Caution("not_given", 1, 1, text, "")
 
 
 def _table(ds: xr.Dataset) -> pd.DataFrame:
@@ -423,8 +450,12 @@ def _row(ds: xr.Dataset, roller: str) -> dict[str, Any]:
         "part": part,
         "lifted": ", ".join(cases[lifted]),
     }
-    row["force"] = -float(np.nanmin(forces)) if np.isfinite(forces).any() else math.nan
-    row["lifted_share"] = float(ds["share"].values[lifted].sum()) if lifted.any() else math.nan
+    row["force"] = math.nan
+    if np.isfinite(forces).any():
+        row["force"] = -float(np.nanmin(forces))
+    row["lifted_share"] = math.nan
+    if lifted.any():
+        row["lifted_share"] = float(ds["share"].values[lifted].sum())
     row["one_contact"] = _beside_rolling(own)
     numbers = {
         "low": "life_hours_low",
@@ -436,12 +467,13 @@ def _row(ds: xr.Dataset, roller: str) -> dict[str, Any]:
     row |= {key: float(own[name]) if name in own else math.nan for key, name in numbers.items()}
     row["ends"] = _end_of(own)
     row["factor"] = _by_catalogue(own)[0]
-    row["required"] = float(own["required_hours"]) if "required_hours" in own else math.nan
-    row["state"] = (
-        ""
-        if math.isnan(row["required"])
-        else state_of_life(row["low"], row["high"], row["required"])
-    )
+    row["required"] = math.nan
+    if "required_hours" in own:
+        row["required"] = float(own["required_hours"])
+    if math.isnan(row["required"]):
+        row["state"] = ""
+    else:
+        row["state"] = state_of_life(row["low"], row["high"], row["required"])
     over = [
         f"{limit_word(name)} of the {body} ({100 * used:.3g} %)"
         for name, body, used, _ in _limits_of(own, "exceeded")
@@ -467,24 +499,29 @@ def _worst_case(ds: xr.Dataset, roller: str) -> tuple[str, float]:
     if "damage_per_km" in own and float(np.nansum(own["damage_per_km"].values)) > 0:
         damage = np.nan_to_num(own["damage_per_km"].values, posinf=math.inf)
         place = int(np.argmax(damage))
-        part = float(damage[place] / damage.sum()) if math.isfinite(damage[place]) else math.nan
+        part = math.nan
+        if math.isfinite(damage[place]):
+            part = float(damage[place] / damage.sum())
         return str(ds["load_case"].values[place]), part
     forces = np.nan_to_num(own["radial_force"].values)
     place = int(np.argmin(forces))
-    return (str(ds["load_case"].values[place]) if forces[place] < 0 else ""), math.nan
+    worst_case = ""
+    if forces[place] < 0:
+        worst_case = str(ds["load_case"].values[place])
+    return worst_case, math.nan
 
 
 def _beside_rolling(own: xr.Dataset) -> str:
     """Return the load cases in which a roller does not roll on both contacts, with the regime."""
     if "roller_regime" not in own:
         return ""
-    found: dict[str, list[str]] = {}
+    names: dict[str, list[str]] = {}
     for code, case in zip(
         own["roller_regime"].values.tolist(), own["load_case"].values, strict=True
     ):
         if code not in (-1, ROLLING):
-            found.setdefault(REGIME_LABELS[code], []).append(str(case))
-    return "; ".join(f"{', '.join(cases)} ({regime})" for regime, cases in found.items())
+            names.setdefault(REGIME_LABELS[code], []).append(str(case))
+    return "; ".join(f"{', '.join(cases)} ({regime})" for regime, cases in names.items())
 
 
 def _parts(ds: xr.Dataset) -> Iterator[Part]:
@@ -531,7 +568,10 @@ def _loads(ds: xr.Dataset) -> Iterator[dict[str, Any]]:
             lifted = float(own["radial_force"]) == 0
             regime = ""
             if "roller_regime" in own:
-                regime = "lifted" if lifted else REGIME_LABELS[int(own["roller_regime"])]
+                if lifted:
+                    regime = "lifted"
+                else:
+                    regime = REGIME_LABELS[int(own["roller_regime"])]
             row = {
                 "case": str(case),
                 "roller": str(roller),
@@ -539,12 +579,12 @@ def _loads(ds: xr.Dataset) -> Iterator[dict[str, Any]]:
                 "radial": float(own["radial_force"]),
             }
             row["axial"] = float(own["axial_force"])
-            row["hours"] = (
-                float(own["case_life_hours"])
-                if "case_life_hours" in own and not lifted
-                else math.nan
-            )
-            row["factor"] = float(own["load_factor"]) if "load_factor" in own else math.nan
+            row["hours"] = math.nan
+            if "case_life_hours" in own and not lifted:
+                row["hours"] = float(own["case_life_hours"])
+            row["factor"] = math.nan
+            if "load_factor" in own:
+                row["factor"] = float(own["load_factor"])
             yield row
 
 
@@ -555,7 +595,9 @@ def _cases(ds: xr.Dataset) -> Iterator[dict[str, Any]]:
     for case in ds["load_case"].values:
         own = ds.sel(load_case=case)
         row = {"case": str(case), "share": float(own["share"]), "drive": float(own["drive_force"])}
-        row["settled"] = "yes" if bool(own["converged"]) else "no"
+        row["settled"] = "no"
+        if bool(own["converged"]):
+            row["settled"] = "yes"
         for part in LOADS:
             row |= _margins_of(own, part)
         yield row
@@ -565,10 +607,10 @@ def _margins_of(own: xr.Dataset, part: str) -> dict[str, float]:
     """Return the multipliers of a part of the loads in one load case."""
     if f"{part}_to_lift_off" not in own:
         return {f"{part}_{end}": math.nan for end in ENDS}
-    found = {end: float(own[f"{part}_to_{end}"]) for end in ENDS}
-    if found["one_contact"] < found["lift_off"]:
-        found |= {"lift_off": math.nan, "tipping": math.nan}
-    return {f"{part}_{end}": value for end, value in found.items()}
+    margins = {end: float(own[f"{part}_to_{end}"]) for end in ENDS}
+    if margins["one_contact"] < margins["lift_off"]:
+        margins |= {"lift_off": math.nan, "tipping": math.nan}
+    return {f"{part}_{end}": value for end, value in margins.items()}
 
 
 def _warnings(ds: xr.Dataset) -> Iterator[Caution]:
@@ -593,6 +635,7 @@ def _warnings(ds: xr.Dataset) -> Iterator[Caution]:
     yield from _one_contact(ds)
     yield from _second_models(ds)
     yield from _flags(ds)
+    yield from friction_cautions(ds.attrs)
     for text in doubts_of(ds):
         yield Caution("doubtful", 1, 1, text, "")
 
@@ -605,10 +648,8 @@ def _swinging(ds: xr.Dataset) -> Iterator[Caution]:
     place = int(np.argmax(np.abs(angles)))
     text = (
         "a pendulum: the rollers stand in one line, about which the carriage is free to roll and "
-        "stable; it swings by "
-        f"{angles[place]:.3g}° in {ds['load_case'].values[place]}, the largest angle, and the "
-        "forces stand in the axes "
-        "of the swung carriage"
+        f"stable; it swings by {angles[place]:.3g}° in {ds['load_case'].values[place]}, the "
+        "largest angle, and the forces stand in the axes of the swung carriage"
     )
     if np.isnan(ds.get("payload_to_tipping", ds["swing"])).any():
         text += "; another payload swings it further, so that margins of the payload are not known"
@@ -628,10 +669,10 @@ def _unloaded(ds: xr.Dataset) -> Iterator[Caution]:
         up = (ds["radial_force"].sel(roller=roller) == 0).values
         gap = max(0.0, -float(ds["approach"].sel(roller=roller).max()))
         if up.any() and up[settled].all():
-            told = (
-                f"{roller} ({gap:.3g} mm away from its rail at least)" if roller in play else roller
-            )
-            never.setdefault(roller in play, []).append(told)
+            words = roller
+            if roller in play:
+                words = f"{roller} ({gap:.3g} mm away from its rail at least)"
+            never.setdefault(roller in play, []).append(words)
         elif up.any():
             share = 100 * float(ds["share"].values[up].sum())
             lifted.append(
@@ -641,11 +682,9 @@ def _unloaded(ds: xr.Dataset) -> Iterator[Caution]:
     if lifted:
         yield Caution("not_held", len(lifted), total, f"lifted: {'; '.join(lifted)}", "rollers")
     for has_play, names in never.items():
-        why = (
-            "the play is larger than the deflection: less play or a preload"
-            if has_play
-            else "a preload presses them on"
-        )
+        why = "a preload presses them on"
+        if has_play:
+            why = "the play is larger than the deflection: less play or a preload"
         yield Caution(
             "not_held",
             len(names),
@@ -671,7 +710,7 @@ def _one_contact(ds: xr.Dataset) -> Iterator[Caution]:
 
 def _second_models(ds: xr.Dataset) -> Iterator[Caution]:
     """Yield the second models that rollers exceed, or that end them before their first limit."""
-    told: dict[str, list[str]] = {}
+    lives: dict[str, list[str]] = {}
     for roller in map(str, ds["roller"].values):
         own = ds.sel(roller=roller)
         life = {
@@ -685,12 +724,12 @@ def _second_models(ds: xr.Dataset) -> Iterator[Caution]:
                 and not math.isnan(hours)
             ):
                 text = f"{roller} {100 * used:.3g} % used, {rounded_text(hours)} h"
-                told.setdefault(f"{limit_word(name)} of the {body}", []).append(text)
+                lives.setdefault(f"{limit_word(name)} of the {body}", []).append(text)
         factor, km = _by_catalogue(own)
         if factor > 1 or km < life["life_km"]:
             text = f"{roller} {100 * factor:.3g} % used, {rounded_text(km)} km"
-            told.setdefault(f"{limit_word(catalogue.LIMIT.name)} of the roller", []).append(text)
-    for words, rollers in told.items():
+            lives.setdefault(f"{limit_word(catalogue.LIMIT.name)} of the roller", []).append(text)
+    for words, rollers in lives.items():
         yield Caution(
             "second_model",
             len(rollers),

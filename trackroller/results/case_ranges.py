@@ -11,9 +11,9 @@ import numpy as np
 
 from trackroller.parameters import BODIES, FIRST_TO_FAIL, REGIMES
 from trackroller.results.answer import Required
-from trackroller.results.by_tests import beyond_sn_data, by_tests_of
 from trackroller.results.first_limits import first_at, first_limit
-from trackroller.results.lives import FIRST_LIMIT, OF_PAIR
+from trackroller.results.life_columns import FIRST_LIMIT, OF_PAIR
+from trackroller.results.lives_by_tests import beyond_sn_data, by_tests_of
 from trackroller.results.solved_cases import SolvedCases
 from trackroller.roller.output_names import body_of, is_life
 from trackroller.study.outputs import flat, of_fatigue, of_first_limit
@@ -66,29 +66,39 @@ class CaseRanges:
     @property
     def worse(self) -> np.ndarray:
         """Return the worse end of the range, shape (n,)."""
-        return self.low if self.rises else self.high
+        if self.rises:
+            return self.low
+        return self.high
 
     @property
     def better(self) -> np.ndarray:
         """Return the better end of the range, shape (n,)."""
-        return self.high if self.rises else self.low
+        if self.rises:
+            return self.high
+        return self.low
 
     @property
     def sign(self) -> float:
         """Return 1 if more is better, otherwise -1."""
-        return 1.0 if self.rises else -1.0
+        if self.rises:
+            return 1.0
+        return -1.0
 
     @property
     def worst_value(self) -> float:
         """Return the value of a case that is not held."""
         if not self.rises:
             return np.inf
-        return 0.0 if is_life(self.output[0]) else -np.inf
+        if is_life(self.output[0]):
+            return 0.0
+        return -np.inf
 
     @property
     def best_value(self) -> float:
         """Return the value that a case may have which the model cannot judge."""
-        return np.inf if self.rises else -np.inf
+        if self.rises:
+            return np.inf
+        return -np.inf
 
     @cached_property
     def middle(self) -> np.ndarray:
@@ -140,7 +150,7 @@ class CaseRanges:
         return self.results.without_chance and of_first_limit(self.output[0])
 
     @cached_property
-    def held(self) -> np.ndarray:
+    def holds(self) -> np.ndarray:
         """Return the cases that are held and judged, shape (n,)."""
         return np.asarray(self.reason == "")
 
@@ -154,7 +164,7 @@ class CaseRanges:
         """Return the held cases in which a limit is exceeded at one end of a placeholder only,
         shape (n,) by limit.
         """
-        return {name: rows & self.held for name, rows in self.results.limits_in("open").items()}
+        return {name: rows & self.holds for name, rows in self.results.limits_in("open").items()}
 
     @cached_property
     def open(self) -> np.ndarray:
@@ -191,7 +201,7 @@ class CaseRanges:
             stated = self._by_fatigue & ("life_error_estimate" in results.data)
         elif f"error_estimate_{body_of(name)}" not in results.table:
             stated = np.zeros(len(stated), dtype=bool)
-        return np.asarray(np.where(self.held & stated, self.error, np.nan))
+        return np.asarray(np.where(self.holds & stated, self.error, np.nan))
 
     @cached_property
     def _by_fatigue(self) -> np.ndarray:
@@ -224,7 +234,9 @@ class CaseRanges:
         guide = self.results.first_failing(name) == FIRST_TO_FAIL.index("guide")
         if name == FIRST_LIMIT[0]:
             return first_limit(self.results), guide
-        word = "fatigue" if of_fatigue(name) else ""
+        word = ""
+        if of_fatigue(name):
+            word = "fatigue"
         body = body_of(name)
         if body:
             guide = np.full(len(self.value), body == "guide")
@@ -258,18 +270,18 @@ class CaseRanges:
         tests = by_tests_of(self.results)
         if tests is None or not is_life(self.output[0]):
             return {}
-        found = {name: np.zeros(len(self.value), dtype=bool) for name in tests.fits}
+        ended = {name: np.zeros(len(self.value), dtype=bool) for name in tests.fits}
         for end in ("_low", "_high"):
             names, guide = self.first_at(end)
             material = np.where(guide, tests.named["guide"], tests.named["roller"])
-            for name in found:
-                found[name] |= (names == "fatigue") & (material == name) & self.held
-        return found
+            for name in ended:
+                ended[name] |= (names == "fatigue") & (material == name) & self.holds
+        return ended
 
     @cached_property
     def beyond(self) -> np.ndarray:
         """Return the cases whose life lies beyond the data of its rule, shape (n,)."""
-        return np.asarray(beyond_sn_data(self.results, self.output[0]) & self.held)
+        return np.asarray(beyond_sn_data(self.results, self.output[0]) & self.holds)
 
     def judges(self, required: Required) -> bool:
         """Return whether this output judges a requirement: it names it, or a life that comes to the
@@ -288,13 +300,16 @@ class CaseRanges:
         required : what is wanted
         exact : whether the error of the solution does not count
         """
-        error = 0.0 * self.error if exact else self.error
+        if exact:
+            error = 0.0 * self.error
+        else:
+            error = self.error
         lowest = _shrunk(self.low, error)
         highest = _grown(self.high, error)
         surely = (lowest >= required.least) & (highest <= required.most)
         perhaps = (highest >= required.least) & (lowest <= required.most)
-        sure = self.held & surely & ~self.open
-        may = np.where(self.judged, self.held & perhaps, True)
+        sure = self.holds & surely & ~self.open
+        may = np.where(self.judged, self.holds & perhaps, True)
         return np.asarray(sure), np.asarray(may)
 
     @cached_property
@@ -314,11 +329,14 @@ class CaseRanges:
         """Return the output or an end of its range as it is stored, shape (n,)."""
         name = self.output[0]
         results = self.results
-        plain = results.table[name].to_numpy(dtype=float) if name in results.table else None
-        value: np.ndarray = results.quantity(name)[0].astype(float) if plain is None else plain
+        value: np.ndarray
+        if name in results.table:
+            value = results.table[name].to_numpy(dtype=float)
+        else:
+            value = results.quantity(name)[0].astype(float)
         if end and f"{name}{end}" in results.data:
-            found = flat(results.data, f"{name}{end}", results.dims).astype(float)
-            value = np.where(np.isnan(found), value, found)
+            stored = flat(results.data, f"{name}{end}", results.dims).astype(float)
+            value = np.where(np.isnan(stored), value, stored)
         return value
 
     def _end(self, side: int) -> np.ndarray:
@@ -328,9 +346,12 @@ class CaseRanges:
         if tests is not None and is_life(self.output[0]):
             stored = tests.lives(self.output[0], stored, lambda body: self._shifts[body][side], end)
         is_better = (side == 1) == self.rises
-        unknown = self.best_value if is_better else self.worst_value
+        if is_better:
+            unknown = self.best_value
+        else:
+            unknown = self.worst_value
         missing = np.where(self.judged, self.worst_value, unknown)
-        return np.where(self.held, stored, missing)
+        return np.where(self.holds, stored, missing)
 
 
 def _shrunk(values: np.ndarray, error: np.ndarray) -> np.ndarray:

@@ -17,11 +17,11 @@ from scipy.stats import norm
 from trackroller.methods.b10 import b10
 from trackroller.results.answer import Required
 from trackroller.results.candidates import Candidates
+from trackroller.results.case_columns import codes
 from trackroller.results.case_ranges import CaseRanges
-from trackroller.results.columns import codes
+from trackroller.results.factor_levels import MOST_LEVELS
 from trackroller.results.first_limits import UNSURE
-from trackroller.results.groups import MOST_LEVELS
-from trackroller.results.lives import FIRST_LIMIT, OF_PAIR
+from trackroller.results.life_columns import FIRST_LIMIT, OF_PAIR
 from trackroller.results.requirement import required_of
 from trackroller.results.robustness import material_deviations
 from trackroller.results.solved_cases import SolvedCases
@@ -49,13 +49,13 @@ def compared_output(
     there is none; otherwise the first output that is required; without both the peak stress. None
     if the study has none of them.
     """
-    wanted = list(required)
+    outputs = list(required)
     life = results.life or next(
         (one for one in (FIRST_LIMIT, *results.fatigue_lives) if one[0] in results.table), None
     )
-    if any(one.output in OF_PAIR for one in wanted) and life is not None:
+    if any(one.output in OF_PAIR for one in outputs) and life is not None:
         return life, True
-    for one in wanted:
+    for one in outputs:
         rises = is_life(one.output) or not np.isfinite(one.most)
         return (one.output, one.words, one.units), rises
     if life is not None:
@@ -127,10 +127,10 @@ class Comparison:
     def of(cls, results: SolvedCases) -> Comparison | None:
         """Return the comparison of a study; None without a life, a stress and a requirement."""
         required = required_of(results)
-        found = compared_output(results, required)
-        if found is None or not len(results.table):
+        compared = compared_output(results, required)
+        if compared is None or not len(results.table):
             return None
-        output, rises = found
+        output, rises = compared
         return cls(
             results,
             CaseRanges(results, output, rises),
@@ -143,14 +143,14 @@ class Comparison:
     @cached_property
     def judges(self) -> tuple[tuple[Required, CaseRanges], ...]:
         """Return each requirement with the output that judges it."""
-        found = []
+        judges = []
         for one in self.required:
             own = self.ranges
             if not own.judges(one):
                 rises = is_life(one.output) or not np.isfinite(one.most)
                 own = CaseRanges(self.results, (one.output, one.words, one.units), rises)
-            found.append((one, own))
-        return tuple(found)
+            judges.append((one, own))
+        return tuple(judges)
 
     @cached_property
     def lives(self) -> CaseRanges | None:
@@ -178,15 +178,15 @@ class Comparison:
         """Return the outputs beside the compared one on which a decision rests: other requirements,
         goals that are no inputs, and the life that ranks.
         """
-        found = [own for _, own in self.judges if own is not self.ranges]
+        outputs = [own for _, own in self.judges if own is not self.ranges]
         inputs = {*self.results.factors, *self.results.derived, *self.results.goods}
         for name, way in self.followed.items():
             if name not in inputs and name not in self.results.base:
                 _, units, words = self.results.quantity(name)
-                found.append(CaseRanges(self.results, (name, words, units), way == "max"))
+                outputs.append(CaseRanges(self.results, (name, words, units), way == "max"))
         if self.lives is not None:
-            found.append(self.lives)
-        named = {own.output[0]: own for own in found}
+            outputs.append(self.lives)
+        named = {own.output[0]: own for own in outputs}
         named.pop(self.ranges.output[0], None)
         return named
 
@@ -195,24 +195,28 @@ class Comparison:
         """Return the choices that change nothing which a decision rests on: `no effect`, or `none
         on the NAME`.
         """
-        if not self.ranges.held.any():
+        if not self.ranges.holds.any():
             return {}  # equal failures do not tell whether a choice has an effect
         judged = [self.ranges, *(own for _, own in self.judges)]
         deciding = [
             values for own in judged for values in (own.low, own.high, own.reason.astype(str))
         ]
-        found = {}
+        idle = {}
         for name in self.groups.choices:
             if not unchanged_by(self.results, name, deciding):
                 continue
             table = self.results.table
             inputs = {*self.results.factors, *self.results.derived}
             columns = [table[n].to_numpy() for n in table if n not in inputs]
-            word = "life" if is_life(self.ranges.output[0]) else self.ranges.output[1]
-            found[name] = (
-                "no effect" if unchanged_by(self.results, name, columns) else f"none on the {word}"
-            )
-        return found
+            if is_life(self.ranges.output[0]):
+                word = "life"
+            else:
+                word = self.ranges.output[1]
+            if unchanged_by(self.results, name, columns):
+                idle[name] = "no effect"
+            else:
+                idle[name] = f"none on the {word}"
+        return idle
 
     @cached_property
     def choices(self) -> tuple[str, ...]:
@@ -250,7 +254,9 @@ class Comparison:
         """Return the factors that span the range of a placeholder, and so are no conditions."""
         given = self.results.roles
         few = (n for n in UNSURE if n in given and len(self.results.levels(n)) <= MOST_LEVELS)
-        return tuple(few) if not self.drawn else ()
+        if not self.drawn:
+            return tuple(few)
+        return ()
 
     @cached_property
     def conditions(self) -> tuple[str, ...]:
@@ -315,12 +321,12 @@ class Comparison:
         The pair of a case that is not compared is -1.
         """
         width = int(self.use.max()) + 1
-        found, inverse = np.unique(
+        pair, inverse = np.unique(
             self.place[self.own] * width + self.use[self.own], return_inverse=True
         )
         of_case = np.full(len(self.place), -1)
         of_case[self.own] = inverse
-        return found // width, found % width, of_case
+        return pair // width, pair % width, of_case
 
     def all_in_pair(self, rows: np.ndarray) -> np.ndarray:
         """Return the pairs of which all cases are among some rows, shape (p,)."""
@@ -362,10 +368,12 @@ class Comparison:
         """
         if self.drawn or not self.conditions or not self.matched:
             return self.own
-        held = self.all_in_pair(self.ranges.held)
-        uses = np.unique(self.pairs[1][held])
+        possible = self.all_in_pair(self.ranges.holds)
+        uses = np.unique(self.pairs[1][possible])
         rows = self.own & np.isin(self.use, uses)
-        return rows if rows.any() else self.own
+        if rows.any():
+            return rows
+        return self.own
 
     @property
     def unreachable(self) -> np.ndarray:
@@ -379,7 +387,7 @@ class Comparison:
         """Return the cases in conditions that no candidate holds, drawn ones included, shape
         (n,).
         """
-        uses = np.unique(self.pairs[1][self.all_in_pair(self.ranges.held)])
+        uses = np.unique(self.pairs[1][self.all_in_pair(self.ranges.holds)])
         return np.asarray(self.own & ~np.isin(self.use, uses))
 
     @property
@@ -387,7 +395,9 @@ class Comparison:
         """Return why cases are not judged: `chance` without a life at the failure probability asked
         for, or `model`.
         """
-        return "chance" if self.results.without_chance else "model"
+        if self.results.without_chance:
+            return "chance"
+        return "model"
 
     # what meets the requirement
 
@@ -402,8 +412,8 @@ class Comparison:
         lives : lives of a second model that take the place of those of the pair, at both ends,
             shape (2, n) [h]
         """
-        sure = self.ranges.held & ~self.ranges.open
-        may = np.where(self.ranges.judged, self.ranges.held, True)
+        sure = self.ranges.holds & ~self.ranges.open
+        may = np.where(self.ranges.judged, self.ranges.holds, True)
         for one, own in self.judges:
             certain, possible = own.meets(one, exact)
             if lives is not None and one.output in OF_PAIR:
@@ -419,7 +429,7 @@ class Comparison:
         The scatter of a material makes a life a probability. Without a requirement a case that is
         held is a hit.
         """
-        hits = self.ranges.held.astype(float)
+        hits = self.ranges.holds.astype(float)
         for one, own in self.judges:
             hits = hits * self._chance(one, own)
         return hits
@@ -464,15 +474,17 @@ class Comparison:
         order = chosen[np.lexsort((values[chosen], self.place[chosen]))]
         number = np.bincount(self.place[order], minlength=self.count)
         start = np.cumsum(number) - number
-        lower = (
-            order[np.minimum(start + np.maximum(number - 1, 0) // 2, max(len(order) - 1, 0))]
-            if len(order)
-            else []
-        )
-        upper = order[np.minimum(start + number // 2, max(len(order) - 1, 0))] if len(order) else []
+        lower = []
+        upper = []
+        if len(order):
+            lower = order[
+                np.minimum(start + np.maximum(number - 1, 0) // 2, max(len(order) - 1, 0))
+            ]
+            upper = order[np.minimum(start + number // 2, max(len(order) - 1, 0))]
         if not len(order):
             return np.full(self.count, np.nan)
-        one, other = values[lower], values[upper]
+        one = values[lower]
+        other = values[upper]
         return np.where(number > 0, np.where(one == other, one, 0.5 * (one + other)), np.nan)
 
     @cached_property
@@ -540,8 +552,11 @@ class Comparison:
 
         The interval is NaN below the number of rows at which an order statistic reaches 95 %.
         """
-        rows, sign = self.rows[number], self.ranges.sign
-        values = np.where(self.ranges.held[rows], self.ranges.middle[rows], self.ranges.worst_value)
+        rows = self.rows[number]
+        sign = self.ranges.sign
+        values = np.where(
+            self.ranges.holds[rows], self.ranges.middle[rows], self.ranges.worst_value
+        )
         value, *ends = (sign * one for one in b10(sign * values, self.scatter[rows]))
         if len(rows) < ENOUGH:
             return value, np.nan, np.nan
@@ -553,7 +568,7 @@ class Comparison:
         """
         rows = self.rows[number]
         ranked = np.sort(
-            np.where(self.ranges.held[rows], self.ranges.middle[rows], self.ranges.worst_value)
+            np.where(self.ranges.holds[rows], self.ranges.middle[rows], self.ranges.worst_value)
         )
         below = int(np.floor(0.5 * len(ranked) - 0.98 * np.sqrt(len(ranked))))
         if below < 1:
@@ -582,15 +597,18 @@ class Comparison:
         mine = values[table[1][np.searchsorted(table[0], both)]]
         theirs = values[other[1][np.searchsorted(other[0], both)]]
         with np.errstate(divide="ignore", invalid="ignore"):
-            found = mine / theirs if self.ranges.rises else theirs / mine
-        return np.where(mine == theirs, 1.0, found)
+            if self.ranges.rises:
+                ratio = mine / theirs
+            else:
+                ratio = theirs / mine
+        return np.where(mine == theirs, 1.0, ratio)
 
     def _of_condition(self, number: int) -> tuple[np.ndarray, np.ndarray]:
         """Return the conditions and places of placeholders that a candidate holds, and the case of
         each.
         """
         rows = self.rows[number]
-        rows = rows[self.ranges.held[rows] & self.reachable[rows]]
+        rows = rows[self.ranges.holds[rows] & self.reachable[rows]]
         width = int(self.level.max()) + 1
         key, first = np.unique(self.use[rows] * width + self.level[rows], return_index=True)
         return key, rows[first]
@@ -615,7 +633,9 @@ class Comparison:
         """
         name = self.ranges.output[0]
         data = self.results.data
-        stated = data.get("life_cycles" if is_life(name) else "peak_stress")
+        stated = data.get("peak_stress")
+        if is_life(name):
+            stated = data.get("life_cycles")
         if stated is None or "expected_relative_error" not in stated.attrs:
             return None  # solved patches, falling friction, tolerances and settings of a user
         if "contact_model" not in data.attrs:
@@ -626,7 +646,9 @@ class Comparison:
         )
         if np.max(friction) > ORDINARY_FRICTION:
             return None
-        quantity = "life" if is_life(name) else "peak_stress"
+        quantity = "peak_stress"
+        if is_life(name):
+            quantity = "life"
         return ratio_error(str(data.attrs["accuracy"]), str(data.attrs["contact_model"]), quantity)
 
     def hours_by_limit(self, end: str) -> np.ndarray | None:

@@ -54,18 +54,23 @@ def quantity_of(
         or (given and (name in ds.coords or name in factors))
     ):
         rows = int(np.prod([ds.sizes[d] for d in dims]))
-        values = readable(flat(ds, name, dims) if given else _constant(base, name, rows))
+        if given:
+            column = flat(ds, name, dims)
+        else:
+            column = _constant(base, name, rows)
+        values = readable(column)
         known = parameter_of(name)
-        return (
-            values,
-            known.units if known else "",
-            known.long_name if known else name.replace("_", " "),
-        )
+        if known is None:
+            return values, "", name.replace("_", " ")
+        return values, known.units, known.long_name
     try:
         output = outputs(ds, dims, [name], REGIMES[:3], scale="natural", unlimited=True)[0]
     except InputError as error:
         close = nearest(name, REGIMES)
-        remedy = f"Did you mean '{close}'?" if close else error.remedy
+        if close:
+            remedy = f"Did you mean '{close}'?"
+        else:
+            remedy = error.remedy
         raise InputError(
             "pareto or constraints", name, error.allowed, remedy, error.wrong
         ) from None
@@ -74,8 +79,12 @@ def quantity_of(
 
 def _constant(base: Mapping[str, Any], name: str, rows: int) -> np.ndarray:
     """Return a parameter that the result lacks."""
-    value = base.get(name, PARAMETERS[name].default if name in PARAMETERS else "")
-    return np.full(rows, np.nan if value is None else value)
+    value = base.get(name, "")
+    if name not in base and name in PARAMETERS:
+        value = PARAMETERS[name].default
+    if value is None:
+        value = np.nan
+    return np.full(rows, value)
 
 
 def meeting(

@@ -15,14 +15,6 @@ from trackroller.methods.b10 import quantile
 from trackroller.methods.optimise import nondominated_ranks
 from trackroller.parameters.carriage_fields import long_name_of
 from trackroller.results.answer import Answer
-from trackroller.results.answer_parts import (
-    cautions,
-    checks_left_out,
-    facts_of,
-    given_for_nothing,
-    lost_by_missing_input,
-    not_given_words,
-)
 from trackroller.results.candidate_table import (
     candidate_columns,
     candidate_table,
@@ -32,12 +24,20 @@ from trackroller.results.candidate_table import (
 )
 from trackroller.results.comparison import EQUAL, Comparison
 from trackroller.results.effect_curves import Effects
-from trackroller.results.first_ends import ends_by_factor
-from trackroller.results.judging import normalised
-from trackroller.results.lives import OF_PAIR
-from trackroller.results.places import places_of, places_text, plain
+from trackroller.results.ends_by_factor import ends_by_factor
+from trackroller.results.life_columns import OF_PAIR
+from trackroller.results.search_fitness import normalised
 from trackroller.results.solved_cases import SolvedCases
-from trackroller.results.turning import Turning
+from trackroller.results.study_facts import (
+    cautions,
+    checks_left_out,
+    facts_of,
+    given_for_nothing,
+    lost_by_missing_input,
+    not_given_words,
+)
+from trackroller.results.subgroups import places_of, places_text, plain
+from trackroller.results.turning_values import Turning
 from trackroller.roller.output_names import is_life
 
 RIVALS = 200  # of the leader that are compared with it pair by pair, the best ones
@@ -88,9 +88,13 @@ class Decider:
         It is the tenth part of drawn conditions, otherwise the geometric middle of the range at the
         worst condition.
         """
-        name = "tenth" if self.own.drawn and is_life(self.own.ranges.output[0]) else "middle"
+        name = "middle"
+        if self.own.drawn and is_life(self.own.ranges.output[0]):
+            name = "tenth"
         values = self.table[name].to_numpy(dtype=float)
-        worst = -np.inf if not self.own.ranges.rises else 0.0
+        worst = 0.0
+        if not self.own.ranges.rises:
+            worst = -np.inf
         return np.where(np.isnan(values), worst, self.own.ranges.sign * values)
 
     @cached_property
@@ -105,7 +109,9 @@ class Decider:
         columns = [np.zeros((own.count, 0))]
         for name, way in own.followed.items():
             values = own.results.quantity(name)[0]
-            sign = 1.0 if way == "max" else -1.0
+            sign = -1.0
+            if way == "max":
+                sign = 1.0
             worst = np.full(own.count, np.inf)
             rows = own.reachable & ~np.isnan(values.astype(float))
             np.minimum.at(worst, own.place[rows], sign * values[rows].astype(float))
@@ -139,7 +145,7 @@ class Decider:
         life = own.lives
         if life is None:
             return np.zeros(own.count)
-        values = np.where(life.held, life.middle, 0.0)
+        values = np.where(life.holds, life.middle, 0.0)
         if own.drawn:
             return np.array([float(quantile(np.sort(values[rows]), 0.1)) for rows in own.rows])
         worst = np.full(own.count, np.inf)
@@ -164,7 +170,10 @@ class Decider:
         the largest low.
         """
         numbers = np.array(list(among), dtype=int)
-        worse = self.table["low" if self.own.ranges.rises else "high"].to_numpy(dtype=float)
+        worse_end = "high"
+        if self.own.ranges.rises:
+            worse_end = "low"
+        worse = self.table[worse_end].to_numpy(dtype=float)
         low = self.own.ranges.sign * np.nan_to_num(worse, nan=self.own.ranges.worst_value)
         median = self.own.ranges.sign * np.nan_to_num(
             self.table["median"].to_numpy(dtype=float), nan=-np.inf
@@ -177,14 +186,16 @@ class Decider:
         """Return which candidate to build, or why that cannot be said."""
         if self.own.drawn and self.own.required and not np.isfinite(self.own.wanted_share):
             return self._by_share()
-        return self._by_requirement() if self.own.required else self._by_rank()
+        if self.own.required:
+            return self._by_requirement()
+        return self._by_rank()
 
     def _by_share(self) -> Decision:
         """Return the candidate with the largest share; the shares are not judged."""
         keys = self.score, self.table["share"].to_numpy()
         order = [int(one) for one in np.lexsort(tuple(-key for key in keys))]
-        held = self.table["holds"].to_numpy() > 0
-        if not held.any():
+        holds = self.table["holds"].to_numpy() > 0
+        if not holds.any():
             return Decision("none", order, [])
         return Decision("build", order, order[:1])
 
@@ -192,13 +203,16 @@ class Decider:
         state = self.table["state"].to_numpy()
         every = np.arange(self.own.count)
         groups = [self.best_first(every[state == word]) for word in ("met", "open")]
-        rest = self.nearest_first(every[(state != "met") & (state != "open")])
-        order = [*groups[0], *groups[1], *rest]
+        others = self.nearest_first(every[(state != "met") & (state != "open")])
+        order = [*groups[0], *groups[1], *others]
         if groups[0]:
             tied = [one for one in groups[0][1:RIVALS] if self._tied(groups[0][0], one)]
             named = [groups[0][0], *tied]
+            kind = "build"
+            if tied:
+                kind = "a_or_b"
             return Decision(
-                "a_or_b" if tied else "build",
+                kind,
                 [*named, *(n for n in order if n not in named)],
                 named,
             )
@@ -219,11 +233,12 @@ class Decider:
         least = max(
             (one.least for one in self.own.required if one.output in OF_PAIR), default=np.nan
         )
-        found = self.turning.of_open_limit(leader) or self.turning.decides(leader, least)
-        return Decision("measure", order, [leader], measure=found or {})
+        placeholder = self.turning.of_open_limit(leader) or self.turning.decides(leader, least)
+        return Decision("measure", order, [leader], measure=placeholder or {})
 
     def _by_rank(self) -> Decision:
-        own, table = self.own, self.table
+        own = self.own
+        table = self.table
         every = np.arange(own.count)
         order = self.nearest_first(every)
         judged = (table["judged"] == table["of"]).to_numpy()
@@ -250,10 +265,12 @@ class Decider:
             *(n for n in ranked if n not in named),
             *(n for n in order if n not in ranked),
         ]
-        found = self.turning.of_span(leader, rivals) or self.turning.leads(leader, rivals)
-        if found:
-            return Decision("measure", order, [leader], measure=found)
-        return Decision("build" if len(named) == 1 else "a_or_b", order, named)
+        placeholder = self.turning.of_span(leader, rivals) or self.turning.leads(leader, rivals)
+        if placeholder:
+            return Decision("measure", order, [leader], measure=placeholder)
+        if len(named) > 1:
+            return Decision("a_or_b", order, named)
+        return Decision("build", order, named)
 
     def _beats(self, one: int, other: int) -> bool:
         """Return whether a candidate is never worse than another one by more than the error, and
@@ -300,15 +317,19 @@ def answer_decide(results: SolvedCases) -> Answer:
     assert own is not None
     table = candidate_table(own)
     decider = Decider(own, table)
-    found = decider.decided()
-    turns = _missing_input(own, found)
+    decision = decider.decided()
+    turns = _missing_input(own, decision)
     if turns:
-        found.kind = "give"
-    shown = with_ratios(own, table.iloc[found.order].reset_index(drop=True))
+        decision.kind = "give"
+    shown = with_ratios(own, table.iloc[decision.order].reset_index(drop=True))
+    if decision.kind == "none":
+        number_named = 1
+    else:
+        number_named = len(decision.named)
     return Answer(
         question="decide",
-        kind=found.kind,
-        headline=_headline(own, table, found) | turns,
+        kind=decision.kind,
+        headline=_headline(own, table, decision) | turns,
         output=own.ranges.output,
         table=shown,
         columns=candidate_columns(own, shown),
@@ -318,21 +339,21 @@ def answer_decide(results: SolvedCases) -> Answer:
         not_checked=checks_left_out(results),
         not_used=given_for_nothing(results) | own.idle,
         not_given=not_given_words(results),
-        warnings=cautions(own, shown, 1 if found.kind == "none" else len(found.named)),
+        warnings=cautions(own, shown, number_named),
         facts=facts_of(results, own),
     )
 
 
-def _missing_input(own: Comparison, found: Decision) -> dict[str, Any]:
+def _missing_input(own: Comparison, decision: Decision) -> dict[str, Any]:
     """Return the load to give that was not given and by which conditions are lost; {} without one.
 
     None is asked for where no candidate meets the requirement in the conditions that are held.
     """
     name = lost_by_missing_input(own)
-    if not name or found.kind == "cannot_tell":
+    if not name or decision.kind == "cannot_tell":
         return {}
     lost = own.never_held
-    missed = found.kind == "none" and own.ranges.held.any() and bool(own.required)
+    missed = decision.kind == "none" and own.ranges.holds.any() and bool(own.required)
     if missed and not _meets_without(own, lost):
         return {}
     return {"give": {"what": long_name_of(name)}, **lost_conditions(own, lost)}
@@ -364,66 +385,69 @@ def with_ratios(own: Comparison, shown: pd.DataFrame) -> pd.DataFrame:
     return shown.assign(ratio_low=ends[:, 0], ratio_high=ends[:, 1], longer=better)
 
 
-def _headline(own: Comparison, table: pd.DataFrame, found: Decision) -> dict[str, Any]:
+def _headline(own: Comparison, table: pd.DataFrame, decision: Decision) -> dict[str, Any]:
     """Return the numbers and names of the headline: the named candidates, and what a reader must
     know of them.
     """
-    one = table.iloc[found.order[0]]
-    told: dict[str, Any] = {
-        "names": names_of(own, found.named) if found.named else [],
-        "why": found.why,
+    one = table.iloc[decision.order[0]]
+    names = []
+    if decision.named:
+        names = names_of(own, decision.named)
+    head: dict[str, Any] = {
+        "names": names,
+        "why": decision.why,
         **leading(own, one),
-        "measure": found.measure,
+        "measure": decision.measure,
     }
-    if len(found.named) > 1:
-        told["shared"] = shared_names(own, found.named)
-    told["goals"] = _goals_of(own, one)
-    told |= not_held_by_any(own)
-    if found.kind in ("none", "cannot_tell"):
-        told["nearest"] = {
-            "name": names_of(own, [found.order[0]])[0],
+    if len(decision.named) > 1:
+        head["shared"] = shared_names(own, decision.named)
+    head["goals"] = _goals_of(own, one)
+    head |= not_held_by_any(own)
+    if decision.kind in ("none", "cannot_tell"):
+        head["nearest"] = {
+            "name": names_of(own, [decision.order[0]])[0],
             **{key: plain(one[key]) for key in ("holds", "of", "meets", "low", "fails")},
         }
-    return told | _level_reached(own, table)
+    return head | _level_reached(own, table)
 
 
 def _goals_of(own: Comparison, one: pd.Series) -> list[dict[str, Any]]:
     """Return the goals that are neither choices nor the compared output, at the worst condition of
     a candidate.
     """
-    found = []
+    goals = []
     for name in own.followed:
         _, units, words = own.results.quantity(name)
         if name in own.results.goods:
             units = str(own.results.data[name].attrs.get("units", ""))
         for key in (f"of_{name}", f"own_{name}", name):
             if key in one.index and name not in own.choices:
-                found.append({"words": words, "units": units, "value": plain(one[key])})
+                goals.append({"words": words, "units": units, "value": plain(one[key])})
                 break
-    return found
+    return goals
 
 
 def leading(own: Comparison, one: pd.Series) -> dict[str, Any]:
     """Return what a headline says of one candidate, a row of `candidate_table`."""
-    told: dict[str, Any] = {
+    head: dict[str, Any] = {
         key: plain(one[key])
         for key in ("low", "high", "worst", "ends", "ends_high", "body", "body_high", "error")
     }
-    told["extrapolated"] = bool(one["extrapolated"])
-    told["elsewhere"] = bool(one["holds"] < one["of"])
+    head["extrapolated"] = bool(one["extrapolated"])
+    head["elsewhere"] = bool(one["holds"] < one["of"])
     if one["exceeded_by"]:
-        told["exceeded"] = {
+        head["exceeded"] = {
             "limit": plain(one["exceeded_by"]),
             "body": plain(one["exceeded_body"]),
             "use": float(one["use"]),
             "hours": float(one["use_hours"]),
         }
     if one["second_state"] not in ("", one["state"]):
-        told["second"] = {"limit": plain(one["second"]), "verdict": plain(one["second_state"])}
+        head["second"] = {"limit": plain(one["second"]), "verdict": plain(one["second_state"])}
     if own.drawn:
-        told |= {key: float(one[key]) for key in ("share", "share_low", "share_high")}
-        told |= {"wanted": own.wanted_share, "n": int(one["n"])}
-    return told
+        head |= {key: float(one[key]) for key in ("share", "share_low", "share_high")}
+        head |= {"wanted": own.wanted_share, "n": int(one["n"])}
+    return head
 
 
 def not_held_by_any(own: Comparison) -> dict[str, Any]:
@@ -442,8 +466,11 @@ def lost_conditions(own: Comparison, rows: np.ndarray) -> dict[str, Any]:
     place = places_of(table.iloc[first], names, lost, np.ones(len(first), dtype=bool))
     judged = own.ranges.judged[rows]
     where = places_text(place, table.iloc[first]) or causes_text(own, rows)
-    told = {"count": int(lost.sum()), "of": len(first), "where": where}
-    return {"not_held" if judged.any() else "not_judged": told}
+    conditions = {"count": int(lost.sum()), "of": len(first), "where": where}
+    cause = "not_judged"
+    if judged.any():
+        cause = "not_held"
+    return {cause: conditions}
 
 
 def causes_text(own: Comparison, rows: np.ndarray) -> str:
@@ -467,9 +494,9 @@ def _level_reached(own: Comparison, table: pd.DataFrame) -> dict[str, Any]:
     contiguous = len(hits) > 1 and hits[-1] - hits[0] + 1 == len(hits)
     if not contiguous or len(hits) == len(levels):
         return {}
-    told = {}
+    head = {}
     if hits[0] > 0:
-        told["from_on"] = float(levels[order][hits[0]])
+        head["from_on"] = float(levels[order][hits[0]])
     if hits[-1] < len(levels) - 1:
-        told["up_to"] = float(levels[order][hits[-1]])
-    return told
+        head["up_to"] = float(levels[order][hits[-1]])
+    return head

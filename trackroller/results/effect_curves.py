@@ -16,10 +16,11 @@ from trackroller.methods.interactions import MAX_ROWS, ROWS_PER_TERM, best_fit
 from trackroller.methods.intervals import constant
 from trackroller.parameters.carriage_fields import long_name_of, parameter_of
 from trackroller.results.answer import Curve
+from trackroller.results.case_columns import codes
 from trackroller.results.case_ranges import CaseRanges
-from trackroller.results.columns import codes
-from trackroller.results.groups import BINS, MOST_LEVELS, groups, spaced_by_ratio
+from trackroller.results.factor_levels import BINS, MOST_LEVELS, groups, spaced_by_ratio
 from trackroller.results.solved_cases import SolvedCases
+from trackroller.results.subgroups import plain
 from trackroller.study.design.entries import OPTION_FACTORS
 
 FEWEST_ROWS = 30  # smallest number of cases that are fitted
@@ -59,7 +60,7 @@ class Effects:
     def of(cls, ranges: CaseRanges) -> Effects:
         """Return the effects on an output over the cases that are held and have a finite value."""
         results = ranges.results
-        rows = results.of_one_model(ranges.held) & np.isfinite(ranges.value)
+        rows = results.of_one_model(ranges.holds) & np.isfinite(ranges.value)
         return cls(results, ranges, np.asarray(rows))
 
     @cached_property
@@ -73,23 +74,28 @@ class Effects:
         """Return the output on the scale on which effects add up, shape (n,): its logarithm if
         effects are ratios.
         """
-        with np.errstate(divide="ignore", invalid="ignore"):
-            return np.log(self.ranges.value) if self.by_ratio else self.ranges.value
+        values: np.ndarray = self.ranges.value
+        if self.by_ratio:
+            with np.errstate(divide="ignore", invalid="ignore"):
+                values = np.log(values)
+        return values
 
     def back(self, values: np.ndarray) -> np.ndarray:
         """Return values of `y` as values of the output."""
-        return np.exp(values) if self.by_ratio else values
+        if self.by_ratio:
+            values = np.exp(values)
+        return values
 
     def curves(self) -> tuple[Curve, ...]:
         """Return the curve of each factor with two levels that count, the highest one first."""
-        found = []
+        curves = []
         for name in self.results.factors:
             if name in OPTION_FACTORS or name in self.results.labels:
                 continue
             curve = self._by_pairs(name) or self._by_fit(name) or self._by_classes(name)
             if curve is not None:
-                found.append(curve)
-        return tuple(sorted(found, key=lambda curve: -_size(curve.height, self.by_ratio)))
+                curves.append(curve)
+        return tuple(sorted(curves, key=lambda curve: -_size(curve.height, self.by_ratio)))
 
     def _by_pairs(self, name: str) -> Curve | None:
         """Return the median of like cases at each level; None without enough of them.
@@ -106,22 +112,22 @@ class Effects:
         place = pd.Index(levels).get_indexer(table[name])
         matrix = np.full((int(key.max(initial=-1)) + 1, len(levels)), np.nan)
         matrix[key, place] = self.y[rows]
-        seen = ~np.isnan(matrix).all(axis=0)
-        whole = ~np.isnan(matrix[:, seen]).any(axis=1)
+        known = ~np.isnan(matrix).all(axis=0)
+        whole = ~np.isnan(matrix[:, known]).any(axis=1)
         if (
-            seen.sum() < 2
+            known.sum() < 2
             or whole.sum() < min(FEWEST_PAIRS, max(len(matrix), 1))
-            or whole.sum() * seen.sum() < 2
+            or whole.sum() * known.sum() < 2
         ):
             return None
-        if len(rows) > 3 * seen.sum() and whole.sum() < 0.05 * len(matrix):
+        if len(rows) > 3 * known.sum() and whole.sum() < 0.05 * len(matrix):
             return None
-        full = matrix[whole][:, seen]
-        kept = [level for level, here in zip(levels, seen, strict=True) if here]
+        full = matrix[whole][:, known]
+        counted = [level for level, here in zip(levels, known, strict=True) if here]
         ends = np.quantile(full, BAND, axis=0)
         shape = self._shape(name, np.median(full, axis=0), full)
-        left = len(rows) - int(whole.sum() * seen.sum())
-        return self._curve(name, kept, np.median(full, axis=0), ends, shape, full.size, left)
+        left = len(rows) - int(whole.sum() * known.sum())
+        return self._curve(name, counted, np.median(full, axis=0), ends, shape, full.size, left)
 
     def _by_fit(self, name: str) -> Curve | None:
         """Return the curve of a factor by the fit of the sample; None where the fit predicts too
@@ -129,7 +135,8 @@ class Effects:
         """
         if self.fit is None or name not in self.fit.parts:
             return None
-        part, own = self.fit.parts[name], self.fit.values[name]
+        part = self.fit.parts[name]
+        own = self.fit.values[name]
         others = self.fit.whole - part
         middle, ends = np.median(others), np.quantile(others, BAND)
         if self.results.ordered(name):
@@ -153,13 +160,13 @@ class Effects:
             return None
         parts = groups(self.results.table, name, self.rows, BINS)
         inside = [self.y[self.rows][parts.index == k] for k in range(len(parts))]
-        kept = [k for k, own in enumerate(inside) if len(own)]
-        if len(kept) < 2 or np.median([len(inside[k]) for k in kept]) < FEWEST_PAIRS:
+        counted = [k for k, own in enumerate(inside) if len(own)]
+        if len(counted) < 2 or np.median([len(inside[k]) for k in counted]) < FEWEST_PAIRS:
             return None
-        middle = np.array([np.median(inside[k]) for k in kept])
-        ends = np.array([np.quantile(inside[k], BAND) for k in kept]).T
+        middle = np.array([np.median(inside[k]) for k in counted])
+        ends = np.array([np.quantile(inside[k], BAND) for k in counted]).T
         levels = [
-            parts.low[k] if parts.low[k] == parts.high[k] else float(parts.at[k]) for k in kept
+            parts.low[k] if parts.low[k] == parts.high[k] else float(parts.at[k]) for k in counted
         ]
         return self._curve(
             name, levels, middle, ends, self._shape(name, middle, None), int(self.rows.sum()), 0
@@ -177,24 +184,28 @@ class Effects:
     ) -> Curve:
         known = parameter_of(name)
         numbers = self.results.numeric(name)
-        own = np.array(levels, dtype=float) if numbers else np.zeros(0)
-        height = float(
-            np.exp(middle.max() - middle.min()) if self.by_ratio else middle.max() - middle.min()
-        )
+        if numbers:
+            own = np.array(levels, dtype=float)
+        else:
+            own = np.zeros(0)
+        height = middle.max() - middle.min()
+        if self.by_ratio:
+            height = np.exp(height)
+        units = ""
+        if known is not None and known.unit != "-":
+            units = known.units
         return Curve(
             factor=name,
             title=long_name_of(name),
-            units="" if known is None or known.unit == "-" else known.units,
+            units=units,
             role=self.results.roles.get(name, ""),
-            levels=tuple(
-                level.item() if isinstance(level, np.generic) else level for level in levels
-            ),
+            levels=tuple(plain(level) for level in levels),
             middle=self.back(middle),
             low=self.back(ends[0]),
             high=self.back(ends[1]),
             logarithmic=bool(numbers and spaced_by_ratio(own, 5.0)),
             ordered=self.results.ordered(name),
-            height=height,
+            height=float(height),
             shape=shape,
             rows=rows,
             left_out=max(left, 0),
@@ -204,16 +215,21 @@ class Effects:
     def _shape(self, name: str, middle: np.ndarray, pairs: np.ndarray | None) -> str:
         """Return the shape of a curve in one word."""
         span = float(middle.max() - middle.min())
-        least = np.log(FLAT) if self.by_ratio else 0.01 * max(float(np.abs(middle).max()), 1e-300)
-        if pairs is not None and _two_groups(
-            pairs, np.log(SPLIT) if self.by_ratio else 0.25 * max(span, 1e-300)
-        ):
+        if self.by_ratio:
+            least = np.log(FLAT)
+            split = np.log(SPLIT)
+            turn = min(np.log(TURNS), HALF * span)
+        else:
+            least = 0.01 * max(float(np.abs(middle).max()), 1e-300)
+            split = 0.25 * max(span, 1e-300)
+            turn = 0.1 * span
+        turn = max(turn, 0.05 * span)
+        if pairs is not None and _two_groups(pairs, split):
             return "groups"
         if span <= least:
             return "flat"
         if not self.results.ordered(name):
             return "levels"
-        turn = max(min(np.log(TURNS), HALF * span) if self.by_ratio else 0.1 * span, 0.05 * span)
         top, bottom = int(middle.argmax()), int(middle.argmin())
         inner = len(middle) - 1
         if 0 < top < inner and min(middle[top] - middle[0], middle[top] - middle[-1]) > turn:
@@ -226,7 +242,9 @@ class Effects:
         steps = np.abs(np.diff(middle))
         if len(steps) >= 3 and steps.max() > CLIFF * steps.sum():
             return "cliff"
-        return "rise" if middle[-1] > middle[0] else "fall"
+        if middle[-1] > middle[0]:
+            return "rise"
+        return "fall"
 
     @cached_property
     def fit(self) -> _Fitted | None:
@@ -236,7 +254,8 @@ class Effects:
         good = np.flatnonzero(self.rows)
         if len(good) > MAX_ROWS:
             good = good[np.linspace(0, len(good) - 1, MAX_ROWS).astype(int)]
-        table, y = self.results.table.iloc[good], self.y[good]
+        table = self.results.table.iloc[good]
+        y = self.y[good]
         names = [
             n for n in self.results.factors if n not in OPTION_FACTORS and table[n].nunique() > 1
         ]
@@ -252,18 +271,19 @@ class Effects:
             for name, own in zip(names, columns, strict=True)
             if len(np.unique(own)) > MOST_LEVELS
         ]
-        most = (codes(table, drawn).max() + 1) / ROWS_PER_TERM / len(drawn) if drawn else np.inf
+        most = np.inf
+        if drawn:
+            most = (codes(table, drawn).max() + 1) / ROWS_PER_TERM / len(drawn)
         degrees = tuple(one for one in DEGREES if one[0] <= most) or DEGREES[-1:]
-        found = best_fit(y, np.stack(columns, axis=1), ordered, degrees, ranked=False)
-        if found is None or found.share < TOLD:
+        fit = best_fit(y, np.stack(columns, axis=1), ordered, degrees, ranked=False)
+        if fit is None or fit.share < TOLD:
             return None
-        weights = np.linalg.lstsq(found.table, y, rcond=None)[0]
+        weights = np.linalg.lstsq(fit.table, y, rcond=None)[0]
         parts = {
-            name: np.where(found.term == j, found.table, 0.0) @ weights
-            for j, name in enumerate(names)
+            name: np.where(fit.term == j, fit.table, 0.0) @ weights for j, name in enumerate(names)
         }
         values = {name: table[name].to_numpy() for name in names}
-        return _Fitted(found.share, found.table @ weights, parts, values)
+        return _Fitted(fit.share, fit.table @ weights, parts, values)
 
 
 @dataclass(frozen=True, eq=False)
@@ -296,11 +316,15 @@ def _scaled(values: pd.Series) -> np.ndarray:
     logs = np.sign(own) * np.log(sizes / sizes.max())
     places = stats.rankdata(own)  # a sample that is even in its logarithm was drawn so
     even = np.corrcoef(places, logs)[0, 1] > np.corrcoef(places, own)[0, 1]
-    return logs if even or sizes.max() < SPANNED[1] * sizes.min() else own
+    if even or sizes.max() < SPANNED[1] * sizes.min():
+        own = logs
+    return own
 
 
 def _size(height: float, by_ratio: bool) -> float:
-    return abs(np.log(height)) if by_ratio and height > 0 else abs(height)
+    if by_ratio and height > 0:
+        height = np.log(height)
+    return abs(height)
 
 
 def _two_groups(pairs: np.ndarray, apart: float) -> bool:

@@ -8,8 +8,8 @@ import pandas as pd
 from trackroller.damage import LIMITS
 from trackroller.damage.verdict import breaking
 from trackroller.parameters import BODIES, FIRST_TO_FAIL
-from trackroller.results.groups import MOST_LEVELS
-from trackroller.results.lives import FIRST_LIMIT
+from trackroller.results.factor_levels import MOST_LEVELS
+from trackroller.results.life_columns import FIRST_LIMIT
 from trackroller.results.solved_cases import SolvedCases
 from trackroller.study.outputs import flat
 
@@ -23,9 +23,9 @@ def first_limit(results: SolvedCases) -> np.ndarray:
         np.nan_to_num(results.column(f"limiting_mechanism_{body}", np.nan), nan=-1).astype(int)
         for body in BODIES
     ]
-    names = np.array(
-        [*(name if name in LIMITS else "" for name in results.limits), ""], dtype=object
-    )
+    # the last one, -1, is that of a case whose limit is not known
+    names = np.array([*results.limits, ""], dtype=object)
+    names[~np.isin(names, list(LIMITS))] = ""
     return np.asarray(names[np.where(guide, numbers[1], numbers[0])])
 
 
@@ -75,9 +75,7 @@ def reached_by_body(results: SolvedCases, end: str = "") -> np.ndarray:
         ranged = flat(results.data, f"life_hours_by_limit{end}", results.dims)
         hours = np.where(np.isnan(ranged), hours, ranged)
     limits = [LIMITS[name] for name in results.data["limit"].values.tolist()]
-    breaks = np.stack(
-        [results.flagged("static", body if results.by_body else "") for body in BODIES], axis=1
-    )
+    breaks = np.stack([results.flagged("static", body) for body in BODIES], axis=1)
     counted = np.array([not limit.beside for limit in limits])[:, None]
     reached = np.where(breaking(breaks, limits), 0.0, np.where(counted, hours, np.nan))
     return np.asarray(np.nan_to_num(reached, nan=np.inf, posinf=np.inf))
@@ -92,7 +90,8 @@ def first_at(
     A limit has the name '' where none is reached. `reached` holds other hours than those of
     `reached_by_body`.
     """
-    reached = reached_by_body(results, end) if reached is None else reached
+    if reached is None:
+        reached = reached_by_body(results, end)
     flattened = reached.reshape(len(reached), -1)
     place = flattened.argmin(axis=1)
     names = np.array(results.data["limit"].values.tolist(), dtype=object)[place // reached.shape[2]]
@@ -103,5 +102,6 @@ def first_at(
 
 
 # values that are known within a range only
-COEFFICIENT, POSITION = "wear_coefficient_factor", "placeholder_position"
+COEFFICIENT = "wear_coefficient_factor"
+POSITION = "placeholder_position"
 UNSURE = (COEFFICIENT, POSITION)

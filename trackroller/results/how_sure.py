@@ -9,19 +9,19 @@ from typing import Any
 import numpy as np
 
 from trackroller.results.answer import Answer
-from trackroller.results.answer_parts import (
+from trackroller.results.candidate_table import candidate_columns, candidate_table, names_of
+from trackroller.results.comparison import Comparison
+from trackroller.results.decide import Decider, leading, not_held_by_any, with_ratios
+from trackroller.results.effect_curves import Effects
+from trackroller.results.ends_by_factor import ends_by_factor
+from trackroller.results.solved_cases import SolvedCases
+from trackroller.results.study_facts import (
     cautions,
     checks_left_out,
     facts_of,
     given_for_nothing,
     not_given_words,
 )
-from trackroller.results.candidate_table import candidate_columns, candidate_table, names_of
-from trackroller.results.comparison import Comparison
-from trackroller.results.decide import Decider, leading, not_held_by_any, with_ratios
-from trackroller.results.effect_curves import Effects
-from trackroller.results.first_ends import ends_by_factor
-from trackroller.results.solved_cases import SolvedCases
 
 
 def answer_how_sure(results: SolvedCases) -> Answer:
@@ -43,20 +43,25 @@ def answer_how_sure(results: SolvedCases) -> Answer:
     order = _order(own, table)
     shown = with_ratios(own, table.iloc[order].reset_index(drop=True))
     one = shown.iloc[0]
-    told: dict[str, Any] = {
-        "names": names_of(own, order[:1]) if own.count > 1 else [],
+    names = []
+    if own.count > 1:
+        names = names_of(own, order[:1])
+    head: dict[str, Any] = {
+        "names": names,
         **leading(own, one),
     }
     if not own.drawn:
-        told |= {"meets": int(one["meets"]), "of": int(one["of"])}
-    kind = "share" if own.drawn else "count"
+        head |= {"meets": int(one["meets"]), "of": int(one["of"])}
+    kind = "count"
+    if own.drawn:
+        kind = "share"
     if not own.ranges.judged[own.own].any():
         kind = "cannot_tell"
-        told |= {"why": own.why_unjudged}
+        head |= {"why": own.why_unjudged}
     return Answer(
         question="how sure",
         kind=kind,
-        headline=told | not_held_by_any(own),
+        headline=head | not_held_by_any(own),
         output=own.ranges.output,
         table=shown,
         columns=candidate_columns(own, shown),
@@ -77,13 +82,16 @@ def _order(own: Comparison, table: Any) -> list[int]:
     largest first.
     """
     decider = Decider(own, table)
-    share = table["share"] if own.drawn else table["meets"] / table["of"]
+    if own.drawn:
+        share = table["share"]
+    else:
+        share = table["meets"] / table["of"]
     return [int(n) for n in np.lexsort((-decider.score, -share.to_numpy(dtype=float)))]
 
 
 def _values(own: Comparison, order: list[int]) -> list[np.ndarray]:
     """Return the output of the conditions of each candidate, in rising order."""
     return [
-        np.sort(np.where(own.ranges.held, own.ranges.middle, own.ranges.worst_value)[own.rows[n]])
+        np.sort(np.where(own.ranges.holds, own.ranges.middle, own.ranges.worst_value)[own.rows[n]])
         for n in order
     ]

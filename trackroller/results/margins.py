@@ -21,7 +21,7 @@ from trackroller.damage.verdict import ENDS, STATES
 from trackroller.fit.stored import StoredFit, fits_of_case
 from trackroller.materials import Material
 from trackroller.parameters import BODIES, PARAMETERS, REGIMES
-from trackroller.results.lives import past_data
+from trackroller.results.life_columns import past_data
 from trackroller.roller.dataset import validity_bit
 from trackroller.roller.geometry import rolling_radius
 from trackroller.roller.limit_notes import placeholders_of
@@ -106,12 +106,30 @@ class Margin:
         """
         if self.breaks:
             return 0.0
-        return math.inf if math.isnan(self.hours) else self.hours
+        if math.isnan(self.hours):
+            return math.inf
+        return self.hours
+
+    @property
+    def soonest(self) -> float:
+        """Return the low end of the hours; 0 if the body breaks, NaN if they are not known."""
+        if self.breaks:
+            return 0.0
+        return self.low
+
+    @property
+    def latest(self) -> float:
+        """Return the high end of the hours; 0 if the body breaks, NaN if they are not known."""
+        if self.breaks:
+            return 0.0
+        return self.high
 
     @property
     def bodies(self) -> tuple[str, ...]:
         """Return the bodies that the limit concerns; none for the pair."""
-        return BODIES if self.body == BOTH else tuple(body for body in BODIES if body == self.body)
+        if self.body == BOTH:
+            return BODIES
+        return tuple(body for body in BODIES if body == self.body)
 
 
 def overrollings(inputs: Mapping[str, Any], body: str) -> float:
@@ -120,7 +138,9 @@ def overrollings(inputs: Mapping[str, Any], body: str) -> float:
     """
     if body == "guide":
         rate = inputs.get("guide_overrollings_per_hour")
-        return math.nan if rate is None else float(rate)
+        if rate is None:
+            return math.nan
+        return float(rate)
     alpha = math.radians(inputs["contact_angle"])
     radius = rolling_radius(inputs["axis_distance"], inputs["guide_profile_radius"], alpha)
     return float(roller_overrollings(inputs["velocity"], radius))
@@ -156,14 +176,19 @@ def lifeless_bodies(ds: xr.Dataset, materials: Mapping[str, Material]) -> dict[s
     one.
     """
     regime = REGIMES[int(ds["regime"])]
-    found = {}
+    reasons = {}
     for body, material in materials.items():
         marked = False
         if "validity_body" in ds:
             marked = bool(int(ds["validity_body"].sel(body=body)) & validity_bit("static"))
         breaks = marked or overload_of(ds, body, material) > 1
-        found[body] = BROKEN if breaks else SKIDS if regime == "full_slip" else ""
-    return found
+        if breaks:
+            reasons[body] = BROKEN
+        elif regime == "full_slip":
+            reasons[body] = SKIDS
+        else:
+            reasons[body] = ""
+    return reasons
 
 
 def margins(
@@ -197,7 +222,9 @@ def margins(
         else:
             out.append(margin)
     first = First.of(out)
-    leader = first.margins[0] if first is not None else None
+    leader = None
+    if first is not None:
+        leader = first.margins[0]
     return sorted(
         out, key=lambda margin: (margin.state != "exceeded", margin is not leader, *_order(margin))
     )
@@ -207,8 +234,13 @@ def _order(margin: Margin) -> tuple[float, bool, float]:
     """Return by what margins are ordered: the low end of the life, a second model behind others,
     and the use.
     """
-    low = 0.0 if margin.breaks else math.inf if math.isnan(margin.low) else margin.low
-    return low, margin.beside, 0.0 if math.isnan(margin.used) else -margin.used
+    low = margin.soonest
+    if math.isnan(low):
+        low = math.inf
+    used = margin.used
+    if math.isnan(used):
+        used = 0.0
+    return low, margin.beside, -used
 
 
 def _of_limits(
@@ -231,7 +263,9 @@ def _of_limits(
             if name == "fatigue" and body in tested and math.isfinite(margin.hours):
                 margin = _by_tests(ds, margin, tested[body], overrollings(inputs, body))
             # a body that breaks at once breaks by its strength, unless that limit is left out
-            own = "static" if "static" in listed else "fatigue"
+            own = "fatigue"
+            if "static" in listed:
+                own = "static"
             no_life = name == "fatigue" and bool(lifeless[body])
             out.append(
                 replace(
@@ -304,9 +338,14 @@ def _of_body(
     hours, low, high = (float(_at(ds, f"life_hours_by_limit{end}", places, **here)) for end in ENDS)
     variable = next((one for one in limit.compares[0].split() if one in ds), "utilisation")
     values = np.asarray(_at(ds, variable, places, **here), dtype=float)
-    value = float(np.nanmax(values)) if np.isfinite(values).any() else math.nan
-    permitted = value / used if used > 0 else math.nan
-    units, bound = ds.variables[variable].attrs["units"], limit.compares[1]
+    value = math.nan
+    if np.isfinite(values).any():
+        value = float(np.nanmax(values))
+    permitted = math.nan
+    if used > 0:
+        permitted = value / used
+    units = ds.variables[variable].attrs["units"]
+    bound = limit.compares[1]
     if math.isnan(used):
         permitted, units, bound = _given_bound(limit, inputs)
         value = math.nan
@@ -369,7 +408,9 @@ def is_guessed(ds: xr.Dataset, limit: str, material: str) -> bool:
     contact.
     """
     of = [one.material for one in placeholders_of(ds) if one.limit == limit]
-    return bool(of) if limit == heat.LIMIT.name else material in of
+    if limit == heat.LIMIT.name:
+        return bool(of)
+    return material in of
 
 
 def _at(ds: xr.Dataset, name: str, places: Mapping[str, list[Any]], **labels: str) -> np.ndarray:
@@ -377,16 +418,21 @@ def _at(ds: xr.Dataset, name: str, places: Mapping[str, list[Any]], **labels: st
     long.
     """
     variable = ds.variables[name]
-    return variable.values[
-        tuple(places[d].index(labels[d]) if d in labels else slice(None) for d in variable.dims)
-    ]
+    at: list[Any] = [slice(None)] * variable.ndim
+    for i, dim in enumerate(variable.dims):
+        if dim in labels:
+            at[i] = places[dim].index(labels[dim])
+    values: np.ndarray = variable.values[tuple(at)]
+    return values
 
 
 def _of_pressure(ds: xr.Dataset, materials: Mapping[str, Material]) -> list[Margin]:
     """Return the margins of the largest pressure to the pressure that the validity flag `yield`
     allows.
     """
-    pressure = float(ds["max_pressure"].max()) if "max_pressure" in ds else math.nan
+    pressure = math.nan
+    if "max_pressure" in ds:
+        pressure = float(ds["max_pressure"].max())
     if math.isnan(pressure):
         return []
     out = []
@@ -431,11 +477,18 @@ def _of_loads(ranges: Limits, inputs: Mapping[str, Any]) -> list[Margin]:
         if math.isnan(low + high):
             continue
         value = float(inputs[field])
-        bound = high if value >= 0 else low
-        used = value / bound if bound else math.inf
+        bound = low
+        if value >= 0:
+            bound = high
+        used = math.inf
+        if bound:
+            used = value / bound
         words = f"{PARAMETERS[field].long_name} between {low:.4g} and {high:.4g} N"
         margin = Margin(name, word, title, "pair", value, bound, "N", words, least=min(low, high))
-        out.append(_with_use(margin, used if math.isfinite(bound) else math.nan))
+        known_use = math.nan
+        if math.isfinite(bound):
+            known_use = used
+        out.append(_with_use(margin, known_use))
     now = float(inputs["friction_coefficient"])
     for name, word, title, bound in (
         ("self_locking", "self-locking", "self-locking by friction", ranges.self_locking_friction),
@@ -448,11 +501,16 @@ def _of_loads(ranges: Limits, inputs: Mapping[str, Any]) -> list[Margin]:
     ):
         if math.isnan(bound):
             continue
-        used = now / bound if bound else math.inf
+        used = math.inf
+        if bound:
+            used = now / bound
         words = PARAMETERS["friction_coefficient"].long_name
         margin = Margin(name, word, title, "pair", now, bound, "1", words)
-        none = replace(margin, state="kept", bound=f"{words}: none up to 2")
-        out.append(_with_use(margin, used) if math.isfinite(bound) else none)
+        if math.isfinite(bound):
+            margin = _with_use(margin, used)
+        else:
+            margin = replace(margin, state="kept", bound=f"{words}: none up to 2")
+        out.append(margin)
     return out
 
 
@@ -481,8 +539,8 @@ class First:
         )
         if not ending:
             return None
-        low = min(0.0 if margin.breaks else margin.low for margin in ending)
-        high = min(0.0 if margin.breaks else margin.high for margin in ending)
+        low = min(margin.soonest for margin in ending)
+        high = min(margin.latest for margin in ending)
         return cls(
             tuple(m for m in ending if m is ending[0] or m.low <= high * (1.0 + TIED)), low, high
         )
@@ -501,7 +559,9 @@ class First:
     def body(self) -> str:
         """Return the body that ends, or `pair` where that is not one body."""
         bodies = {margin.body for margin in self.margins}
-        return bodies.pop() if len(bodies) == 1 and BOTH not in bodies else "pair"
+        if len(bodies) == 1 and BOTH not in bodies:
+            return bodies.pop()
+        return "pair"
 
     @property
     def beyond(self) -> bool:

@@ -9,8 +9,8 @@ import pandas as pd
 
 from trackroller.results.answer import Column
 from trackroller.results.case_ranges import CaseRanges
-from trackroller.results.places import case_text
 from trackroller.results.solved_cases import SolvedCases
+from trackroller.results.subgroups import case_text
 from trackroller.roller.output_names import is_life
 from trackroller.study.outputs import default_names
 
@@ -37,17 +37,17 @@ def output_ranges(results: SolvedCases, ranges: CaseRanges) -> pd.DataFrame:
     results : the solved study
     ranges : the output that comes first; the other usual ones follow
     """
-    found = [ranges]
+    ranges_of_all = [ranges]
     for name in default_names(results.data, results.design.factors, results.dims):
-        if name != ranges.output[0] and len(found) < MOST_OUTPUTS:
+        if name != ranges.output[0] and len(ranges_of_all) < MOST_OUTPUTS:
             _, units, words = results.quantity(name)
-            found.append(CaseRanges(results, (name, words, units), is_life(name)))
-    return pd.DataFrame([_row(results, own) for own in found])
+            ranges_of_all.append(CaseRanges(results, (name, words, units), is_life(name)))
+    return pd.DataFrame([_row(results, own) for own in ranges_of_all])
 
 
 def _row(results: SolvedCases, ranges: CaseRanges) -> dict[str, Any]:
     """Return the range of one output with its cases."""
-    rows = np.flatnonzero(results.of_one_model(ranges.held) & ~np.isnan(ranges.value))
+    rows = np.flatnonzero(results.of_one_model(ranges.holds) & ~np.isnan(ranges.value))
     _, words, units = ranges.output
     row: dict[str, Any] = {
         "output": words,
@@ -80,4 +80,6 @@ def _row(results: SolvedCases, ranges: CaseRanges) -> dict[str, Any]:
 def _median_error(errors: np.ndarray) -> float:
     """Return the median of the errors that are stated; NaN without one."""
     stated = errors[~np.isnan(errors)]
-    return float(np.median(stated)) if stated.size else float("nan")
+    if stated.size:
+        return float(np.median(stated))
+    return float("nan")

@@ -15,11 +15,17 @@ from trackroller.methods import Design
 from trackroller.methods.factor import readable
 from trackroller.parameters import EXACTNESS, REGIME_LABELS, REGIMES
 from trackroller.parameters.carriage_fields import parameter_of
-from trackroller.results.by_tests import beyond_sn_data
 from trackroller.results.candidates import Candidates, candidates_of
-from trackroller.results.columns import codes
+from trackroller.results.case_columns import codes
 from trackroller.results.constraints import Column, meeting
-from trackroller.results.judging import SAFE_B10, beyond_data, goal_column, goals_of_search, judge
+from trackroller.results.lives_by_tests import beyond_sn_data
+from trackroller.results.search_fitness import (
+    SAFE_B10,
+    beyond_data,
+    goal_column,
+    goals_of_search,
+    judge,
+)
 from trackroller.results.sensitivity import analysis_of
 from trackroller.results.solved_cases import SolvedCases, made_once
 from trackroller.roller.output_names import is_life
@@ -32,9 +38,9 @@ def given_pareto(results: SolvedCases) -> xr.Dataset | None:
     """Return the Pareto set for the goals that a study or a search gives; None without goals of its
     own.
     """
-    return (
-        study_pareto(results) if goals_of_front(results) or results.config.method.proposes else None
-    )
+    if goals_of_front(results) or results.config.method.proposes:
+        return study_pareto(results)
+    return None
 
 
 def goals_of_front(results: SolvedCases) -> dict[str, str]:
@@ -71,7 +77,9 @@ def study_pareto(results: SolvedCases) -> xr.Dataset | None:
         return pareto_of_search(results)
     if config.method.points:
         analysis = analysis_of(results)
-        return pareto_of_points(analysis, given) if analysis is not None and given else None
+        if analysis is not None and given:
+            return pareto_of_points(analysis, given)
+        return None
     goals = results.goals
     if not goals:
         return None
@@ -83,7 +91,10 @@ def study_pareto(results: SolvedCases) -> xr.Dataset | None:
         return None
     front = pareto(results, goals, config.constraints)
     front = front.assign(_beyond(results, dict.fromkeys(goals, front["row"].values)))
-    return front.assign_attrs(kind="case" if mixed else "design")
+    kind = "design"
+    if mixed:
+        kind = "case"
+    return front.assign_attrs(kind=kind)
 
 
 def pareto_mask(objectives: np.ndarray, directions: Iterable[str]) -> np.ndarray:
@@ -110,18 +121,22 @@ def pareto_mask(objectives: np.ndarray, directions: Iterable[str]) -> np.ndarray
     for direction in directions:
         if direction not in ("min", "max"):
             raise InputError("objectives", direction, "min or max")
-        signs.append(1.0 if direction == "min" else -1.0)
+        if direction == "min":
+            sign = 1.0
+        else:
+            sign = -1.0
+        signs.append(sign)
     costs = np.asarray(objectives, dtype=float) * np.array(signs)
     rows = np.flatnonzero(~np.isnan(costs).any(axis=1))
     # in lexicographic order only an earlier row can beat a row
     rows = rows[np.lexsort(costs[rows].T[::-1])]
     front: list[int] = []
-    held = np.empty((0, costs.shape[1]))
+    front_costs = np.empty((0, costs.shape[1]))
     for row in rows:
-        worse = (held <= costs[row]).all(axis=1) & (held < costs[row]).any(axis=1)
+        worse = (front_costs <= costs[row]).all(axis=1) & (front_costs < costs[row]).any(axis=1)
         if not worse.any():
             front.append(int(row))
-            held = costs[front]
+            front_costs = costs[front]
     mask = np.zeros(len(costs), dtype=bool)
     mask[front] = True
     return mask
@@ -164,19 +179,23 @@ def pareto(
     if len(objectives) < 2:
         raise InputError("pareto", dict(objectives), "at least two outputs, each with min or max")
     constraints = list(constraints)
-    wanted = {name for text in constraints for name in names_in(text)}
-    keep = REGIMES[:3] if "regime" in wanted else ("rolling",)
-    ds, design, dims = results.data, results.design, results.dims
+    limited_names = {name for text in constraints for name in names_in(text)}
+    keep: tuple[str, ...] = ("rolling",)
+    if "regime" in limited_names:
+        keep = REGIMES[:3]
+    ds = results.data
+    design = results.design
+    dims = results.dims
     regime = regimes(ds, dims)
-    names = dict.fromkeys([*objectives, *sorted(wanted)])
+    names = dict.fromkeys([*objectives, *sorted(limited_names)])
     columns = {name: results.quantity(name) for name in names}
-    limited = {name: results.constrained(name) for name in wanted}
+    limited = {name: results.constrained(name) for name in limited_names}
     own, model = _own_rows(design)
-    kept = np.isin(regime, [REGIMES.index(name) for name in keep])
+    counted = np.isin(regime, [REGIMES.index(name) for name in keep])
     undefined = np.isnan(np.stack([columns[name][0].astype(float) for name in objectives])).any(
         axis=0
     )
-    allowed, excluded = _allowed(undefined, limited, constraints, own, kept)
+    allowed, excluded = _allowed(undefined, limited, constraints, own, counted)
     shown = {
         n: readable(c)[allowed]
         for n, c in design.columns.items()
@@ -217,12 +236,12 @@ def front_of(
     further : columns that a design must also be beaten in to be left out, each `min` or `max`
     attrs : further attributes of the result
     """
-    wanted = {**objectives, **(further or {})}
-    goals = np.stack([np.asarray(columns[name][0], dtype=float) for name in wanted], axis=1)
+    directions = {**objectives, **(further or {})}
+    goals = np.stack([np.asarray(columns[name][0], dtype=float) for name in directions], axis=1)
     data: dict[str, Any] = {name: ("row", values) for name, values in factors.items()}
     for name, (values, units, long_name) in columns.items():
         data[name] = ("row", values, {"units": units, "long_name": long_name})
-    optimal = pareto_mask(goals, wanted.values()).astype(np.int8)
+    optimal = pareto_mask(goals, directions.values()).astype(np.int8)
     data["optimal"] = ("row", optimal, {"long_name": "in the Pareto set"})
     described = {"objectives": ", ".join(f"{name} {way}" for name, way in objectives.items())}
     described |= {"factors": ", ".join(factors), "constraints": "", "model": ""}
@@ -234,13 +253,13 @@ def _allowed(
     values: Mapping[str, Any],
     constraints: list[str],
     own: np.ndarray,
-    kept: np.ndarray,
+    counted: np.ndarray,
 ) -> tuple[np.ndarray, dict[str, int]]:
     """Return the mask of allowed rows and the number of rows that each reason excluded."""
     allowed = own.copy()
     excluded = {}
     # constraints come first, so that a row without a value counts for them
-    checks = {"regime": kept}
+    checks = {"regime": counted}
     checks |= meeting(constraints, values, own.size)
     checks["an undefined goal"] = ~undefined
     for reason, good in checks.items():
@@ -254,9 +273,14 @@ def _own_rows(design: Design) -> tuple[np.ndarray, str]:
     models, all rows.
     """
     column = design.columns.get("contact_model")
-    named = np.full(design.size, "") if column is None else column.astype(str)
+    if column is None:
+        named = np.full(design.size, "")
+    else:
+        named = column.astype(str)
     models = [m for m in EXACTNESS if (named == m).any()]
-    return (named == models[0], models[0]) if len(models) > 1 else (np.ones(design.size, bool), "")
+    if len(models) > 1:
+        return named == models[0], models[0]
+    return np.ones(design.size, bool), ""
 
 
 def pareto_of_points(table: xr.Dataset, objectives: Mapping[str, str]) -> xr.Dataset:
@@ -285,9 +309,11 @@ def pareto_of_points(table: xr.Dataset, objectives: Mapping[str, str]) -> xr.Dat
         "kind": "design point",
         "study": table.attrs.get("study", ""),
     }
-    kept = {name: (values[known], units, words) for name, (values, units, words) in columns.items()}
+    known_columns = {
+        name: (values[known], units, words) for name, (values, units, words) in columns.items()
+    }
     factors = {name: readable(table[name].values)[known] for name in outer}
-    return front_of(factors, kept, objectives, np.flatnonzero(known), **attrs)
+    return front_of(factors, known_columns, objectives, np.flatnonzero(known), **attrs)
 
 
 def _of_points(table: xr.Dataset, name: str) -> Column:
@@ -297,16 +323,15 @@ def _of_points(table: xr.Dataset, name: str) -> Column:
         known = parameter_of(name)
         return table[name].values, known.units if known else "", known.long_name if known else name
     if kind == "probability" and output in REGIMES:
-        estimates, words, units = (
-            table["probability"].sel(regime=output),
-            REGIME_LABELS[REGIMES.index(output)],
-            "1",
-        )
+        estimates = table["probability"].sel(regime=output)
+        words = REGIME_LABELS[REGIMES.index(output)]
+        units = "1"
     elif kind == "probability":
         if output not in table["target"].values:
             raise InputError("pareto", name, f"a target: {', '.join(table['target'].values)}")
         part = table.isel(target=int(np.argmax(table["target"].values == output)))
-        estimates, units = part["target_probability"], "1"
+        estimates = part["target_probability"]
+        units = "1"
         words = f"meeting the target for {part['target_name'].item()}"
     else:
         if output not in table["output"].values or kind not in table:
@@ -314,11 +339,9 @@ def _of_points(table: xr.Dataset, name: str) -> Column:
                 "pareto", name, f"an analysed output: {', '.join(map(str, table['output'].values))}"
             )
         part = table.sel(output=output)
-        estimates, words, units = (
-            part[kind],
-            str(part["output_name"].item()),
-            str(part["output_units"].item()),
-        )
+        estimates = part[kind]
+        words = str(part["output_name"].item())
+        units = str(part["output_units"].item())
     named = {"b10": "B10 of {}", "b10_safe": SAFE_B10}.get(
         kind, f"{kind} of {{}}".replace("_", " ")
     )
@@ -350,27 +373,28 @@ def pareto_of_candidates(candidates: Candidates, objectives: Mapping[str, str]) 
         name: candidates.worst_cases(columns[name][0].astype(float), way)
         for name, way in objectives.items()
     }
-    held = candidates.valid_in
-    kept = np.flatnonzero(np.all([cases >= 0 for cases in worst.values()], axis=0) & (held > 0))
-    row = next(iter(worst.values()))[kept]
+    valid = candidates.valid_in
+    judged = np.flatnonzero(np.all([cases >= 0 for cases in worst.values()], axis=0) & (valid > 0))
+    row = next(iter(worst.values()))[judged]
     factors = {name: results.table[name].to_numpy()[row] for name in candidates.choices}
     goals = {
-        name: (values[worst[name][kept]], units, words)
+        name: (values[worst[name][judged]], units, words)
         for name, (values, units, words) in columns.items()
     }
-    goals["valid_in"] = (held[kept].astype(float), "1", "conditions in which it is valid")
+    goals["valid_in"] = (valid[judged].astype(float), "1", "conditions in which it is valid")
+    model = ""
+    if "contact_model" in results.factors:
+        model = str(results.held_level("contact_model"))
     attrs = {
         "constraints": "; ".join(results.config.constraints),
-        "rows": len(held),
+        "rows": len(valid),
         "conditions": candidates.possible,
-        "model": str(results.held_level("contact_model"))
-        if "contact_model" in results.factors
-        else "",
+        "model": model,
         "judged": "each goal at the worst of the conditions in which the design is valid",
         "study": results.data.attrs.get("study", ""),
     }
     front = front_of(factors, goals, objectives, row, further={"valid_in": "max"}, **attrs)
-    return front.assign(_beyond(results, {name: cases[kept] for name, cases in worst.items()}))
+    return front.assign(_beyond(results, {name: cases[judged] for name, cases in worst.items()}))
 
 
 def _beyond(
@@ -392,17 +416,22 @@ def pareto_of_search(results: SolvedCases) -> xr.Dataset:
     The dimension `row` numbers the designs. Only the designs are compared that are valid in the
     most conditions, and that meet the target of the study if any of them does.
     """
-    judged, goals, design = judge(results), goals_of_search(results), results.design
+    judged = judge(results)
+    goals = goals_of_search(results)
+    design = results.design
     least = judged.violation.min()
-    missed = judged.missed if (judged.missed == 0).any() else judged.violation
-    kept = np.flatnonzero((missed == least) & (least < 1))
+    if (judged.missed == 0).any():
+        missed = judged.missed
+    else:
+        missed = judged.violation
+    nearest = np.flatnonzero((missed == least) & (least < 1))
     tried = codes(results.table.iloc[:: design.meta["inner_samples"]], design.meta["outer"])
     # a design that was solved twice counts once
-    kept = kept[np.unique(tried[kept], return_index=True)[1]]
-    first = kept * design.meta["inner_samples"]
+    nearest = nearest[np.unique(tried[nearest], return_index=True)[1]]
+    first = nearest * design.meta["inner_samples"]
     factors = {name: readable(design.columns[name][first]) for name in design.meta["outer"]}
     columns = {
-        n: (values[kept], units, words)
+        n: (values[nearest], units, words)
         for n in goals
         for values, units, words in [goal_column(results, n)]
     }
@@ -418,10 +447,10 @@ def pareto_of_search(results: SolvedCases) -> xr.Dataset:
         if is_life(judged_by(name)[1]) and judged_by(name)[0] != "probability"
     ]
     beyond = {
-        f"beyond_{name}": ("row", beyond_data(results, name)[kept].astype(np.int8))
+        f"beyond_{name}": ("row", beyond_data(results, name)[nearest].astype(np.int8))
         for name in lives
     }
-    return front_of(factors, columns, goals, kept, **attrs).assign(beyond)
+    return front_of(factors, columns, goals, nearest, **attrs).assign(beyond)
 
 
 def goals_of(front: xr.Dataset) -> list[tuple[str, str]]:

@@ -14,7 +14,7 @@ import xarray as xr
 
 from trackroller.damage import LIMITS
 from trackroller.errors import listing
-from trackroller.results.answer import Caution, Column, Part
+from trackroller.results.answer import Caution, Column, Part, yes_or_blank
 from trackroller.roller.limit_notes import placeholders_of
 
 POLYMER = 20e3  # MPa; a material with a lower Young's modulus is treated as a polymer
@@ -91,9 +91,10 @@ def _notes(values: dict[str, Any]) -> Iterator[dict[str, Any]]:
     polymers need.
     """
     name = str(values.get("name", ""))
-    notes, guesses = values.get("notes", {}), [str(one) for one in values.get("guesses", ())]
+    notes = values.get("notes", {})
+    guesses = [str(one) for one in values.get("guesses", ())]
     for key in dict.fromkeys((*notes, *guesses)):
-        yield _row(name, key, "yes" if key in guesses else "", notes.get(key, ""))
+        yield _row(name, key, yes_or_blank(key in guesses), notes.get(key, ""))
     if _is_polymer(values):
         note = "values of a polymer depend on temperature and moisture: give those in use"
         yield _row(name, "stiffness, strength, friction", "", note)
@@ -113,11 +114,20 @@ def guess_cautions(part: Part, what: str = "") -> Iterator[Caution]:
         texts = []
         number = guesses["value"].nunique()
         if number:
-            texts.append("1 value" if number == 1 else f"{number} values")
+            if number == 1:
+                count_words = "1 value"
+            else:
+                count_words = f"{number} values"
+            texts.append(count_words)
         limits = list(dict.fromkeys(limit for limit in guesses["limit"] if limit))
         if limits:
-            verb = "rests" if len(limits) == 1 else "rest"
-            texts.append(f"{listing(limits)} {verb} on {'it' if number == 1 else 'them'}")
+            verb = "rest"
+            if len(limits) == 1:
+                verb = "rests"
+            pronoun = "them"
+            if number == 1:
+                pronoun = "it"
+            texts.append(f"{listing(limits)} {verb} on {pronoun}")
         if len(guesses) < len(rows):
             texts.append("see its notes")
         yield Caution("guessed", 1, 1, f"{material}: {'; '.join(texts)}", what)

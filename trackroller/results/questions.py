@@ -12,9 +12,9 @@ from trackroller.results.comparison import Comparison, compared_output
 from trackroller.results.decide import answer_decide
 from trackroller.results.how_it_behaves import answer_how_it_behaves
 from trackroller.results.how_sure import answer_how_sure
-from trackroller.results.judging import optimum_of
 from trackroller.results.output_ranges import output_ranges
 from trackroller.results.requirement import required_of
+from trackroller.results.search_fitness import optimum_of
 from trackroller.results.solved_cases import SolvedCases, made_once
 from trackroller.results.what_matters import answer_what_matters, shown_ranges
 from trackroller.results.which_model import answer_which_model, models_of
@@ -46,7 +46,9 @@ def question_of(results: SolvedCases) -> str:
         return "best"
     required = required_of(results)
     if compared_output(results, required) is None:
-        return "what matters" if method.name in SENSITIVITY else "how it behaves"
+        if method.name in SENSITIVITY:
+            return "what matters"
+        return "how it behaves"
     own = Comparison.of(results)
     if own is None:
         return "how it behaves"
@@ -91,7 +93,9 @@ def answer_of(results: SolvedCases) -> Answer | None:
     """
     question = question_of(results)
     if question == "best":
-        return None if optimum_of(results) is None else answer_of_search(results)
+        if optimum_of(results) is None:
+            return None
+        return answer_of_search(results)
     needs_output = question in ("decide", "how sure")
     if needs_output and Comparison.of(results) is None:
         return answer_how_it_behaves(results)

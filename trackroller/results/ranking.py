@@ -62,7 +62,9 @@ def headline(sens: xr.Dataset) -> str:
     first.
     """
     method = method_of(sens)
-    index = method.headline if method is not None else "first"
+    index = "first"
+    if method is not None:
+        index = method.headline
     if "first" in sens and (index not in sens or not np.isfinite(sens[index]).any()):
         return "first"
     return index
@@ -74,21 +76,27 @@ def order(sens: xr.Dataset, output: str, index: str = "") -> list[Rank]:
     """
     index = index or headline(sens)
     part = sens.sel(output=output)
-    names = part["factor_name"].values if "factor_name" in part.coords else part["factor"].values
+    if "factor_name" in part.coords:
+        names = part["factor_name"].values
+    else:
+        names = part["factor"].values
     rows = zip(
         map(str, part["factor"].values),
         map(str, names),
         *estimate(part, index).tolist(),
         strict=True,
     )
-    signed = index_words(sens, index).signed
     ranks = [rank for rank in map(Rank._make, rows) if np.isfinite(rank.value)]
-    return sorted(ranks, key=lambda r: -abs(r.value) if signed else -r.value)
+    if index_words(sens, index).signed:
+        return sorted(ranks, key=lambda rank: -abs(rank.value))
+    return sorted(ranks, key=lambda rank: -rank.value)
 
 
 def used_share(sens: xr.Dataset, output: str) -> float:
     """Return the share of the design that the indices of an output use [1]."""
-    return float(sens["used_share"].sel(output=output)) if "used_share" in sens else 1.0
+    if "used_share" in sens:
+        return float(sens["used_share"].sel(output=output))
+    return 1.0
 
 
 def ranked_factors(sens: xr.Dataset | None, output: str, among: Sequence[str]) -> dict[str, float]:

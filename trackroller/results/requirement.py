@@ -7,7 +7,7 @@ from dataclasses import replace
 from trackroller.damage.wear import KM_PER_HOUR
 from trackroller.numerics.numbers import number_or_nan
 from trackroller.results.answer import Required
-from trackroller.results.lives import FIRST_LIMIT
+from trackroller.results.life_columns import FIRST_LIMIT
 from trackroller.results.solved_cases import SolvedCases
 from trackroller.roller.requirement import Requirement
 
@@ -18,21 +18,23 @@ def requirements_of(results: SolvedCases) -> dict[str, Requirement]:
 
     The travel is a life to the first limit, as on the sheet of one roller.
     """
-    found = dict(results.config.requirement)
+    requirements = dict(results.config.requirement)
     hours = _hours_of_travel(results)
     if hours > 0:
-        own = found.get(FIRST_LIMIT[0], Requirement())
-        found[FIRST_LIMIT[0]] = replace(own, least=max(own.least, hours))
-    return found
+        own = requirements.get(FIRST_LIMIT[0], Requirement())
+        requirements[FIRST_LIMIT[0]] = replace(own, least=max(own.least, hours))
+    return requirements
 
 
 def required_of(results: SolvedCases) -> tuple[Required, ...]:
     """Return what a study requires, in the order of its file; empty without a requirement."""
-    found = []
+    required = []
     for name, own in requirements_of(results).items():
         _, units, words = results.quantity(name)
-        found.append(Required(name, words, units, own.least, own.most, own.probability, own.years))
-    return tuple(found)
+        required.append(
+            Required(name, words, units, own.least, own.most, own.probability, own.years)
+        )
+    return tuple(required)
 
 
 def _hours_of_travel(results: SolvedCases) -> float:
@@ -43,4 +45,6 @@ def _hours_of_travel(results: SolvedCases) -> float:
         return 0.0
     travel = number_or_nan(results.base.get("required_travel"))
     velocity = number_or_nan(results.base.get("velocity"))
-    return travel / (KM_PER_HOUR * velocity) if travel > 0 and velocity > 0 else 0.0
+    if travel > 0 and velocity > 0:
+        return travel / (KM_PER_HOUR * velocity)
+    return 0.0

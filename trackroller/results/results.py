@@ -13,9 +13,9 @@ import xarray as xr
 from trackroller.errors import InputError
 from trackroller.results import SHOWN
 from trackroller.results.answer import Answer
-from trackroller.results.by_tests import ByTests, by_tests_of
 from trackroller.results.candidates import Candidates, candidates_of
 from trackroller.results.how_it_behaves import answer_how_it_behaves
+from trackroller.results.lives_by_tests import ByTests, by_tests_of
 from trackroller.results.pareto import pareto, study_pareto
 from trackroller.results.questions import answer_of
 from trackroller.results.sensitivity import analysis_of, indices_of
@@ -122,8 +122,9 @@ class Results(SolvedCases):
         """
         if objectives is None and constraints is None:
             return study_pareto(self)
-        limits = self.config.constraints if constraints is None else constraints
-        return pareto(self, objectives or self.goals, limits)
+        if constraints is None:
+            constraints = self.config.constraints
+        return pareto(self, objectives or self.goals, constraints)
 
     def candidates(self, free: tuple[str, ...] = ()) -> Candidates | None:
         """Return the combinations of choices, each judged over its conditions.
@@ -159,8 +160,8 @@ class Results(SolvedCases):
         Returns
         -------
         ByTests or None
-            See `trackroller.results.by_tests.ByTests`; None without a material that was fitted to
-            tests.
+            See `trackroller.results.lives_by_tests.ByTests`; None without a material that was
+            fitted to tests.
         """
         return by_tests_of(self)
 

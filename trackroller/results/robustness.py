@@ -21,8 +21,8 @@ from trackroller.methods import Design
 from trackroller.methods.b10 import b10, quantile
 from trackroller.methods.factor import readable
 from trackroller.parameters import BODIES, MATERIAL_FIELDS, REGIMES
-from trackroller.results.by_tests import beyond_sn_data
-from trackroller.results.labels import output_labels
+from trackroller.results.index_labels import output_labels
+from trackroller.results.lives_by_tests import beyond_sn_data
 from trackroller.results.solved_cases import SolvedCases
 from trackroller.results.targets import at_points, scattering_body
 from trackroller.roller.output_names import body_of, is_life
@@ -64,18 +64,20 @@ def robustness(
     InputError
         If the study has another design.
     """
-    ds, design, config = results.data, results.design, results.config
+    ds = results.data
+    design = results.design
+    config = results.config
     if not design.method.points:
         allowed = "design inner_outer: lists as outer array, distributions as inner array"
         raise InputError("design", design.method.name, allowed)
     regime = regimes(ds, results.dims)
-    wanted = list(config.analysis.outputs or default_names(ds, design.factors, results.dims))
+    names = list(config.analysis.outputs or default_names(ds, design.factors, results.dims))
     goals = [statistic(goal) for goal in config.pareto]
-    wanted += [
-        output for kind, output in goals if kind not in ("", "probability") and output not in wanted
+    names += [
+        output for kind, output in goals if kind not in ("", "probability") and output not in names
     ]
     columns = outputs(
-        ds, design.factors, wanted, scale="natural", unlimited=True, allowed=results.allowed
+        ds, design.factors, names, scale="natural", unlimited=True, allowed=results.allowed
     )
     by_output = []
     for column in columns:
@@ -92,10 +94,10 @@ def robustness(
             [np.fmin.reduce(beyond[rows]) for rows in design.points]
         )
     out = xr.Dataset(coords=_coordinates(design, columns))
-    for key in by_output[0] if by_output else ():
-        axes = (
-            ("output", "point", "percentile") if key == "percentile_value" else ("output", "point")
-        )
+    for key in dict.fromkeys(key for one in by_output for key in one):
+        axes: tuple[str, ...] = ("output", "point")
+        if key == "percentile_value":
+            axes = ("output", "point", "percentile")
         out[key] = (
             axes,
             np.stack([one[key] for one in by_output]),
@@ -117,12 +119,13 @@ def robustness(
 def _attributes(design: Design, scatter: float) -> dict[str, str | int | float]:
     treatment = (
         "percentiles and the first B10 are those of the cases that roll, the second B10 counts "
-        "every "
-        "other case as life 0; a body above its tensile strength counts as life 0, and so does a "
-        "case that exceeds a "
-        "limit in the life to the first one; "
-        "the same inner sample at every design point"
+        "every other case as life 0; a body above its tensile strength counts as life 0, and so "
+        "does a case that exceeds a limit in the life to the first one; the same inner sample at "
+        "every design point"
     )
+    scatter_words = ""
+    if scatter:
+        scatter_words = ", the material's own scatter of life in B10"
     return {
         "method": design.method.name,
         "rows": design.size,
@@ -131,7 +134,7 @@ def _attributes(design: Design, scatter: float) -> dict[str, str | int | float]:
         "outer_factors": ", ".join(design.meta["outer"]),
         "inner_factors": ", ".join(design.meta["inner"]),
         "log_life_scatter": scatter,
-        "treatment": treatment + (", the material's own scatter of life in B10" if scatter else ""),
+        "treatment": treatment + scatter_words,
     }
 
 
@@ -149,16 +152,18 @@ def material_deviations(results: SolvedCases) -> dict[str, np.ndarray]:
     -------
     body -> array [1] of shape (n,), 0 for a material without scatter. Empty if not wanted.
     """
-    ds, dims, wanted = results.data, results.dims, results.config.analysis.material_scatter
-    if wanted is False:
+    ds = results.data
+    dims = results.dims
+    scatter_by_body = results.config.analysis.material_scatter
+    if scatter_by_body is False:
         return {}
     known = json.loads(ds.attrs.get("materials", "{}"))
     out = {}
     for field, body in zip(MATERIAL_FIELDS, BODIES, strict=True):
-        if wanted not in (True, "fitted"):
+        if scatter_by_body not in (True, "fitted"):
             out[body] = np.full(
                 int(np.prod([ds.sizes[d] for d in dims])),
-                math.log10(float(wanted)) / DEVIATES_10_TO_90,
+                math.log10(float(scatter_by_body)) / DEVIATES_10_TO_90,
             )
         elif field in ds.variables:
             names = flat(ds, field, dims)
@@ -202,7 +207,8 @@ def _statistics(
     out = {name: np.full(len(points), np.nan) for name in names}
     out["percentile_value"] = np.full((len(points), len(PERCENTILES)), np.nan)
     for p, rows in enumerate(points):
-        own, spread = values[rows], scatter[rows]
+        own = values[rows]
+        spread = scatter[rows]
         known = ~np.isnan(own)
         good = own[known]
         out["used_share"][p] = good.size / own.size
@@ -212,7 +218,8 @@ def _statistics(
         # as in the table of candidates
         out["percentile_value"][p, PERCENTILES.index(50.0)] = np.median(good)
         if np.isfinite(good).all():
-            out["mean"][p], out["standard_deviation"][p] = good.mean(), good.std(ddof=1)
+            out["mean"][p] = good.mean()
+            out["standard_deviation"][p] = good.std(ddof=1)
         if life:
             out["b10"][p], out["b10_low"][p], out["b10_high"][p] = b10(good, spread[known])
             # a rolling case without a life (not converged) must not count as a long life

@@ -30,14 +30,15 @@ from trackroller.materials import Material
 from trackroller.parameters import BODIES, PARAMETERS, REGIMES
 from trackroller.parameters.carriage_fields import long_name_of
 from trackroller.parameters.example import drive_question
-from trackroller.results.answer import Answer, Caution, Column, Part, Required
-from trackroller.results.columns import at_surface
-from trackroller.results.flags import flags_of, not_judged
-from trackroller.results.lives import FIRST_LIMIT, OF_PAIR
+from trackroller.results.answer import Answer, Caution, Column, Part, Required, yes_or_blank
+from trackroller.results.case_columns import at_surface
+from trackroller.results.friction import friction_cautions
+from trackroller.results.life_columns import FIRST_LIMIT, OF_PAIR
 from trackroller.results.margins import First, Margin, lifeless_bodies, margins, worst_contact
 from trackroller.results.placeholders import guess_cautions, placeholders_part
-from trackroller.results.places import level_text
 from trackroller.results.roller_lives import lives_part
+from trackroller.results.subgroups import level_text
+from trackroller.results.validity_flags import flags_of, not_judged
 from trackroller.roller import stored_inputs as record
 from trackroller.roller.dataset import VARIABLES, shown, solved_by
 from trackroller.roller.duty import duty_of, strokes_of, years
@@ -95,9 +96,8 @@ COLUMNS = (
         "Verdict",
         "",
         "kept: below 100 % at both ends of the range; finite: a fatigue strength is exceeded, so "
-        "that the life ends; "
-        "exceeded: above 100 % at both ends; open: at one end; missed: the life is shorter than "
-        "required",
+        "that the life ends; exceeded: above 100 % at both ends; open: at one end; missed: the "
+        "life is shorter than required",
         "state",
     ),
     Column(
@@ -224,16 +224,23 @@ def facts_of_data(ds: xr.Dataset, **own: Any) -> dict[str, Any]:
 
 def _facts(ds: xr.Dataset) -> dict[str, Any]:
     """Return the facts of the title line of one roller."""
-    used = (
-        str(solved_by(ds).item()) if "contact_model_used" in ds else str(ds.attrs["contact_model"])
-    )
+    if "contact_model_used" in ds:
+        used = str(solved_by(ds).item())
+    else:
+        used = str(ds.attrs["contact_model"])
+    converged = True
+    if "converged" in ds:
+        converged = bool(int(ds["converged"]))
+    reason = ""
+    if "reason" in ds:
+        reason = str(ds["reason"].item())
     return facts_of_data(
         ds,
         solved_by=used,
         probability=float(ds.attrs["failure_probability"]),
         regime=REGIMES[int(ds["regime"])],
-        converged=bool(int(ds["converged"])) if "converged" in ds else True,
-        reason=str(ds["reason"].item()) if "reason" in ds else "",
+        converged=converged,
+        reason=reason,
     )
 
 
@@ -246,7 +253,9 @@ def _kind(ds: xr.Dataset, own: Sequence[Margin], first: First | None) -> str:
         return "breaks"
     if regime == "full_slip":
         return "skids"
-    return "no_life" if first is None else "lasts"
+    if first is None:
+        return "no_life"
+    return "lasts"
 
 
 def _headline(
@@ -260,10 +269,13 @@ def _headline(
     # the use of wear is a required travel over its life, which is a requirement
     checks = [one for one in own if one.name not in (*skipped, wear.LIMIT.name) and not one.breaks]
     over = [one for one in checks if one.state == "exceeded"]
-    over.sort(key=lambda one: 0.0 if math.isnan(one.used) else -one.used)
+    over.sort(key=lambda one: -np.nan_to_num(one.used, posinf=math.inf))
     unknown = any(
         m.timed and not m.beside and math.isnan(m.hours) and m.body == "guide" for m in own
     )
+    unknown_body = ""
+    if unknown:
+        unknown_body = "guide"
     head: dict[str, Any] = {
         "low": math.nan,
         "high": math.nan,
@@ -271,7 +283,7 @@ def _headline(
         "body": "",
         "extrapolated": False,
         "guessed": False,
-        "unknown": "guide" if unknown else "",
+        "unknown": unknown_body,
         "unrated": _unrated(ds),
         "broken": [_use(one) for one in own if one.breaks],
         "exceeded": [_use(one) for one in over],
@@ -313,7 +325,10 @@ def _states(ds: xr.Dataset, first: First | None, required: Sequence[Required]) -
     """Return whether each requirement is met, and whether all are."""
     states = [_state_of(ds, first, one) for one in required]
     worst = [state for state in ("missed", "open", "met") if state in states]
-    return {"states": states, "state": worst[0] if worst else ""}
+    state = ""
+    if worst:
+        state = worst[0]
+    return {"states": states, "state": state}
 
 
 def _state_of(ds: xr.Dataset, first: First | None, required: Required) -> str:
@@ -326,15 +341,22 @@ def _state_of(ds: xr.Dataset, first: First | None, required: Required) -> str:
     state = state_of_life(first.low, first.high, required.least)
     if math.isfinite(required.most) and state != "missed":
         shorter = state_of_life(-first.high, -first.low, -required.most)
-        state = shorter if state == "met" else {"missed": "missed"}.get(shorter, "open")
-    return "open" if state == "met" and _unrated(ds) else state
+        if state == "met":
+            state = shorter
+        else:
+            state = {"missed": "missed"}.get(shorter, "open")
+    if state == "met" and _unrated(ds):
+        return "open"
+    return state
 
 
 def state_of_life(low: float, high: float, least: float) -> str:
     """Return whether a life within a range reaches what is required."""
     if low >= least:
         return "met"
-    return "missed" if high < least else "open"
+    if high < least:
+        return "missed"
+    return "open"
 
 
 def _use(margin: Margin) -> dict[str, Any]:
@@ -345,23 +367,24 @@ def _required(ds: xr.Dataset, inputs: Mapping[str, Any]) -> tuple[Required, ...]
     """Return what is required of the roller: the key `requirement`, and the travel that wear has to
     allow. Of a required life and a travel the longer one counts, as in a study.
     """
-    found = []
+    required = []
     for name, own in requirement_of(ds).items():
-        words, units = (
-            (FIRST_LIMIT[1], "h")
-            if name in OF_PAIR
-            else (PARTS[name].words, PARTS[name].variable.units)
+        if name in OF_PAIR:
+            words, units = FIRST_LIMIT[1], "h"
+        else:
+            words, units = (PARTS[name].words, PARTS[name].variable.units)
+        required.append(
+            Required(name, words, units, own.least, own.most, own.probability, own.years)
         )
-        found.append(Required(name, words, units, own.least, own.most, own.probability, own.years))
     travel = inputs.get("required_travel")
     if travel is not None and not math.isnan(float(travel)):
         hours = float(travel) / (KM_PER_HOUR * float(inputs["velocity"]))
-        lives = [one for one in found if one.output in OF_PAIR and math.isfinite(one.least)]
+        lives = [one for one in required if one.output in OF_PAIR and math.isfinite(one.least)]
         if all(one.least < hours for one in lives):
-            found = [one for one in found if one not in lives]
+            required = [one for one in required if one not in lives]
             most = min((one.most for one in lives), default=math.inf)
-            found.append(Required(*FIRST_LIMIT, least=hours, most=most))
-    return tuple(found)
+            required.append(Required(*FIRST_LIMIT, least=hours, most=most))
+    return tuple(required)
 
 
 def _columns(ds: xr.Dataset, own: Sequence[Margin]) -> tuple[Column, ...]:
@@ -371,13 +394,15 @@ def _columns(ds: xr.Dataset, own: Sequence[Margin]) -> tuple[Column, ...]:
     ranges.
     """
     apart = any(margin.low < margin.high for margin in own)
-    found = []
+    columns = []
     for one in COLUMNS:
         until, role = RANGES.get(one.name, (one.until, one.role))
         if one.name == "hours" and not apart:
             role = "file"
-        found.append(Column(one.name, one.title, one.units, one.meaning, one.kind, until, role))
-    return tuple(found) + ((YEARS,) if duty_of(ds) else ())
+        columns.append(Column(one.name, one.title, one.units, one.meaning, one.kind, until, role))
+    if duty_of(ds):
+        columns.append(YEARS)
+    return tuple(columns)
 
 
 def _table(ds: xr.Dataset, own: Sequence[Margin], required: Sequence[Required]) -> pd.DataFrame:
@@ -400,11 +425,19 @@ def _table(ds: xr.Dataset, own: Sequence[Margin], required: Sequence[Required]) 
 
 def _row(margin: Margin, least: float) -> dict[str, Any]:
     """Return the row of a limit."""
-    low = 0.0 if margin.breaks else margin.low
-    high = 0.0 if margin.breaks else margin.high
+    hours = margin.hours
+    if margin.breaks:
+        hours = 0.0
+    model = ""
+    if margin.beside:
+        model = "second"
+    elif margin.lifeless:
+        model = "no fatigue life"
     state = margin.state
     if margin.ends and state != "exceeded" and math.isfinite(least):
-        state = {"met": state, "open": "open", "missed": "missed"}[state_of_life(low, high, least)]
+        verdict = state_of_life(margin.soonest, margin.latest, least)
+        if verdict != "met":
+            state = verdict
     if margin.lifeless:
         state = "none"
     elif state == "kept" and margin.used > 1.0:
@@ -417,12 +450,12 @@ def _row(margin: Margin, least: float) -> dict[str, Any]:
         "permitted": margin.permitted,
         "used_low": margin.used_low,
         "used_high": margin.used_high,
-        "low": low,
-        "high": high,
-        "hours": 0.0 if margin.breaks else margin.hours,
-        "extrapolated": "yes" if margin.beyond and not math.isnan(margin.hours) else "",
-        "guessed": "yes" if margin.guessed else "",
-        "model": "second" if margin.beside else "no fatigue life" if margin.lifeless else "",
+        "low": margin.soonest,
+        "high": margin.latest,
+        "hours": hours,
+        "extrapolated": yes_or_blank(margin.beyond and not math.isnan(margin.hours)),
+        "guessed": yes_or_blank(margin.guessed),
+        "model": model,
         "bound": margin.bound,
         "units": margin.units,
         "least": margin.least,
@@ -443,28 +476,31 @@ def _unrated_row(ds: xr.Dataset, body: str) -> dict[str, Any]:
 
 def _required_row(ds: xr.Dataset, required: Required) -> dict[str, Any]:
     """Return the row of a required output; how much of it is used counts towards the nearer end."""
-    value = (
-        float(PARTS[required.output].values(ds).item())
-        if PARTS[required.output].variable.name in ds
-        else math.nan
-    )
-    uses = []
+    value = math.nan
+    if PARTS[required.output].variable.name in ds:
+        value = float(PARTS[required.output].values(ds).item())
+    used = _used_of(value, required)
+    if math.isnan(value):
+        state = "unknown"
+    elif required.least <= value <= required.most:
+        state = "kept"
+    else:
+        state = "exceeded"
+    meaning = "required: at least"
     if math.isfinite(required.most):
-        uses.append(value / required.most if required.most else math.inf)
-    if math.isfinite(required.least):
-        uses.append(required.least / value if value else math.inf)
-    used = max(uses, default=math.nan) if not math.isnan(value) else math.nan
-    kept = required.least <= value <= required.most
-    state = "unknown" if math.isnan(value) else "kept" if kept else "exceeded"
+        bound = required.most
+        meaning = "required: at most"
+    else:
+        bound = required.least
     margin = Margin(
         required.output,
         required.words,
         "requirement",
         body_of(required.output) or "pair",
         value,
-        required.most if math.isfinite(required.most) else required.least,
+        bound,
         required.units,
-        "required: at most" if math.isfinite(required.most) else "required: at least",
+        meaning,
         least=required.least,
         used=used,
         used_low=used,
@@ -472,6 +508,24 @@ def _required_row(ds: xr.Dataset, required: Required) -> dict[str, Any]:
         state=state,
     )
     return _row(margin, -math.inf)
+
+
+def _used_of(value: float, required: Required) -> float:
+    """Return the largest share that a value uses of a requirement's bounds [1]."""
+    if math.isnan(value):
+        return math.nan
+    uses = []
+    if math.isfinite(required.most):
+        uses.append(_ratio(value, required.most))
+    if math.isfinite(required.least):
+        uses.append(_ratio(required.least, value))
+    return max(uses, default=math.nan)
+
+
+def _ratio(value: float, bound: float) -> float:
+    if bound == 0:
+        return math.inf
+    return value / bound
 
 
 QUANTITY = Column("quantity", "Quantity", "", "", "text", role="name")
@@ -539,25 +593,31 @@ def _contacts(ds: xr.Dataset) -> pd.DataFrame:
 
 def quantities(ds: xr.Dataset, names: Iterable[str]) -> pd.DataFrame:
     """Return one row for each finite one of some results, with its value and unit."""
-    found = [
+    entries = [
         (n, _without_rounding(ds.variables[n].values), VARIABLES[n].units) for n in names if n in ds
     ]
     rows = [
-        [quantity_words(name), value, units] for name, value, units in found if math.isfinite(value)
+        [quantity_words(name), value, units]
+        for name, value, units in entries
+        if math.isfinite(value)
     ]
     return pd.DataFrame(rows, columns=["quantity", "value", "units"])
 
 
 def _without_rounding(value: Any) -> float:
     number = float(value)
-    return 0.0 if abs(number) <= ROUNDING else number
+    if abs(number) <= ROUNDING:
+        return 0.0
+    return number
 
 
 def quantity_words(name: str) -> str:
     """Return the name of a result without remarks, and its symbol if that is no formula."""
-    words, _, _ = VARIABLES[name].long_name.partition(",")
+    words = str(VARIABLES[name].long_name).partition(",")[0]
     symbol = VARIABLES[name].symbol
-    return f"{words} {symbol}" if symbol.replace("_", "").isalnum() else words
+    if symbol.replace("_", "").isalnum():
+        return f"{words} {symbol}"
+    return words
 
 
 def checks_left_out(ds: xr.Dataset, known: Collection[str] = ()) -> dict[str, tuple[str, ...]]:
@@ -567,15 +627,19 @@ def checks_left_out(ds: xr.Dataset, known: Collection[str] = ()) -> dict[str, tu
     """
     if ds["regime"].ndim == 0 and REGIMES[int(ds["regime"])] == "failed":
         return {}
-    found: dict[str, list[str]] = {body: [] for body in BODIES}
+    checks: dict[str, list[str]] = {body: [] for body in BODIES}
     for limit in (one for one in judged() if one.name not in known):
         for body in limit.bodies:
             why = ", ".join(_missing(ds, limit.name, body))
             if not _is_known(ds, limit.name, body):
-                found[body].append(f"{limit.word} ({why})" if why else limit.word)
+                if why:
+                    words = f"{limit.word} ({why})"
+                else:
+                    words = limit.word
+                checks[body].append(words)
             elif why and _lacks_hours(ds, limit.name, body):
-                found[body].append(f"hours of {limit.word} ({why})")
-    return {body: tuple(words) for body, words in found.items()}
+                checks[body].append(f"hours of {limit.word} ({why})")
+    return {body: tuple(words) for body, words in checks.items()}
 
 
 def _is_known(ds: xr.Dataset, name: str, body: str) -> bool:
@@ -587,7 +651,10 @@ def _is_known(ds: xr.Dataset, name: str, body: str) -> bool:
     values = {"static": "peak_stress", "fatigue": f"{body}_life_hours"}.get(name, "")
     if values not in ds:
         return False
-    own = ds[values].sel(body=body) if "body" in ds[values].dims else ds[values]
+    if "body" in ds[values].dims:
+        own = ds[values].sel(body=body)
+    else:
+        own = ds[values]
     return bool(own.notnull().any())
 
 
@@ -603,22 +670,28 @@ def _lacks_hours(ds: xr.Dataset, name: str, body: str) -> bool:
 
 def _missing(ds: xr.Dataset, name: str, body: str) -> list[str]:
     """Return what a limit lacks for a body."""
-    asked = str(ds.attrs.get("limits", "")).split()
-    if "limit_state" in ds and asked and name not in asked:
+    limits = str(ds.attrs.get("limits", "")).split()
+    if "limit_state" in ds and limits and name not in limits:
         return ["left out"]
     material = material_name(ds, body)
-    regime = REGIMES[int(ds["regime"])] if ds["regime"].ndim == 0 else ""
-    found = []
+    regime = ""
+    if ds["regime"].ndim == 0:
+        regime = REGIMES[int(ds["regime"])]
+    words_of_lacks = []
     for lack in (lack for lack in lacks_of(ds) if lack.limit == name):
         of_guide = not lack.material and lack.name in OF_GUIDE
         if of_guide and (body != "guide" or regime in STOPPED):
             continue
         if lack.material and material and lack.material != material:
             continue
-        found.append(lack.words if lack.material else f"give {lack.name}")
-    if not found and regime in STOPPED:
+        if lack.material:
+            words = lack.words
+        else:
+            words = f"give {lack.name}"
+        words_of_lacks.append(words)
+    if not words_of_lacks and regime in STOPPED:
         return [STOPPED[regime]]
-    return found
+    return words_of_lacks
 
 
 def material_name(ds: xr.Dataset, body: str) -> str:
@@ -666,6 +739,7 @@ def warnings_of(ds: xr.Dataset, own: Sequence[Margin], first: First | None) -> I
         yield _caution(CODES.get(flag.name, "flagged"), f"{flag.sentence} {flag.remedy}")
     yield from (_caution("extrapolated", text) for text in beyond_tests(ds))
     yield from guess_cautions(placeholders_part(ds))
+    yield from friction_cautions(ds.attrs)
     yield from (
         _caution("flagged", note) for note in notes_of(ds) if note.startswith(OF_TEMPERATURE)
     )
@@ -713,12 +787,12 @@ def beyond_tests(ds: xr.Dataset) -> list[str]:
     """Return what tests do not tell of the lives by fatigue of a solved case; [] for materials that
     were not fitted.
     """
-    found, others = fits_of_case(ds)
-    said = [
+    fits, others = fits_of_case(ds)
+    texts = [
         f"The values of {name} hold for {options} alone: solve with it, or fit the tests anew."
         for name, options in others.items()
     ]
-    return [*said, *filter(None, (_beyond(ds, body, fit) for body, fit in found.items()))]
+    return [*texts, *filter(None, (_beyond(ds, body, fit) for body, fit in fits.items()))]
 
 
 def _beyond(ds: xr.Dataset, body: str, fit: StoredFit) -> str:

@@ -17,8 +17,8 @@ from trackroller.damage.wear import KM_PER_HOUR
 from trackroller.fit.stored import StoredFit, fits_of_case
 from trackroller.materials import Material
 from trackroller.parameters import BODIES, FIRST_TO_FAIL, REGIMES
-from trackroller.results.answer import Column, Part
-from trackroller.results.lives import past_data
+from trackroller.results.answer import Column, Part, yes_or_blank
+from trackroller.results.life_columns import past_data
 from trackroller.results.margins import BROKEN, SKIDS, overrollings, worst_contact
 
 TESTED = (0.1, 0.5)  # failure probabilities at which the interval of tests is stated
@@ -122,7 +122,9 @@ def _of_body(
     """Yield the lives of a body by its S-N line."""
     unknown = math.isnan(float(ds[f"{body}_life_hours"]))
     rolls = int(ds["regime"]) == REGIMES.index("rolling")
-    cause = f"unknown {body}" if rolls else "unknown roller"
+    cause = "unknown roller"
+    if rolls:
+        cause = f"unknown {body}"
     why = WHY[lifeless or (cause if unknown else "")]
     if why:
         yield _row(body, inputs, math.nan, math.nan, probability=MEDIAN, why=why)
@@ -138,17 +140,19 @@ def _of_body(
             p: float(np.min(curve.changed(failure_probability=p).life_cycles(own)))
             for p in PROBABILITIES
         }
-    basis = "S-N line" if curve.scatters else "S-N line without scatter"
+    basis = "S-N line without scatter"
+    if curve.scatters:
+        basis = "S-N line"
     for probability, cycles in lives.items():
         hours = cycles / overrollings(inputs, body)
-        beyond = _yes(bool(past_data(cycles, material.cycles_at_fatigue_limit)))
-        told = {
+        beyond = yes_or_blank(bool(past_data(cycles, material.cycles_at_fatigue_limit)))
+        row = {
             "probability": probability,
             "contact": contact,
             "basis": basis,
             "extrapolated": beyond,
         }
-        yield _row(body, inputs, hours, hours, **told)
+        yield _row(body, inputs, hours, hours, **row)
 
 
 def _by_tests(
@@ -159,12 +163,12 @@ def _by_tests(
     if not (stress > 0 and math.isfinite(cycles)):
         return
     rate = overrollings(inputs, body)
-    beyond = _yes(bool(fit.extrapolates(stress, cycles)))
+    beyond = yes_or_blank(bool(fit.extrapolates(stress, cycles)))
     basis = f"90 % by the {fit.rows} tests of {fit.name}"
     for probability in TESTED:
         low, high = fit.cycles(stress, probability)
-        told = {"probability": probability, "basis": basis, "extrapolated": beyond}
-        row = _row(body, inputs, low / rate, high / rate, **told)
+        entry = {"probability": probability, "basis": basis, "extrapolated": beyond}
+        row = _row(body, inputs, low / rate, high / rate, **entry)
         # known without the overrollings of the guide
         yield row | {"cycles_low": low, "cycles_high": high}
 
@@ -178,11 +182,13 @@ def _of_pair(
     """Return the median life of the pair, which ends with its first body."""
     hours = float(ds["pair_life_hours"])
     first = FIRST_TO_FAIL[int(ds["first_to_fail"])]
-    why = next(filter(None, lifeless.values()), "") or (
-        "unknown roller" if math.isnan(hours) else ""
-    )
-    body = "guide" if first == "guide" else "roller"
-    told = {
+    why = next(filter(None, lifeless.values()), "")
+    if not why and math.isnan(hours):
+        why = "unknown roller"
+    body = "roller"
+    if first == "guide":
+        body = "guide"
+    row = {
         "body": "pair",
         "probability": MEDIAN,
         "cycles_low": math.nan,
@@ -190,16 +196,12 @@ def _of_pair(
         "rate": math.nan,
     }
     if why:
-        return _row(body, inputs, math.nan, math.nan) | told | {"why": WHY[why]}
+        return _row(body, inputs, math.nan, math.nan) | row | {"why": WHY[why]}
     cycles = float(ds["life_cycles"].sel(body=body).min())
-    beyond = _yes(bool(past_data(cycles, materials[body].cycles_at_fatigue_limit)))
-    said = ENDS_PAIR[first]
+    beyond = yes_or_blank(bool(past_data(cycles, materials[body].cycles_at_fatigue_limit)))
+    ending = ENDS_PAIR[first]
     return (
         _row(body, inputs, hours, hours)
-        | told
-        | {"basis": "S-N line", "extrapolated": beyond, "why": said}
+        | row
+        | {"basis": "S-N line", "extrapolated": beyond, "why": ending}
     )
-
-
-def _yes(true: bool) -> str:
-    return "yes" if true else ""

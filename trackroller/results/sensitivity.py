@@ -20,8 +20,7 @@ from trackroller.methods.correlation import correlated_pairs
 from trackroller.methods.factor import label
 from trackroller.methods.method import Estimated, Estimates
 from trackroller.methods.saltelli import all_groups
-from trackroller.results.by_tests import bands
-from trackroller.results.labels import (
+from trackroller.results.index_labels import (
     RELIABLE,
     correlated,
     factor_name,
@@ -31,6 +30,7 @@ from trackroller.results.labels import (
     stacked,
     treatment,
 )
+from trackroller.results.lives_by_tests import bands
 from trackroller.results.robustness import material_deviations, robustness
 from trackroller.results.solved_cases import SolvedCases, made_once
 from trackroller.results.targets import targets
@@ -41,17 +41,18 @@ from trackroller.study.outputs import Output, outputs, regimes
 log = logging.getLogger("trackroller")
 
 
-def _of_replicates(found: Estimated, y: np.ndarray, design: Design) -> Estimated:
+def _of_replicates(estimates: Estimated, y: np.ndarray, design: Design) -> Estimated:
     """Replace the intervals and the course of the headline indices by those of the replicates of a
     grown sample.
     """
-    method, total = design.method, design.samples
+    method = design.method
+    total = design.samples
     at = convergence.sizes(total, smallest=2 * int(design.meta["replicates"]))
     out = method.replicated(y, design, total)
     course = convergence.course(
         lambda samples: method.replicated(y, design, samples), at, out, method.narrowed
     )
-    return found._replace(estimates=found.estimates | out | course, sizes=at)
+    return estimates._replace(estimates=estimates.estimates | out | course, sizes=at)
 
 
 @made_once
@@ -63,18 +64,22 @@ def indices_of(results: SolvedCases) -> xr.Dataset:
     InputError
         If no output or no factor varies.
     """
-    return analyse(results) if results.known_indices is None else results.known_indices
+    if results.known_indices is None:
+        return analyse(results)
+    return results.known_indices
 
 
 @made_once
 def analysis_of(results: SolvedCases) -> xr.Dataset | None:
     """Return the sensitivity indices of a study; None for a study that has none."""
     try:
-        found = indices_of(results)
+        indices = indices_of(results)
     except InputError as error:
         log.info("no sensitivity analysis: %s", error)
         return None
-    return found if found.data_vars else None
+    if indices.data_vars:
+        return indices
+    return None
 
 
 def analyse(results: SolvedCases) -> xr.Dataset:
@@ -105,7 +110,9 @@ def analyse(results: SolvedCases) -> xr.Dataset:
     InputError
         If no output or no factor varies.
     """
-    ds, design, given = results.data, results.design, results.config.analysis
+    ds = results.data
+    design = results.design
+    given = results.config.analysis
     if design.method.proposes:
         allowed = "a design that draws its rows evenly: a search prefers good designs"
         raise InputError(
@@ -114,9 +121,10 @@ def analyse(results: SolvedCases) -> xr.Dataset:
     own = material_deviations(results)
     judged = results.judged_targets
     scatter = {n: np.where(results.ended_by_fatigue(), own.get("roller", 0.0), 0.0) for n in judged}
-    aims, wanted = xr.Dataset(), results.config.requirement
-    if wanted and design.method.weighted:
-        aims = targets(ds, design, wanted, own | scatter, results.held, judged)
+    aims = xr.Dataset()
+    requirement = results.config.requirement
+    if requirement and design.method.weighted:
+        aims = targets(ds, design, requirement, own | scatter, results.holds, judged)
     if given.material_scatter == "fitted":
         aims = aims.merge(bands(results, own), join="left", combine_attrs="override")
     if design.method.points:
@@ -138,7 +146,8 @@ def analyse(results: SolvedCases) -> xr.Dataset:
     result = labelled(design, columns, [one.estimates for one in by_output], by_output[0].sizes)
     result = result.merge(_of_groups_and_levels(design, columns, given))
     result = result.assign(_quality(result, design, columns, by_output))
-    if tied := {name for pair in correlated_pairs(design) for name in pair[:2]}:
+    tied = {name for pair in correlated_pairs(design) for name in pair[:2]}
+    if tied:
         words = {"long_name": "1 for a factor that is correlated with another factor", "units": "1"}
         result["correlated"] = (
             "factor",
@@ -161,7 +170,9 @@ def analyse(results: SolvedCases) -> xr.Dataset:
     return result.merge(aims, combine_attrs="override")
 
 
-def _of_groups_and_levels(design: Design, columns: Sequence[Output], asked: Analysis) -> xr.Dataset:
+def _of_groups_and_levels(
+    design: Design, columns: Sequence[Output], settings: Analysis
+) -> xr.Dataset:
     """Compute the indices of groups and within the levels of a category that a study file asks for.
 
     Parameters
@@ -178,8 +189,8 @@ def _of_groups_and_levels(design: Design, columns: Sequence[Output], asked: Anal
     """
     variables: dict[str, Any] = {}
     coords: dict[str, Any] = {}
-    if asked.groups:
-        groups = all_groups(asked.groups, design.factors)
+    if settings.groups:
+        groups = all_groups(settings.groups, design.factors)
         coords["group"] = np.array(list(groups), dtype=object)
         words = [
             factor_name(name) if name in design.factors else name.replace("_", " ")
@@ -192,7 +203,8 @@ def _of_groups_and_levels(design: Design, columns: Sequence[Output], asked: Anal
             design.method.group_indices(column.values, design, groups) for column in columns
         ]
         variables |= stacked(design.method, estimates, ("output", "group"))
-    if category := asked.conditional_on:
+    category = settings.conditional_on
+    if category:
         levels = design.factors[category].levels
         coords["level"] = (
             "level",
@@ -227,7 +239,8 @@ def within_levels(y: np.ndarray, design: Design, category: str) -> Estimates:
     The variance is that among the rows of the level. Valid for independent factors, as the index
     over all rows.
     """
-    place, levels = list(design.factors).index(category), design.factors[category].levels
+    place = list(design.factors).index(category)
+    levels = design.factors[category].levels
     code = {level: i for i, level in enumerate(levels)}
     level_of = np.array([code[value] for value in design.columns[category].tolist()])
     by_level = [
@@ -292,5 +305,9 @@ def _bounds(out: Estimates, method: Method) -> tuple[np.ndarray, np.ndarray]:
     low, high = (
         np.concatenate([out[f"{name}_{end}"] for name in names]) for end in ("low", "high")
     )
-    whole = float(np.nanmax(out[names[0]], initial=0.0)) if method.effects else 1.0
-    return (low / whole, high / whole) if whole > 0 else (low * np.nan, high * np.nan)
+    whole = 1.0
+    if method.effects:
+        whole = float(np.nanmax(out[names[0]], initial=0.0))
+    if whole > 0:
+        return low / whole, high / whole
+    return low * np.nan, high * np.nan

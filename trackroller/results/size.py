@@ -8,36 +8,47 @@ to hold, whatever the life.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pandas as pd
 
+from trackroller.carriage.file import CHANCE, carriage_of, written_out
+from trackroller.carriage.files import name_of_study
 from trackroller.errors import InputError, unknown_name
 from trackroller.files import files_beside
 from trackroller.numerics.numbers import finite_number
 from trackroller.numerics.plain import mapping_of
 from trackroller.parameters import BODIES
 from trackroller.parameters.example import EXAMPLE
+from trackroller.results.load_ratio import EXACT, FORCES, LoadRatios, load_ratios
+from trackroller.results.mounting import Mounting, rollers_by_place
 from trackroller.results.results import Results
-from trackroller.results.solving import run
-from trackroller.roller.aliases import with_options
+from trackroller.results.run import run
+from trackroller.results.size_spectrum import VERDICTS, spectrum_table
+from trackroller.roller.aliases import OTHER_OPTIONS, with_options
 from trackroller.roller.duty import OVERROLLINGS
 from trackroller.roller.requirement import DEFAULT
-from trackroller.roller.settings import LOADS, checked_case
+from trackroller.study.design.carriage_cases import common_values
 from trackroller.study.file.config import IN_STUDY, NAME
 from trackroller.study.file.load import load_study
-from trackroller.study.file.shelf import ROLLER, base_of_case, with_rows, without_overridden
+from trackroller.study.file.shelf import (
+    ROLLER,
+    base_beside_shelf,
+    with_rows,
+    without_overridden,
+)
 from trackroller.study.file.study import Study
 from trackroller.study.outputs import of_fatigue
 from trackroller.yaml_file import read_mapping
 
 # keys that a study file has and a case file has not
 OF_STUDY = ("factors", "base", "name", "design", "method")
-VERDICTS = ("enough", "open", "not enough")
+OF_CARRIAGE = ("mass", "rollers", "cases")  # keys that every carriage file has
 OVERLOAD = "overload"  # end of the name of the study with all forces times the safety
 
 
@@ -51,7 +62,8 @@ class Sizing:
         One row a roller, the least one that is enough first: `roller`, `verdict` (one of
         `VERDICTS`), the columns of the shelf, `life_hours` (low end of the life to the first limit,
         worst condition), `life_ratio` (over the required life), `ends` (what ends it), `overload`
-        (held, exceeded or not judged) and `excluded_by`.
+        (held, exceeded or not judged), `load_ratio` (all forces times it reach the first limit),
+        `load_ends` (that limit) and `excluded_by`.
     least : str
         Name of the roller to take; '' if none is surely enough.
     least_of : str
@@ -62,6 +74,12 @@ class Sizing:
         The study at the loads of the case; None if no life is required.
     overload : Results, optional
         The study with all forces times the safety; None without a safety.
+    ratios : LoadRatios, optional
+        What all forces may be multiplied by until each limit is reached.
+    units : mapping of str to str
+        Units of the user's own columns of the shelf, as far as they are given.
+    mounting : Mounting, optional
+        The roller of each place of a carriage, if each takes its own.
     """
 
     table: pd.DataFrame
@@ -70,6 +88,9 @@ class Sizing:
     unranked: tuple[str, ...] = ()
     results: Results | None = field(default=None, repr=False)
     overload: Results | None = field(default=None, repr=False)
+    ratios: LoadRatios | None = field(default=None, repr=False)
+    units: Mapping[str, str] = field(default_factory=dict, repr=False)
+    mounting: Mounting | None = field(default=None, repr=False)
 
     @property
     def open_and_less(self) -> tuple[str, ...]:
@@ -86,17 +107,31 @@ class Sizing:
 
     def to_dict(self) -> dict[str, Any]:
         """Return the sizing as values of JSON; None stands for a number that is not known."""
-        rows = self.table.astype(object).where(self.table.notna(), None).to_dict("records")
+        rows = _as_json(self.table)
         head: dict[str, Any] = {
             "least": self.least,
             "least_of": self.least_of,
             "unranked": list(self.unranked),
         }
         head["open_and_less"] = list(self.open_and_less)
-        return head | {"rollers": [{str(key): value for key, value in row.items()} for row in rows]}
+        if self.ratios is not None:
+            head["load_ratios"] = _as_json(self.ratios.table.reset_index())
+        if self.mounting is not None:
+            head["places"] = _as_json(self.mounting.table)
+            head["places_enough"] = self.mounting.enough
+        return head | {"rollers": rows}
 
 
-def size(
+def _as_json(table: pd.DataFrame) -> list[dict[str, Any]]:
+    """Return the rows of a table as values of JSON; None stands for a number that is not known,
+    and for an infinite one.
+    """
+    known = table.replace([np.inf, -np.inf], np.nan).astype(object)
+    rows = known.where(known.notna(), None).to_dict("records")
+    return [{str(key): value for key, value in row.items()} for row in rows]
+
+
+def size(  # noqa: PLR0913 - a requirement has many parts
     case: Path | str | Mapping[str, Any],
     shelf: Path | str,
     *,
@@ -104,6 +139,7 @@ def size(
     failures: str | float | None = None,
     safety: str | float | None = None,
     least: str | None = None,
+    each: bool = False,
     results: Path | str | None = None,
     progress: bool = False,
 ) -> Sizing:
@@ -112,8 +148,9 @@ def size(
     Parameters
     ----------
     case : pathlib.Path, str or mapping
-        Case file or study file with loads, rail and duty, or a mapping with its keys. The rollers
-        of the shelf take the place of its roller.
+        Case, carriage, spectrum or study file with loads, rail and duty, or a mapping with its
+        keys. The rollers of the shelf take the place of its roller, in a carriage that of all
+        rollers.
     shelf : pathlib.Path or str
         Table of rollers, see `trackroller.study.file.shelf`.
     life : str or float, optional
@@ -127,6 +164,8 @@ def size(
     least : str, optional
         Column of the shelf or result of which the least roller is sought, such as "price". Rollers
         that are equal in it rank by their life. Default: the longest life.
+    each : bool
+        Whether each place of a carriage takes its own roller, see `Sizing.mounting`.
     results : path, optional
         Parent of the folders of the studies, as for `trackroller.run`. By default nothing is
         written.
@@ -153,11 +192,47 @@ def size(
     >>> tr.size(case, "rollers.csv", life=50, least="price").least
     'close'
     """
-    studies = sizing_studies(case, shelf, life=life, failures=failures, safety=safety, least=least)
+    required: dict[str, Any] = {
+        "life": life,
+        "failures": failures,
+        "safety": safety,
+        "least": least,
+    }
+    if is_spectrum(case):
+        if each:
+            remedy = "Leave it out, or give a carriage file."
+            raise InputError("each", True, "a carriage, which has places", remedy)
+        return _sized_spectrum(case, shelf, required)
+    studies = sizing_studies(case, shelf, **required)
     solved = {
         kind: run(study, progress=progress, results=results) for kind, study in studies.items()
     }
-    return sizing_of(solved.get("life"), solved.get(OVERLOAD), least or "")
+    sizing = sizing_of(
+        solved.get("life"), solved.get(OVERLOAD), least or "", ratios_of(studies, safety), safety
+    )
+    if not each:
+        return sizing
+    factor = 1.0
+    if safety is not None:
+        factor = finite_number(safety, "-", "safety")
+    by_life = studies.get("life", studies.get(OVERLOAD))
+    assert by_life is not None
+    return replace(sizing, mounting=rollers_by_place(by_life, factor, least or ""))
+
+
+def ratios_of(studies: Mapping[str, Study], safety: str | float | None = None) -> LoadRatios:
+    """Return the load ratios of the rollers of a sizing at the forces of its case.
+
+    Parameters
+    ----------
+    studies : mapping of str to Study
+        The studies, as `sizing_studies` returns them.
+    safety : str or float, optional
+        The factor on the forces of the study `overload` [1].
+    """
+    if "life" in studies:
+        return load_ratios(studies["life"], ROLLER)
+    return load_ratios(studies[OVERLOAD], ROLLER).times(finite_number(safety, "-", "safety"))
 
 
 def sizing_studies(
@@ -170,25 +245,24 @@ def sizing_studies(
     least: str | None,
 ) -> dict[str, Study]:
     """Return the studies of a sizing: `life` with the requirement, and `overload`; see `size`."""
-    if life is None and safety is None:
-        raise InputError(
-            "size", None, "a required life, or a safety", 'Give life="3 years", for example.'
-        )
+    _check_required(life, safety)
     keys = _keys_of(case, shelf)
     if failures is not None:
-        keys["failure_probability"] = finite_number(failures, "-", "failures")
+        keys = _with_failures(keys, failures)
+    on_carriage = keys.get("carriage") is not None
     studies = {}
     if life is not None:
-        name = DEFAULT
-        if OVERROLLINGS not in keys["base"] and OVERROLLINGS not in keys["factors"]:
-            name = "roller_life_hours"  # nobody knows the hours of the guide
-        required = {**(keys.get("requirement") or {}), name: {"min": life}}
-        more: dict[str, Any] = {"requirement": required}
+        required = {**(keys.get("requirement") or {}), _life_of(keys): {"min": life}}
+        added: dict[str, Any] = {"requirement": required}
         if least:
-            more["pareto"] = {least: "min"}
-        studies["life"] = keys | more
+            added["pareto"] = {least: "min"}
+        studies["life"] = keys | added
+    elif on_carriage:
+        studies["life"] = keys
     if safety is not None:
-        studies[OVERLOAD] = _overloaded(keys, safety)
+        overloaded = _overloaded(keys, safety)
+        if not on_carriage:  # the load ratios judge the forces that statics gives
+            studies[OVERLOAD] = overloaded
     checked = {kind: _checked(own, shelf) for kind, own in studies.items()}
     for study in checked.values():
         known = [name for name, factor in study.columns_of_shelves.items() if factor.numeric]
@@ -197,34 +271,76 @@ def sizing_studies(
     return checked
 
 
-def _keys_of(case: Path | str | Mapping[str, Any], shelf: Path | str) -> dict[str, Any]:
-    """Return the keys of a study of the rollers of a shelf in a case or study."""
+def _check_required(life: Any, safety: Any) -> None:
+    """Refuse a sizing that requires neither life nor safety, and a safety below 1."""
+    if life is None and safety is None:
+        raise InputError(
+            "size", None, "a required life, or a safety", 'Give life="3 years", for example.'
+        )
+    if safety is not None and not finite_number(safety, "-", "safety") >= 1.0:
+        raise InputError("safety", safety, "a number >= 1", "For example 1.5.")
+
+
+def is_spectrum(case: Path | str | Mapping[str, Any]) -> bool:
+    """Return whether a file, or a mapping with the keys of one, is a load spectrum."""
+    return "blocks" in _values_of(case)
+
+
+def _values_of(case: Path | str | Mapping[str, Any]) -> Mapping[str, Any]:
+    """Return the keys of a file, or of a mapping."""
     path = _path_of(case)
-    if path is None:
-        stem = "case"
-        values = mapping_of(case)
-    else:
-        stem = path.stem
-        values = read_mapping(path, "study or case file")
+    if path is not None:
+        return read_mapping(path, "study or case file")
+    values = mapping_of(case)
     if not isinstance(values, Mapping):
         raise InputError(
             "case", type(case).__name__, "a path or a mapping", "Give a case file, or its keys."
         )
+    return values
+
+
+def _sized_spectrum(
+    case: Path | str | Mapping[str, Any], shelf: Path | str, required: Mapping[str, Any]
+) -> Sizing:
+    """Return which rollers of a shelf are enough for a load spectrum."""
+    _check_required(required["life"], required["safety"])
+    values = with_options(_values_of(case))
+    if required["failures"] is not None:
+        values[CHANCE] = finite_number(required["failures"], "-", "failures")
+    path = _path_of(case)
+    keys: dict[str, Any] = {"name": "shelf", "base": dict(values.get("base") or {})}
+    study = _checked(_with_shelf(keys, shelf), shelf)
+    safety = required["safety"]
+    if safety is not None:
+        safety = finite_number(safety, "-", "safety")
+    least = required["least"]
+    table, ratios = spectrum_table(
+        values, path, study, life=required["life"], safety=safety, least=least
+    )
+    table = table[[*(name for name in table if name != "excluded_by"), "excluded_by"]]
+    units = study.parsed[ROLLER].units
+    return replace(_ranked(table, least or "", None, None), ratios=ratios, units=units)
+
+
+def _keys_of(case: Path | str | Mapping[str, Any], shelf: Path | str) -> dict[str, Any]:
+    """Return the keys of a study of the rollers of a shelf in a case or study."""
+    path = _path_of(case)
+    values = _values_of(case)
+    stem = "case"
+    if path is not None:
+        stem = path.stem
     with files_beside(path):
-        if set(OF_STUDY) & set(values):
+        if set(OF_CARRIAGE) <= set(values):
+            keys = _of_carriage(values)
+        elif set(OF_STUDY) & set(values):
             keys = with_options(values)
         else:
             keys = _of_case(values)
-    for name in ("carriage", "table", "blocks"):
-        if keys.get(name) is not None:
-            remedy = "Give a case file, or a study with factors."
-            raise InputError(
-                f"size: {name}",
-                None,
-                "the loads of one roller",
-                remedy,
-                "has several rollers or rows",
-            )
+    if keys.get("table") is not None:
+        remedy = "Give a case, carriage or spectrum file, or a study with factors."
+        raise InputError(
+            "size: table", None, "the loads of one roller", remedy, "has rows of its own"
+        )
     if ROLLER in (keys.get("factors") or {}):
         raise InputError(
             f"factors.{ROLLER}",
@@ -233,15 +349,39 @@ def _keys_of(case: Path | str | Mapping[str, Any], shelf: Path | str) -> dict[st
             "Remove it: --shelf gives it.",
             "stands there already",
         )
-    keys["name"] = _name(str(keys.get("name", stem)), Path(shelf).stem)
-    keys["factors"] = {ROLLER: {"file": Path(shelf).name}, **(keys.get("factors") or {})}
+    keys["name"] = name_of_study(f"size-{keys.get('name', stem)}-{Path(shelf).stem}")
+    keys["question"] = "decide"
+    return _with_shelf(keys, shelf)
+
+
+def _with_shelf(keys: Mapping[str, Any], shelf: Path | str) -> dict[str, Any]:
+    """Return the keys of a study with the rollers of a shelf as a factor, which take the place of
+    its own roller.
+    """
+    out = dict(keys)
+    out["factors"] = {ROLLER: {"file": Path(shelf).name}, **(keys.get("factors") or {})}
     base = dict(keys.get("base") or {})
     with files_beside(Path(shelf)):
-        rows, _ = with_rows({"base": base, "factors": {ROLLER: keys["factors"][ROLLER]}})
+        rows, _ = with_rows({"base": base, "factors": {ROLLER: out["factors"][ROLLER]}})
     fills_cells = {name: value for name, value in base.items() if name not in rows["base"]}
-    keys["base"] = fills_cells | without_overridden(rows, ROLLER)["base"]
-    keys["question"] = "decide"
-    return keys
+    if keys.get("carriage") is None:
+        out["base"] = fills_cells | without_overridden(rows, ROLLER)["base"]
+    else:  # the files of its rollers give what neither shelf nor study does
+        out["base"] = fills_cells
+    return out
+
+
+def _life_of(keys: Mapping[str, Any]) -> str:
+    """Return the name of the life of a study; nobody may know the hours of the guide."""
+    if keys.get("carriage") is not None:
+        whole = carriage_of(keys["carriage"])
+        cases = [roller.case for roller in whole.rollers if roller.case is not None]
+        is_known = all(case.guide_overrollings_per_hour is not None for case in cases)
+        if is_known or math.isfinite(whole.stroke):
+            return DEFAULT
+    if OVERROLLINGS in keys["base"] or OVERROLLINGS in keys["factors"]:
+        return DEFAULT
+    return "roller_life_hours"
 
 
 def _path_of(case: Any) -> Path | None:
@@ -253,11 +393,49 @@ def _path_of(case: Any) -> Path | None:
 
 def _of_case(values: Mapping[str, Any]) -> dict[str, Any]:
     """Return the keys of a study with the values of a case file."""
-    case, options, beside = checked_case(values)
-    keys: dict[str, Any] = {"base": base_of_case(case)}
+    base, options, beside = base_beside_shelf(values)
+    keys: dict[str, Any] = {"base": base}
     keys |= {option.name: options[option.name] for option in IN_STUDY if option.name in options}
     keys |= {name: beside[name] for name in ("duty", "requirement") if name in beside}
     return keys
+
+
+def _of_carriage(values: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the keys of a study with the values of a carriage file, whose rollers share their
+    options.
+    """
+    written = written_out(values)
+    whole = carriage_of(written)
+    for roller in whole.rollers:
+        if roller.catalogue is not None:
+            remedy = (
+                "Write it into the file of the roller, or as columns catalogue_... of the shelf."
+            )
+            where = f"rollers.{roller.name}.catalogue"
+            raise InputError(where, None, "no catalogue of a place", remedy, "stands in the place")
+    options = whole.rollers[0].options
+    keys: dict[str, Any] = {"carriage": written, "base": common_values(whole)}
+    keys |= {option.name: options[option.name] for option in IN_STUDY if option.name in options}
+    keys.pop("outputs", None)
+    if whole.duty is not None:
+        keys["duty"] = dict(whole.duty)
+    return keys
+
+
+def _with_failures(keys: Mapping[str, Any], failures: str | float) -> dict[str, Any]:
+    """Return the keys of a study with another failure probability, of the rollers of its carriage
+    too.
+    """
+    out = {**keys, CHANCE: finite_number(failures, "-", "failures")}
+    if keys.get("carriage") is not None:
+        names = (CHANCE, *OTHER_OPTIONS)
+        whole = {name: value for name, value in keys["carriage"].items() if name not in names}
+        places = {}
+        for place, entry in whole["rollers"].items():
+            roller = {name: v for name, v in entry["roller"].items() if name not in names}
+            places[place] = {**entry, "roller": roller}
+        out["carriage"] = whole | {"rollers": places}
+    return out
 
 
 def _name(case: str, shelf: str) -> str:
@@ -271,26 +449,30 @@ def _name(case: str, shelf: str) -> str:
 def _overloaded(keys: Mapping[str, Any], safety: str | float) -> dict[str, Any]:
     """Return the keys of the study whose forces are those of another study times the safety."""
     factor = finite_number(safety, "-", "safety")
-    if not factor >= 1.0:
-        raise InputError("safety", safety, "a number >= 1", "For example 1.5.")
-    varied = [name for name in LOADS if name in keys["factors"]]
+    varied = [name for name in FORCES if name in keys["factors"]]
     if varied:
         remedy = "Give the forces under base, or leave the safety out."
         raise InputError(
             f"factors.{varied[0]}", None, "forces under base beside a safety", remedy, "varies"
         )
     base = dict(keys["base"])
-    for name in LOADS:
+    for name in FORCES:
         base[name] = factor * finite_number(base.get(name, EXAMPLE[name]), "N", f"base.{name}")
     left = {
         name: value
         for name, value in keys.items()
         if name not in ("requirement", "pareto", "goals")
     }
-    return left | {"name": f"{keys['name']}-{OVERLOAD}", "base": base}
+    return left | {"name": name_of_study(f"{keys['name']}-{OVERLOAD}"), "base": base}
 
 
-def sizing_of(at_loads: Results | None, overload: Results | None, least: str = "") -> Sizing:
+def sizing_of(
+    at_loads: Results | None,
+    overload: Results | None,
+    least: str = "",
+    ratios: LoadRatios | None = None,
+    safety: str | float | None = None,
+) -> Sizing:
     """Return which rollers are enough by the answers to the studies of a sizing.
 
     Parameters
@@ -301,6 +483,10 @@ def sizing_of(at_loads: Results | None, overload: Results | None, least: str = "
         The study with all forces times the safety.
     least : str
         Column of the shelf or result by which rollers rank.
+    ratios : LoadRatios, optional
+        Load ratios of the rollers at the forces of the case.
+    safety : str or float, optional
+        The required factor on all forces [1].
     """
     solved = at_loads or overload
     assert solved is not None
@@ -311,13 +497,18 @@ def sizing_of(at_loads: Results | None, overload: Results | None, least: str = "
         table[name] = _by_roller(solved, solved.table[name].to_numpy())
     table["verdict"] = VERDICTS[0]
     table["excluded_by"] = ""
-    if at_loads is not None:
+    if at_loads is not None and at_loads.config.requirement:
         table = _with_life(table, at_loads)
-    if overload is not None:
-        table = _with_overload(table, overload)
+    if ratios is not None:
+        table["load_ratio"] = ratios.least.reindex(table.index)
+        table["load_ends"] = ratios.first.reindex(table.index)
+    if safety is not None:
+        table = _with_overload(table, overload or solved, finite_number(safety, "-", "safety"))
+    table = table[[*(name for name in table if name != "excluded_by"), "excluded_by"]]
     if least and least not in table:
         table[least] = _by_roller(solved, solved.quantity(least)[0])
-    return _ranked(table, least, at_loads, overload)
+    units = solved.study.parsed[ROLLER].units
+    return replace(_ranked(table, least, at_loads, overload), ratios=ratios, units=units)
 
 
 def _by_roller(results: Results, values: np.ndarray) -> list[Any]:
@@ -396,8 +587,8 @@ def _without_unknown_lives(table: pd.DataFrame, results: Results) -> pd.DataFram
     ]
     text = (
         f"open: the life at {100 * chance:g} % failures is not known, because the database has no "
-        "scatter of "
-        f"{' and '.join(bare)}. Give scatter_in_cycles with the material, or leave the failures out"
+        f"scatter of {' and '.join(bare)}. Give scatter_in_cycles with the material, or leave the "
+        "failures out"
     )
     table = table.copy()
     table.loc[unknown, "verdict"] = VERDICTS[1]
@@ -407,27 +598,32 @@ def _without_unknown_lives(table: pd.DataFrame, results: Results) -> pd.DataFram
     return table
 
 
-def _with_overload(table: pd.DataFrame, results: Results) -> pd.DataFrame:
+def _with_overload(table: pd.DataFrame, results: Results, safety: float) -> pd.DataFrame:
     """Return the table with what becomes of each roller at the forces times the safety."""
     rows = _answer_rows(results).reindex(table.index)
-    found = []
-    for holds, judged, of, exceeded in rows[["holds", "judged", "of", "exceeded"]].itertuples(
-        index=False
-    ):
-        if exceeded:  # by a second model too, such as a catalogue
-            found.append(str(exceeded))
-        elif holds == of:
-            found.append("held")
-        elif judged == of:
-            found.append("does not roll")
+    lacks = np.zeros(len(table), dtype=bool)
+    if "load_ratio" in table:
+        lacks = (table["load_ratio"] < safety * (1.0 - EXACT)).to_numpy()
+    texts = []
+    for place, name in enumerate(table.index):
+        row = rows.loc[name]
+        if row["exceeded"]:  # by a second model too, such as a catalogue
+            texts.append(str(row["exceeded"]))
+        elif lacks[place]:
+            ends, ratio = table.loc[name, ["load_ends", "load_ratio"]]
+            texts.append(f"{ends} at {ratio:.3g} times the forces")
+        elif row["holds"] == row["of"]:
+            texts.append("held")
+        elif row["judged"] == row["of"]:
+            texts.append("does not roll")
         else:
-            found.append("not judged")
-    table = table.assign(overload=found)
-    held = table["overload"] == "held"
+            texts.append("not judged")
+    table = table.assign(overload=texts)
+    is_held = table["overload"] == "held"
     unknown = table["overload"] == "not judged"
-    verdict = np.where(held, table["verdict"], np.where(unknown, VERDICTS[1], VERDICTS[2]))
+    verdict = np.where(is_held, table["verdict"], np.where(unknown, VERDICTS[1], VERDICTS[2]))
     table["verdict"] = np.where(table["verdict"] == VERDICTS[2], VERDICTS[2], verdict)
-    added = [f"overload: {text}" if text not in ("held", "not judged") else "" for text in found]
+    added = [f"overload: {text}" if text not in ("held", "not judged") else "" for text in texts]
     both = zip(table["excluded_by"], added, strict=True)
     return table.assign(excluded_by=["; ".join(filter(None, pair)) for pair in both])
 
@@ -439,15 +635,15 @@ def _ranked(
     longer life.
     """
     place = [VERDICTS.index(word) for word in table["verdict"]]
-    wanted = np.zeros(len(table))
+    priority = np.zeros(len(table))
     unranked: tuple[str, ...] = ()
     if least:
-        wanted = table[least].to_numpy(dtype=float)
-        unranked = tuple(str(name) for name in table.index[np.isnan(wanted)])
+        priority = table[least].to_numpy(dtype=float)
+        unranked = tuple(str(name) for name in table.index[np.isnan(priority)])
     life = np.zeros(len(table))
     if "life_hours" in table:
         life = np.nan_to_num(table["life_hours"].to_numpy(dtype=float), nan=-1.0)
-    keys = (-life, np.where(np.isnan(wanted), np.inf, wanted), np.array(place))
+    keys = (-life, np.where(np.isnan(priority), np.inf, priority), np.array(place))
     order = np.lexsort(keys)
     table = table.iloc[order].reset_index()
     enough = table[(table["verdict"] == VERDICTS[0]) & ~table[ROLLER].isin(unranked)]

@@ -23,10 +23,10 @@ from trackroller.parameters import (
     ROLE_OF,
     expressions,
 )
-from trackroller.results import groups
-from trackroller.results.columns import base_values, case_columns, codes, factor_names
+from trackroller.results.case_columns import base_values, case_columns, codes, factor_names
 from trackroller.results.constraints import Column, meeting, quantity_of
-from trackroller.results.lives import BESIDE, FIRST_LIMIT, LIVES, OF_PAIR, body_lives
+from trackroller.results.factor_levels import MOST_LEVELS, levels, numeric, ordered
+from trackroller.results.life_columns import BESIDE, FIRST_LIMIT, LIVES, OF_PAIR, body_lives
 from trackroller.results.own_outputs import with_own_outputs
 from trackroller.roller.output_names import body_of
 from trackroller.study.design.entries import CASE_FIELDS, OPTION_FACTORS
@@ -87,7 +87,7 @@ class SolvedCases:
         return "missing_cases" in self.data.attrs
 
     @cached_property
-    def made(self) -> dict[Any, Any]:
+    def by_function(self) -> dict[Any, Any]:
         """Return what functions with `made_once` made of these cases, by the function and its
         further arguments.
         """
@@ -160,12 +160,11 @@ class SolvedCases:
     @cached_property
     def grid(self) -> bool:
         """Return whether every combination of levels is there."""
-        names, rows = self.factors, len(self.table)
-        full = (
-            int(np.prod([self.table[f].nunique(dropna=False) for f in names], dtype=float))
-            if names
-            else 1
-        )
+        names = self.factors
+        rows = len(self.table)
+        full = 1
+        if names:
+            full = int(np.prod([self.table[f].nunique(dropna=False) for f in names], dtype=float))
         return full == rows and not (len(names) == 1 and self.dims == ("case",) and rows > 60)
 
     @cached_property
@@ -180,7 +179,8 @@ class SolvedCases:
     @cached_property
     def derived(self) -> dict[str, tuple[str, ...]]:
         """Return the parameters that are computed from factors, each with these factors."""
-        ds, table = self.data, self.table
+        ds = self.data
+        table = self.table
         return {
             p: tuple(d for d in map(str, ds[p].dims) if d in self.factors or d == "case")
             for p in PARAMETERS
@@ -193,19 +193,17 @@ class SolvedCases:
         `validity`.
         """
         known = "validity" in self.data
-        return (
-            tuple(str(self.data["validity"].attrs.get("flag_meanings", "")).split())
-            if known
-            else ()
-        )
+        if known:
+            return tuple(str(self.data["validity"].attrs.get("flag_meanings", "")).split())
+        return ()
 
     @cached_property
     def limits(self) -> tuple[str, ...]:
         """Return the names of the limits by their numbers in the columns `limiting_mechanism_`."""
         known = "limiting_mechanism" in self.data
-        return (
-            tuple(self.data["limiting_mechanism"].attrs["flag_meanings"].split()) if known else ()
-        )
+        if known:
+            return tuple(self.data["limiting_mechanism"].attrs["flag_meanings"].split())
+        return ()
 
     @cached_property
     def goals(self) -> dict[str, str]:
@@ -234,7 +232,7 @@ class SolvedCases:
         Numbers in rising order, categories in order of appearance.
         """
         if name not in self._levels:  # a page asks a dozen times for the levels of each factor
-            self._levels[name] = groups.levels(self.table[name])
+            self._levels[name] = levels(self.table[name])
         return list(self._levels[name])
 
     @cached_property
@@ -243,14 +241,14 @@ class SolvedCases:
 
     def numeric(self, name: str) -> bool:
         """Say whether the factor is a number."""
-        return groups.numeric(self.table[name])
+        return numeric(self.table[name])
 
     def ordered(self, name: str) -> bool:
         """Return whether the levels of a factor have an order.
 
         Materials, few drives and few curves have no order.
         """
-        return groups.ordered(self.table[name])
+        return ordered(self.table[name])
 
     @cached_property
     def categories(self) -> tuple[str, ...]:
@@ -258,9 +256,7 @@ class SolvedCases:
         their levels.
         """
         return tuple(
-            f
-            for f in self.factors
-            if not self.ordered(f) and len(self.levels(f)) <= groups.MOST_LEVELS
+            f for f in self.factors if not self.ordered(f) and len(self.levels(f)) <= MOST_LEVELS
         )
 
     def behind(self, name: str) -> tuple[str, ...]:
@@ -269,16 +265,21 @@ class SolvedCases:
         These are the parameter itself or the factors that it is computed from. A fixed parameter
         has no such factor.
         """
-        return (name,) if name in self.factors else self.derived.get(name, ())
+        if name in self.factors:
+            return (name,)
+        return self.derived.get(name, ())
 
     def of_one_model(self, rows: np.ndarray | None = None) -> np.ndarray:
         """Return some rows, or all, without those of another level of an option than `held_level`,
         shape (n,) bool.
         """
-        kept = np.ones(len(self.table), dtype=bool) if rows is None else rows.copy()
+        if rows is None:
+            counted = np.ones(len(self.table), dtype=bool)
+        else:
+            counted = rows.copy()
         for option in (n for n in self.factors if n in OPTION_FACTORS):
-            kept &= (self.table[option] == self.held_level(option)).to_numpy()
-        return kept
+            counted &= (self.table[option] == self.held_level(option)).to_numpy()
+        return counted
 
     def held_level(self, name: str) -> Any:
         """Return the level at which a factor is held.
@@ -292,7 +293,9 @@ class SolvedCases:
         base = self.base.get(name)
         if base is not None and base in levels:
             return base
-        return levels[len(levels) // 2] if self.numeric(name) else levels[0]
+        if self.numeric(name):
+            return levels[len(levels) // 2]
+        return levels[0]
 
     def hold(self, shown: tuple[str, ...]) -> tuple[pd.DataFrame, dict[str, Any]]:
         """Return the rows with every factor outside `shown` at its held level, and these levels by
@@ -301,12 +304,14 @@ class SolvedCases:
         A sampled study has no such rows: there only the options of the calculation are held, such
         as the contact model.
         """
-        names = self.factors if self.grid else [f for f in self.factors if f in OPTION_FACTORS]
-        held = {f: self.held_level(f) for f in names if f not in shown}
+        names = self.factors
+        if not self.grid:
+            names = tuple(f for f in self.factors if f in OPTION_FACTORS)
+        levels = {f: self.held_level(f) for f in names if f not in shown}
         rows = self.table
-        for name, level in held.items():
+        for name, level in levels.items():
             rows = rows[rows[name] == level]
-        return rows, held
+        return rows, levels
 
     @cached_property
     def life(self) -> tuple[str, str, str] | None:
@@ -330,15 +335,17 @@ class SolvedCases:
 
         The lives by the S-N curve hold at 50 % and do not take its place.
         """
-        asked = float(self.data.attrs.get("failure_probability", 0.5)) != 0.5
-        return asked and FIRST_LIMIT[0] in self.table and not self.knows(FIRST_LIMIT[0])
+        differs = float(self.data.attrs.get("failure_probability", 0.5)) != 0.5
+        return differs and FIRST_LIMIT[0] in self.table and not self.knows(FIRST_LIMIT[0])
 
     @property
     def fatigue_lives(self) -> tuple[tuple[str, str, str], ...]:
         """Return columns, wordings and units of lives by the S-N curve; the pair needs the hours of
         the guide.
         """
-        return LIVES[0 if self.knows("guide_life_hours") else 1 :]
+        if self.knows("guide_life_hours"):
+            return LIVES
+        return LIVES[1:]
 
     @cached_property
     def regime(self) -> np.ndarray:
@@ -375,7 +382,9 @@ class SolvedCases:
         """
         if flag not in self.flags:
             return np.zeros(len(self.table), dtype=bool)
-        name = f"validity_{body}" if body else "validity"
+        name = "validity"
+        if body and self.by_body:
+            name = f"validity_{body}"
         bit = 1 << self.flags.index(flag)
         return np.asarray((np.nan_to_num(self.column(name, 0.0)).astype(np.int64) & bit) != 0)
 
@@ -415,18 +424,19 @@ class SolvedCases:
         """Return the values of a quantity that a constraint compares, shape (n,): of a life in a
         range the low end.
         """
-        return (
-            self.quantity(name)[0]
-            if name != FIRST_LIMIT[0] or name not in self.data
-            else self.sure_life
-        )
+        if name != FIRST_LIMIT[0] or name not in self.data:
+            return self.quantity(name)[0]
+        return self.sure_life
 
     @cached_property
     def counted(self) -> np.ndarray:
         """Return the cases that roll, converged, and meet the constraints of the study, shape
         (n,).
         """
-        return self.rolling if self.allowed is None else self.rolling & self.allowed
+        counted: np.ndarray = self.rolling
+        if self.allowed is not None:
+            counted = counted & self.allowed
+        return counted
 
     @cached_property
     def without_fatigue(self) -> np.ndarray:
@@ -443,7 +453,8 @@ class SolvedCases:
         # (n, body)
         known = ~np.isnan(flat(self.data.sel(limit="fatigue"), "life_hours_by_limit", self.dims))
         for i, body in enumerate(BODIES):
-            of, rows = self.material(body), self.inside
+            of = self.material(body)
+            rows = self.inside
             if known[rows, i].any():
                 never = [
                     name for name in np.unique(of[rows]) if not known[rows & (of == name), i].any()
@@ -483,7 +494,7 @@ class SolvedCases:
         )
 
     @cached_property
-    def held(self) -> np.ndarray:
+    def holds(self) -> np.ndarray:
         """Return the valid cases that exceed no limit on values that were given, shape (n,)."""
         return np.asarray(self.valid & ~self.any_limit_in("exceeded"))
 
@@ -494,7 +505,10 @@ class SolvedCases:
         A life that is a range has to meet it with its low end.
         """
         judged = self.judged_targets
-        values = judged[target] if target in judged else self.quantity(target)[0].astype(float)
+        if target in judged:
+            values = judged[target]
+        else:
+            values = self.quantity(target)[0].astype(float)
         return self.config.requirement[target].meets(values)
 
     @cached_property
@@ -520,7 +534,9 @@ class SolvedCases:
         """
         name = FIRST_LIMIT[0]
         value = self.column(name)
-        low = self.quantity(f"{name}_low")[0].astype(float) if f"{name}_low" in self.data else value
+        low = value
+        if f"{name}_low" in self.data:
+            low = self.quantity(f"{name}_low")[0].astype(float)
         return np.where(np.isnan(low), value, low)
 
     def ended_by_fatigue(self, body: str = "roller") -> np.ndarray:
@@ -528,9 +544,9 @@ class SolvedCases:
         material scatters.
         """
         name = f"limiting_mechanism_{body}"
-        return np.asarray(
-            self.column(name) == self.limits.index("fatigue") if name in self.table else True
-        )
+        if name not in self.table:
+            return np.asarray(True)
+        return np.asarray(self.column(name) == self.limits.index("fatigue"))
 
     @cached_property
     def ranged(self) -> bool:
@@ -563,10 +579,12 @@ class SolvedCases:
         that fail at once.
         """
         if of_first_limit(column.name):
-            return np.where(self.valid & ~self.held, 0.0, column.values)
+            return np.where(self.valid & ~self.holds, 0.0, column.values)
         if not of_fatigue(column.name):
             return column.values
-        body = body_of(column.name) if self.by_body else ""
+        body = ""
+        if self.by_body:
+            body = body_of(column.name)
         return np.where(self.counted & self.flagged("static", body), 0.0, column.values)
 
     def knows(self, column: str) -> bool:
@@ -591,10 +609,10 @@ def made_once(function: Callable[..., Made]) -> Callable[..., Made]:
     @functools.wraps(function)
     def once(results: SolvedCases, *arguments: Any) -> Made:
         key = (function, *arguments)
-        if key not in results.made:
-            results.made[key] = function(results, *arguments)
-        made: Made = results.made[key]
-        return made
+        if key not in results.by_function:
+            results.by_function[key] = function(results, *arguments)
+        result: Made = results.by_function[key]
+        return result
 
     return once
 
@@ -615,11 +633,15 @@ def _role_of_label(table: pd.DataFrame, label: str, known: Mapping[str, list[str
     """
     places = {role: codes(table, names) for role, names in known.items()}
     if table[label].nunique() == len(table):
-        return "condition" if not places["choice"].any() else ""
+        if not places["choice"].any():
+            return "condition"
+        return ""
     decides = {
         role: table.groupby(place)[label].nunique().max() == 1 for role, place in places.items()
     }
-    return "condition" if decides["condition"] and not decides["choice"] else "choice"
+    if decides["condition"] and not decides["choice"]:
+        return "condition"
+    return "choice"
 
 
 def _usual_goals(ds: xr.Dataset) -> dict[str, str]:
@@ -629,7 +651,9 @@ def _usual_goals(ds: xr.Dataset) -> dict[str, str]:
     goals: dict[str, str] = {}
     known = "guide_life_hours" in ds and not bool(ds["guide_life_hours"].isnull().all())
     # of the pair where the guide's hours are known
-    lives = ["pair_life_to_first_limit_hours", *["pair_life_hours"] * known, "roller_life_hours"]
+    lives = ["pair_life_to_first_limit_hours", "roller_life_hours"]
+    if known:
+        lives.insert(1, "pair_life_hours")
     lives = [n for n in lives if n in ds and np.isfinite(ds[n]).any()]
     if lives:
         goals[lives[0]] = "max"
@@ -638,4 +662,6 @@ def _usual_goals(ds: xr.Dataset) -> dict[str, str]:
     for name in ("friction_power", "friction_energy_per_distance", "max_pressure"):
         if name in ds and len(goals) == 1:
             goals[name] = "min"
-    return goals if len(goals) == 2 else {}
+    if len(goals) == 2:
+        return goals
+    return {}

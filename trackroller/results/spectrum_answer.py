@@ -26,13 +26,12 @@ from trackroller.damage.verdict import STATES
 from trackroller.numerics.numbers import number_or_nan
 from trackroller.parameters import BODIES, PARAMETERS, REGIME_LABELS, REGIMES
 from trackroller.parameters.carriage_fields import long_name_of
-from trackroller.parameters.example import ABSENT, drive_question
-from trackroller.results.answer import Answer, Caution, Column, Part, Required
-from trackroller.results.flags import flags_of, not_judged
-from trackroller.results.lives import FIRST_LIMIT, past_data
+from trackroller.parameters.example import drive_question, is_absent
+from trackroller.results.answer import Answer, Caution, Column, Part, Required, yes_or_blank
+from trackroller.results.friction import friction_cautions
+from trackroller.results.life_columns import FIRST_LIMIT, past_data
 from trackroller.results.margins import First, Margin, is_guessed
 from trackroller.results.placeholders import guess_cautions, placeholders_part
-from trackroller.results.places import level_text
 from trackroller.results.roller_answer import (
     CODES,
     OF_ANY_LIMIT,
@@ -41,6 +40,8 @@ from trackroller.results.roller_answer import (
     material_name,
     state_of_life,
 )
+from trackroller.results.subgroups import level_text
+from trackroller.results.validity_flags import flags_of, not_judged
 from trackroller.roller.dataset import validity_bit
 from trackroller.roller.duty import strokes_words
 from trackroller.roller.limit_notes import notes_of
@@ -181,9 +182,9 @@ def _margins(ds: xr.Dataset) -> list[Margin]:
     """Return the limits of both bodies in the order in which they are reached; without limits
     fatigue alone.
     """
-    found = [*_of_limits(ds), *_of_pressure(ds)]
+    listed = [*_of_limits(ds), *_of_pressure(ds)]
     return sorted(
-        found,
+        listed,
         key=lambda one: (
             one.state != "exceeded",
             one.reached,
@@ -240,7 +241,9 @@ def _by_fatigue_alone(ds: xr.Dataset, body: str) -> Margin:
     hours = float(ds[f"{body}_life_hours"])
     limit = LIMITS["fatigue"]
     beyond = _beyond(ds, body, float(ds[f"{body}_life_shifts"]))
-    state = "unknown" if math.isnan(hours) else "kept"
+    state = "kept"
+    if math.isnan(hours):
+        state = "unknown"
     margin = Margin(
         "fatigue", limit.word, limit.title, body, state=state, timed=True, beyond=beyond
     )
@@ -278,7 +281,9 @@ def _kind(own: list[Margin], first: First | None, lives: pd.DataFrame) -> str:
         return "breaks"
     if first is None:
         return "unknown"
-    return "unlimited" if math.isinf(first.low) else "lasts"
+    if math.isinf(first.low):
+        return "unlimited"
+    return "lasts"
 
 
 def _headline(
@@ -374,11 +379,22 @@ def _table(ds: xr.Dataset, own: list[Margin]) -> pd.DataFrame:
 
 def _row(ds: xr.Dataset, margin: Margin) -> dict[str, Any]:
     """Return the row of a limit."""
-    low = 0.0 if margin.breaks else margin.low
-    high = 0.0 if margin.breaks else margin.high
-    block, share = _worst_block(ds, margin)
+    low = margin.soonest
+    high = margin.latest
+    state = margin.state
+    if state == "kept" and margin.used > 1.0:
+        state = "finite"
+    model = ""
+    if margin.beside:
+        model = "second"
     shift = float(ds["duration"].sum())
-    state = "finite" if margin.state == "kept" and margin.used > 1.0 else margin.state
+    block, share = _worst_block(ds, margin)
+    block_words = ""
+    if block:
+        block_words = f"{block}, {100 * share:.0f} %"
+    contact = math.nan
+    if margin.name == "fatigue" and block:
+        contact = known_damage(ds, margin.body)[0]
     return {
         "limit": margin.word,
         "body": margin.body,
@@ -391,14 +407,12 @@ def _row(ds: xr.Dataset, margin: Margin) -> dict[str, Any]:
         "km_high": high * _km_an_hour(ds),
         "shifts_low": low / shift,
         "shifts_high": high / shift,
-        "block": f"{block}, {100 * share:.0f} %" if block else "",
+        "block": block_words,
         "share": share,
-        "contact": known_damage(ds, margin.body)[0]
-        if margin.name == "fatigue" and block
-        else math.nan,
-        "extrapolated": "yes" if margin.beyond else "",
-        "guessed": "yes" if margin.guessed else "",
-        "model": "second" if margin.beside else "",
+        "contact": contact,
+        "extrapolated": yes_or_blank(margin.beyond),
+        "guessed": yes_or_blank(margin.guessed),
+        "model": model,
         "blocks": ", ".join(_blocks_of(ds, margin)),
         "name": margin.name,
     }
@@ -424,14 +438,14 @@ def _lives(ds: xr.Dataset) -> pd.DataFrame:
                 }
         for probability, shifts in lives.items():
             lengths = {"hours": shifts * shift, "km": shifts * km, "shifts": shifts}
-            told = {
+            row = {
                 "body": body,
                 "probability": probability,
                 "at_most": at_most,
                 "contact": contact,
                 "why": why,
             }
-            rows.append(told | lengths)
+            rows.append(row | lengths)
     return pd.DataFrame(rows, columns=[one.name for one in OF_LIVES])
 
 
@@ -445,10 +459,8 @@ def _why_unknown(ds: xr.Dataset, body: str) -> tuple[str, float]:
         return "", math.nan
     damage = known_damage(ds, body)[1]
     unknown = ds["damage"].sel(body=body).isnull().any("contact").values
-    names, regimes = (
-        ds["block"].values.astype(str)[unknown],
-        ds["regime"].values.astype(int)[unknown],
-    )
+    names = ds["block"].values.astype(str)[unknown]
+    regimes = ds["regime"].values.astype(int)[unknown]
     skids = regimes == REGIMES.index("full_slip")
     breaks = np.zeros(len(names), dtype=bool)
     if "validity_body" in ds:
@@ -456,19 +468,19 @@ def _why_unknown(ds: xr.Dataset, body: str) -> tuple[str, float]:
     unsolved = np.isnan(
         ds["peak_stress"].sel(body=body).transpose("block", "contact").values[unknown]
     ).any(axis=1)
-    said = [
+    reasons = [
         f"no stress in {n} ({REGIME_LABELS[r]})"
         for n, r in zip(names[unsolved], regimes[unsolved], strict=True)
     ]
-    said += [f"its peak stress exceeds its tensile strength in {n}" for n in names[breaks]]
-    said += [f"the roller skids in {n}" for n in names[skids & ~breaks]]
-    if not said:
-        said = ["give guide_overrollings_per_hour, or guide_overrollings of each block"]
+    reasons += [f"its peak stress exceeds its tensile strength in {n}" for n in names[breaks]]
+    reasons += [f"the roller skids in {n}" for n in names[skids & ~breaks]]
+    if not reasons:
+        reasons = ["give guide_overrollings_per_hour, or guide_overrollings of each block"]
     known = float(np.nansum(damage))
-    bound = (
-        ds.attrs["critical_damage"] / known * float(ds["duration"].sum()) if known > 0 else math.nan
-    )
-    return "; ".join(said), bound
+    bound = math.nan
+    if known > 0:
+        bound = ds.attrs["critical_damage"] / known * float(ds["duration"].sum())
+    return "; ".join(reasons), bound
 
 
 def _parts(ds: xr.Dataset, lives: pd.DataFrame) -> Iterable[Part]:
@@ -488,7 +500,7 @@ def _blocks(ds: xr.Dataset) -> Part:
     their sum.
     """
     known = [name for name in LOAD_FIELDS if np.isfinite(ds[name].values).any()]
-    loads = [name for name in known if name not in ABSENT or ds[name].values.any()]
+    loads = [name for name in known if not is_absent(name, ds[name].values)]
     columns = [
         Column("block", "Block", "", "name of the block", "text", role="name"),
         Column("distance", "Distance", "m", "travel of the block", "whole"),
@@ -496,9 +508,8 @@ def _blocks(ds: xr.Dataset) -> Part:
         *(Column(n, long_name_of(n), PARAMETERS[n].units, "", "whole") for n in loads),
         Column("regime", "Regime", "", "", "text"),
     ]
-    columns[2] = (
-        Column("duration", "Share of the time", "1", "", "share") if _by_share(ds) else columns[2]
-    )
+    if _by_share(ds):
+        columns[2] = Column("duration", "Share of the time", "1", "", "share")
     table = pd.DataFrame({"block": ds["block"].values.astype(str)})
     for name in ("distance", "duration", *loads):
         table[name] = ds[name].values.astype(float)
@@ -509,7 +520,9 @@ def _blocks(ds: xr.Dataset) -> Part:
         whole = float(np.nansum(damage))
         table[f"peak_{body}"] = ds["peak_stress"].sel(body=body, contact=contact).values
         table[f"damage_{body}"] = damage
-        table[f"share_{body}"] = damage / whole if whole > 0 else np.nan
+        table[f"share_{body}"] = np.nan
+        if whole > 0:
+            table[f"share_{body}"] = damage / whole
         columns += [
             Column(
                 f"peak_{body}",
@@ -521,10 +534,14 @@ def _blocks(ds: xr.Dataset) -> Part:
             Column(f"damage_{body}", f"{body} damage", "1", "damage of the block by fatigue"),
             Column(f"share_{body}", f"{body} share", "1", "part of the known damage", "share"),
         ]
-        least = "at least " if np.isnan(damage).any() else ""
+        least = ""
+        if np.isnan(damage).any():
+            least = "at least "
         notes.append(f"{body}: contact {contact}, damage sum {least}{whole:.4g}")
     sums = f"{float(ds['distance'].sum()):,.6g} m and {float(ds['duration'].sum()):.4g} h"
-    title = "Blocks of an hour of travel" if _by_share(ds) else "Blocks of a shift"
+    title = "Blocks of a shift"
+    if _by_share(ds):
+        title = "Blocks of an hour of travel"
     note = f"Together {sums}; {'; '.join(notes)}. {strokes_words(ds)}".strip()
     return Part("blocks", title, table, tuple(columns), note)
 
@@ -548,12 +565,24 @@ def not_given_values(ds: xr.Dataset) -> dict[str, str]:
 
 def _reasons(ds: xr.Dataset) -> dict[str, list[str]]:
     """Return why the model does not judge blocks with travel, and these blocks."""
-    found: dict[str, list[str]] = {}
+    reasons: dict[str, list[str]] = {}
     for place, name in enumerate(ds["block"].values):
         if float(ds["distance"][place]) > 0:
             for reason in not_judged(ds.isel(block=place)):
-                found.setdefault(reason, []).append(str(name))
-    return found
+                reasons.setdefault(reason, []).append(str(name))
+    return reasons
+
+
+def _flagged_blocks(ds: xr.Dataset) -> dict[tuple[str, str], list[str]]:
+    """Return the blocks in which a flag is set, by the code and the words of the flag."""
+    if "validity" not in ds:
+        return {}
+    flagged: dict[tuple[str, str], list[str]] = {}
+    for place, name in enumerate(ds["block"].values):
+        for flag in flags_of(ds.isel(block=place)):
+            code = CODES.get(flag.name, "flagged")
+            flagged.setdefault((code, f"{flag.sentence} {flag.remedy}"), []).append(str(name))
+    return flagged
 
 
 def _warnings(ds: xr.Dataset) -> Iterator[Caution]:
@@ -561,14 +590,10 @@ def _warnings(ds: xr.Dataset) -> Iterator[Caution]:
     total = ds.sizes["block"]
     for reason, names in _reasons(ds).items():
         yield Caution("not_judged", len(names), total, f"{reason}: {', '.join(names)}", "blocks")
-    flagged: dict[tuple[str, str], list[str]] = {}
-    for place, name in enumerate(ds["block"].values if "validity" in ds else ()):
-        for flag in flags_of(ds.isel(block=place)):
-            code = CODES.get(flag.name, "flagged")
-            flagged.setdefault((code, f"{flag.sentence} {flag.remedy}"), []).append(str(name))
-    for (code, text), names in flagged.items():
+    for (code, text), names in _flagged_blocks(ds).items():
         yield Caution(code, len(names), total, f"{', '.join(names)}: {text}", "blocks")
     yield from guess_cautions(placeholders_part(ds))
+    yield from friction_cautions(ds.attrs)
     for note in notes_of(ds):
         if note.startswith(OF_TEMPERATURE):
             yield Caution("flagged", total, total, note, "blocks")
@@ -580,5 +605,5 @@ def _warnings(ds: xr.Dataset) -> Iterator[Caution]:
         yield Caution("not_given", 1, 1, question, "")
     words = not_given_values(ds)
     if words:
-        told = ", ".join(f"{long_name_of(name)} {value}" for name, value in words.items())
-        yield Caution("not_given", 1, 1, told, "")
+        values_given = ", ".join(f"{long_name_of(name)} {value}" for name, value in words.items())
+        yield Caution("not_given", 1, 1, values_given, "")

@@ -88,8 +88,16 @@ def open_study(source: xr.Dataset | Path | str, indices: Path | str | None = Non
     if not isinstance(source, (xr.Dataset, str, Path)):
         remedy = "Give the folder results/NAME, or its file study.nc."
         raise InputError("study", type(source).__name__, "a path or a data set", remedy)
-    known = None if indices is None else read_result(indices)
-    data = source if isinstance(source, xr.Dataset) else _gathered(Path(source))
+    known = None
+    if indices is not None:
+        known = read_result(indices)
+    file = None
+    data: xr.Dataset | None
+    if isinstance(source, xr.Dataset):
+        data = source
+    else:
+        data = _gathered(Path(source))
+        file = _materials_file(Path(source))
     if data is None:
         return _read_unfinished(StudyFolder(Path(source)), known)
     data = data.assign_attrs(_checked_version(data))
@@ -104,7 +112,6 @@ def open_study(source: xr.Dataset | Path | str, indices: Path | str | None = Non
             solved = chunks.from_results(solved, np.arange(data.sizes["case"]))
         data = labelled(study, design, data.drop_vars(names), solved)
     _check_dims(data, case_dims(data, study.factors))
-    file = None if isinstance(source, xr.Dataset) else _materials_file(Path(source))
     return Results(study, design, data, known, file)
 
 
@@ -114,11 +121,14 @@ def open_as_reported(root: Path) -> Results:
 
     Nothing is computed: a page or a figure that must not wait takes these results.
     """
-    results, stored = open_study(root), root / "sensitivity.nc"
+    results = open_study(root)
+    stored = root / "sensitivity.nc"
     known = stored.is_file() and not results.unfinished and digests_of(stored)
-    return dataclasses.replace(
-        results, known_indices=read_result(stored) if known else xr.Dataset()
-    )
+    if known:
+        indices = read_result(stored)
+    else:
+        indices = xr.Dataset()
+    return dataclasses.replace(results, known_indices=indices)
 
 
 def solved_results(ledger: Ledger) -> Results:
@@ -132,7 +142,11 @@ def _materials_file(path: Path) -> Path:
     """Return the materials file in the folder of a study; `path` is that folder, or `study.nc` in
     it.
     """
-    return StudyFolder(path if path.is_dir() else path.parent).inputs / MATERIALS
+    if path.is_dir():
+        folder = path
+    else:
+        folder = path.parent
+    return StudyFolder(folder).inputs / MATERIALS
 
 
 def _gathered(path: Path) -> xr.Dataset | None:
@@ -141,18 +155,26 @@ def _gathered(path: Path) -> xr.Dataset | None:
     """
     if path.is_dir():
         check_readable(path)
-    file = StudyFolder(path).gathered if path.is_dir() else path
-    record = StudyFolder(path).record() if path.is_dir() else {}
+    file = path
+    record = {}
+    if path.is_dir():
+        file = StudyFolder(path).gathered
+        record = StudyFolder(path).record()
     planned = record.get("study")
     if not file.is_file() and planned is None:
         allowed = "a folder results/NAME with study.nc, or such a file"
         raise InputError(
             "study", str(path), allowed, "Run the study to its end first.", "holds no results"
         )
-    data = read_result(file) if file.is_file() else None
+    data = None
+    if file.is_file():
+        data = read_result(file)
     if data is None or planned not in (None, data.attrs.get("study")):
         return None
-    return data.assign_attrs({DATE: record["planned"]} if "planned" in record else {})
+    date = {}
+    if "planned" in record:
+        date = {DATE: record["planned"]}
+    return data.assign_attrs(date)
 
 
 def _read_unfinished(folder: StudyFolder, indices: xr.Dataset | None) -> Results:
@@ -165,9 +187,9 @@ def _read_unfinished(folder: StudyFolder, indices: xr.Dataset | None) -> Results
     rows = np.setdiff1d(of_row, of_row[place < 0])
     solved = np.flatnonzero(np.isin(of_row, rows))
     if not len(rows) or len(solved) == len(place):
-        state = (
-            "is solved, but not gathered into study.nc" if len(rows) else "has no solved case yet"
-        )
+        state = "has no solved case yet"
+        if len(rows):
+            state = "is solved, but not gathered into study.nc"
         raise InputError(
             "study",
             str(folder.root),
@@ -175,12 +197,15 @@ def _read_unfinished(folder: StudyFolder, indices: xr.Dataset | None) -> Results
             "Run the study to its end first.",
             state,
         )
-    drawn, cases = solved_part(study.drawn, rows), ledger.cases.design.isel(case=solved)
+    drawn = solved_part(study.drawn, rows)
+    cases = ledger.cases.design.isel(case=solved)
     if ROW in cases.coords:
         cases = cases.assign_coords({ROW: ("case", np.searchsorted(rows, cases[ROW].values))})
     data = labelled(study, drawn, cases, collect(ledger, solved)).assign_coords(case=rows)
     lacking = [n for n in study.drawn.factors if n not in drawn.factors]
-    only = f" They hold one value only of {' and '.join(lacking)}." if lacking else ""
+    only = ""
+    if lacking:
+        only = f" They hold one value only of {' and '.join(lacking)}."
     notice = (
         f"Unfinished study: {len(solved)} of {len(place)} cases are solved, and all numbers "
         f"are those of these.{only}"
@@ -218,12 +243,14 @@ def _checked_version(data: xr.Dataset) -> dict[str, str]:
     """Refuse results in another format; return the notice for results of another solver, {} for
     those of this one.
     """
-    solver, written = data.attrs.get("solver_digest"), data.attrs.get("store_format")
+    solver = data.attrs.get("solver_digest")
+    written = data.attrs.get("store_format")
     if solver is None or (solver == solver_digest() and written == STORE_FORMAT):
         return {}
     if written != STORE_FORMAT:
         name = f"study.nc of {data.attrs.get('study_name')}"
-        allowed, wrong = f"results in format {STORE_FORMAT}", "is that of another version"
+        allowed = f"results in format {STORE_FORMAT}"
+        wrong = "is that of another version"
         raise InputError(name, f"format {written}", allowed, _REMEDY, wrong)
     warnings.warn(_EARLIER, stacklevel=3)
     return {NOTICE: _EARLIER}
@@ -249,11 +276,10 @@ def _study(data: xr.Dataset) -> Study:
         wrong = f"has a study file that this version does not read ({error.errors[0]})"
         raise InputError("study", name, "", _REMEDY, wrong) from None
     study = Study(config, not_given=tuple(json.loads(data.attrs.get(NOT_GIVEN, "[]"))))
-    if changed := _changed(stored, study.as_dict()):
-        allowed, wrong = (
-            "a study file that is read as it was written",
-            f"has another {changed} in this version",
-        )
+    changed = _changed(stored, study.as_dict())
+    if changed:
+        allowed = "a study file that is read as it was written"
+        wrong = f"has another {changed} in this version"
         raise InputError("study", name, allowed, _REMEDY, wrong)
     return study
 
@@ -266,7 +292,8 @@ def _changed(stored: Mapping[str, Any], now: Mapping[str, Any]) -> str:
         if key not in now:
             return key
         if isinstance(value, Mapping) and isinstance(now[key], Mapping):
-            if inner := _changed(value, now[key]):
+            inner = _changed(value, now[key])
+            if inner:
                 return f"{key}.{inner}"
         elif value != now[key]:
             return key

@@ -31,10 +31,14 @@ def summary_of(results: SolvedCases) -> str:
 
 def _lines(results: SolvedCases) -> Iterator[str]:
     config = results.config
-    described = f": {config.description}" if config.description else ""
+    described = ""
+    if config.description:
+        described = f": {config.description}"
     yield f"Study '{config.name}'{described}"
     missing = int(results.data.attrs.get("missing_cases", 0))
-    left = f", {missing:,} not solved yet" if missing else ""
+    left = ""
+    if missing:
+        left = f", {missing:,} not solved yet"
     yield f"cases    {len(results.table):,} ({config.method.name}){left}"
     yield f"factors  {_factors(results)}"
     yield f"model    {config.contact_model}, {config.accuracy}"
@@ -51,27 +55,32 @@ def _factors(results: SolvedCases) -> str:
     """Return the first factors with their numbers of levels."""
     named = [f"{name} ({len(results.levels(name))})" for name in results.factors[:MOST_NAMED]]
     left = len(results.factors) - len(named)
-    return ", ".join(named) + (f" and {left} more" if left > 0 else "")
+    further = ""
+    if left > 0:
+        further = f" and {left} more"
+    return ", ".join(named) + further
 
 
 def _regimes(results: SolvedCases) -> str:
     """Return how many cases roll, skid, lift off or failed."""
     counts = np.bincount(results.regime.astype(int), minlength=len(REGIMES))
-    found = [
+    parts = [
         f"{count:,} {name.replace('_', ' ')}"
         for name, count in zip(REGIMES, counts, strict=True)
         if count
     ]
-    return ", ".join(found)
+    return ", ".join(parts)
 
 
 def _outputs(results: SolvedCases) -> list[str]:
     """Return the outputs of the summary: the life that counts, and the outputs that the study asks
     for.
     """
-    found = [results.life[0]] if results.life is not None else []
-    found += [name for name in results.config.requirement if name not in found]
-    return found[:MOST_NAMED]
+    names = []
+    if results.life is not None:
+        names = [results.life[0]]
+    names += [name for name in results.config.requirement if name not in names]
+    return names[:MOST_NAMED]
 
 
 def _range(results: SolvedCases, name: str) -> str:
@@ -80,12 +89,16 @@ def _range(results: SolvedCases, name: str) -> str:
     own = values[results.rolling & ~np.isnan(values)]
     if not own.size:
         return f"{name}: not known in any case that rolls"
-    unit = "" if units in ("1", "-") else f" {units}"
-    low, middle, high = own.min(), np.quantile(own, 0.5, method="inverted_cdf"), own.max()
+    if units in ("1", "-"):
+        unit = ""
+    else:
+        unit = f" {units}"
+    low = own.min()
+    middle = np.quantile(own, 0.5, method="inverted_cdf")
+    high = own.max()
     return f"{words} ({name}): {low:.4g} to {high:.4g}{unit}, median {middle:.4g}"
 
 
 def _ends(ends: dict[str, float]) -> str:
-    return " ".join(
-        f"{'at least' if end == 'min' else 'at most'} {value:g}" for end, value in ends.items()
-    )
+    words = {"min": "at least", "max": "at most"}
+    return " ".join(f"{words[end]} {value:g}" for end, value in ends.items())

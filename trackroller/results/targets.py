@@ -17,8 +17,8 @@ from trackroller.methods import Design
 from trackroller.methods.correlation import correlated_pairs
 from trackroller.methods.factor import Factor
 from trackroller.methods.probability import probabilities
-from trackroller.results.groups import MOST_LEVELS
-from trackroller.results.lives import FIRST_LIMIT
+from trackroller.results.factor_levels import MOST_LEVELS
+from trackroller.results.life_columns import FIRST_LIMIT
 from trackroller.roller.output_names import body_of, is_life
 from trackroller.roller.requirement import Requirement
 from trackroller.study.design.levels import in_words
@@ -51,7 +51,7 @@ class Level(NamedTuple):
 def targets(
     ds: xr.Dataset,
     design: Design,
-    wanted: Mapping[str, Requirement],
+    requirement: Mapping[str, Requirement],
     deviations: Mapping[str, np.ndarray],
     allowed: np.ndarray | None = None,
     judged: Mapping[str, np.ndarray] = MappingProxyType({}),
@@ -83,13 +83,15 @@ def targets(
     their bounds.
     """
     columns = outputs(
-        ds, design.factors, list(wanted), scale="natural", unlimited=True, allowed=allowed
+        ds, design.factors, list(requirement), scale="natural", unlimited=True, allowed=allowed
     )
     columns = [_judged(c, judged[c.name], allowed) if c.name in judged else c for c in columns]
     hits = np.stack(
         [
             hits_of(
-                c, wanted[c.name], deviations.get(c.name, deviations.get(scattering_body(c.name)))
+                c,
+                requirement[c.name],
+                deviations.get(c.name, deviations.get(scattering_body(c.name))),
             )
             for c in columns
         ],
@@ -97,16 +99,19 @@ def targets(
     )
     names = [c.name for c in columns]
     if len(names) > 1:
-        hits, names = np.column_stack([hits, _all(hits, names)]), [*names, "all"]
+        hits = np.column_stack([hits, _all(hits, names)])
+        names = [*names, "all"]
     robust = design.method.points
-    levels, estimates = (_of_points if robust else _of_rows)(hits, design)
-    out = xr.Dataset(coords=_coordinates(names, columns, wanted, levels))
+    dims: tuple[str, ...]
+    if robust:
+        dims = ("target", "point")
+        levels, estimates = _of_points(hits, design)
+    else:
+        dims = ("target",)
+        levels, estimates = _of_rows(hits, design)
+    out = xr.Dataset(coords=_coordinates(names, columns, requirement, levels))
     for end, whole in zip(ENDS, estimates[0], strict=True):
-        out[f"target_probability{end}"] = (
-            ("target", "point") if robust else ("target",),
-            whole,
-            {"units": "1"},
-        )
+        out[f"target_probability{end}"] = (dims, whole, {"units": "1"})
     for end, part in zip(ENDS, zip(*estimates[1:], strict=True), strict=False):
         out[f"level_probability{end}"] = (
             ("target", "target_level"),
@@ -118,13 +123,18 @@ def targets(
 
 def _judged(column: Output, life: np.ndarray, allowed: np.ndarray | None) -> Output:
     """Return the life to the first limit in the place of the life that a target names."""
-    values = life if allowed is None else np.where(allowed, life, np.nan)
+    if allowed is None:
+        values = life
+    else:
+        values = np.where(allowed, life, np.nan)
     return replace(column, values=values, long_name=FIRST_LIMIT[1])
 
 
 def scattering_body(output: str) -> str:
     """Return the body whose material's scatter counts for a life, '' for another output."""
-    return (body_of(output) or "roller") if is_life(output) else ""
+    if is_life(output):
+        return body_of(output) or "roller"
+    return ""
 
 
 def hits_of(column: Output, limits: Requirement, deviation: np.ndarray | None) -> np.ndarray:
@@ -145,7 +155,10 @@ def _share_above(lives: np.ndarray, limit: float, deviation: np.ndarray) -> np.n
     scatter, shape (n,).
     """
     if np.isinf(limit):
-        return np.full(len(lives), 1.0 if limit < 0 else 0.0)
+        share = 0.0
+        if limit < 0:
+            share = 1.0
+        return np.full(len(lives), share)
     with np.errstate(divide="ignore", invalid="ignore"):
         return np.asarray(stats.norm.cdf(np.log10(lives / limit) / np.maximum(deviation, 1e-9)))
 
@@ -191,10 +204,8 @@ def at_points(hits: np.ndarray, design: Design) -> Found:
     -------
     Probability, lower and upper bound [1], each of shape (points, m).
     """
-    sizes, sample = (
-        np.array([rows.stop - rows.start for rows in design.points]),
-        inner_sample(design),
-    )
+    sizes = np.array([rows.stop - rows.start for rows in design.points])
+    sample = inner_sample(design)
     bounds = np.empty((3, len(sizes), hits.shape[1]))
     for size in np.unique(sizes):
         own = np.flatnonzero(sizes == size)
@@ -222,7 +233,9 @@ def _at_level(hits: np.ndarray, design: Design, level: Level, whole: Found) -> F
 
 def _first(sample: tuple[np.ndarray, ...], size: int) -> tuple[np.ndarray, ...]:
     """Return the first rows of the sample of `inner_sample`."""
-    return (sample[0][:size], sample[1]) if sample else ()
+    if sample:
+        return sample[0][:size], sample[1]
+    return ()
 
 
 def _of_rows(hits: np.ndarray, design: Design) -> tuple[list[Level], list[Found]]:
@@ -234,8 +247,10 @@ def _of_rows(hits: np.ndarray, design: Design) -> tuple[list[Level], list[Found]
         for level in _levels(f, design.columns[name][rows])
     ]
     hits = hits[rows]
-    strata = () if correlated_pairs(design) else (design.places[rows], design.ordered)
-    estimates = [probabilities(hits, *strata)]
+    if correlated_pairs(design):
+        estimates = [probabilities(hits)]
+    else:
+        estimates = [probabilities(hits, design.places[rows], design.ordered)]
     estimates += [probabilities(hits[level.rows]) for level in levels]
     if not design.method.sampled:  # shares of such rows are no probabilities
         estimates = [(p, np.full_like(p, np.nan), np.full_like(p, np.nan)) for p, _, _ in estimates]
@@ -283,11 +298,17 @@ def _finite(limits: list[float]) -> np.ndarray:
 
 
 def _coordinates(
-    names: list[str], columns: list[Output], wanted: Mapping[str, Requirement], levels: list[Level]
+    names: list[str],
+    columns: list[Output],
+    requirement: Mapping[str, Requirement],
+    levels: list[Level],
 ) -> dict[str, Any]:
-    words = [c.long_name for c in columns] + ["all targets"] * (len(names) - len(columns))
-    units = [c.units for c in columns] + ["1"] * (len(names) - len(columns))
-    limits = [wanted.get(name, Requirement()) for name in names]
+    words = [c.long_name for c in columns]
+    units = [c.units for c in columns]
+    if len(names) > len(columns):
+        words.append("all targets")
+        units.append("1")
+    limits = [requirement.get(name, Requirement()) for name in names]
     return {
         "target": np.array(names, dtype=str),
         "target_name": ("target", np.array(words, dtype=str)),

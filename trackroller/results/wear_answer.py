@@ -22,10 +22,11 @@ from trackroller.damage.wear import KM_PER_HOUR
 from trackroller.parameters import BODIES
 from trackroller.parameters.carriage_fields import long_name_of
 from trackroller.results.answer import Answer, Caution, Column, Part, Required
-from trackroller.results.flags import flags_of
-from trackroller.results.lives import OF_PAIR
+from trackroller.results.friction import friction_cautions
+from trackroller.results.life_columns import OF_PAIR
 from trackroller.results.placeholders import guess_cautions, placeholders_part
 from trackroller.results.roller_answer import CODES, facts_of_data, not_given_words
+from trackroller.results.validity_flags import flags_of
 from trackroller.roller.limit_notes import placeholders_of
 from trackroller.roller.requirement import requirement_of
 from trackroller.roller.stored_inputs import NOT_GIVEN, inputs_of
@@ -79,6 +80,9 @@ def answer_of_wear(ds: xr.Dataset) -> Answer:
     table = _table(ds)
     required = _required(ds)
     head = _headline(ds) | {"fatigue": _first_by_fatigue(table, float(ds["travel"][-1]))}
+    parts = [states_part(ds)]
+    if not guesses.table.empty:
+        parts.append(guesses)
     return Answer(
         question="wear",
         kind="worn",
@@ -87,7 +91,7 @@ def answer_of_wear(ds: xr.Dataset) -> Answer:
         table=table,
         columns=COLUMNS,
         required=required,
-        parts=(states_part(ds), *([guesses] if not guesses.table.empty else [])),
+        parts=tuple(parts),
         not_given=_not_given(ds),
         warnings=tuple(_warnings(ds, guesses)),
         facts=facts_of_data(ds, name="A track roller while it wears"),
@@ -107,7 +111,8 @@ def _headline(ds: xr.Dataset) -> dict[str, Any]:
     last = ds["groove_depth"].isel(travel=-1)
     depths = {body: MICROMETRES * float(last.sel(body=body).max()) for body in BODIES}
     own = ds.sel(contact=deeper_contact(ds))
-    pressures, wide = own["max_pressure"].values, own["semi_axis_lateral"].values
+    pressures = own["max_pressure"].values
+    wide = own["semi_axis_lateral"].values
     most = int(np.argmax(pressures))
     travel = float(ds["travel"][-1])
     return {
@@ -150,14 +155,20 @@ def _fatigue(own: xr.Dataset) -> dict[str, float]:
     )
     if "fatigue_damage" not in own:
         return unknown
-    damage, new = own["fatigue_damage"].isel(travel=-1).values, float(own["life_travel_new"].min())
+    damage = own["fatigue_damage"].isel(travel=-1).values
+    new = float(own["life_travel_new"].min())
     if np.isnan(damage).any() or np.isnan(new):
         return unknown
     reached = bool(own["life_travel"].notnull().any())
-    life = float(own["life_travel"].min()) if reached else float(own["travel"][-1])
+    life_high = np.inf
+    if reached:
+        life = float(own["life_travel"].min())
+        life_high = life
+    else:
+        life = float(own["travel"][-1])
     return {
         "life_travel": life,
-        "life_travel_high": life if reached else np.inf,
+        "life_travel_high": life_high,
         "life_new": new,
         "damage": float(damage.max()),
         "damage_error": float(own["fatigue_damage_error"].isel(travel=-1).max()),
@@ -185,7 +196,9 @@ def _required(ds: xr.Dataset) -> tuple[Required, ...]:
     if inputs.get("required_travel") is not None:
         travels.append(float(inputs["required_travel"]))
     travels = [travel for travel in travels if np.isfinite(travel)]
-    return (Required("travel", "travel", "km", least=max(travels)),) if travels else ()
+    if travels:
+        return (Required("travel", "travel", "km", least=max(travels)),)
+    return ()
 
 
 def _state(
@@ -200,18 +213,28 @@ def _state(
     if not required:
         return ""
     least, last = required[0].least, float(head["travel"])
-    fatigue = head["fatigue"]["travel"] if head["fatigue"] else np.inf
+    fatigue = np.inf
+    if head["fatigue"]:
+        fatigue = head["fatigue"]["travel"]
     if head["guessed"]:
-        return "missed" if max(fatigue, float(table["life_new"].min())) < least else "open"
-    end = last if str(ds.attrs["end"]) in BEFORE else np.inf
+        if max(fatigue, float(table["life_new"].min())) < least:
+            return "missed"
+        return "open"
+    end = np.inf
+    if str(ds.attrs["end"]) in BEFORE:
+        end = last
     if min(fatigue, end) < least:
         return "missed"
-    return "met" if last >= least else "open"
+    if last >= least:
+        return "met"
+    return "open"
 
 
 def _not_given(ds: xr.Dataset) -> dict[str, str]:
     """Return the values that nobody gave; the travel is that of the run."""
-    words = not_given_words(ds) if NOT_GIVEN in ds.attrs else {}
+    words = {}
+    if NOT_GIVEN in ds.attrs:
+        words = not_given_words(ds)
     return {name: value for name, value in words.items() if name != "travel"}
 
 
@@ -245,7 +268,8 @@ def _warnings(ds: xr.Dataset, guesses: Part) -> Iterator[Caution]:
     for flag in flags_of(ds):
         yield Caution(CODES.get(flag.name, "flagged"), 1, 1, f"{flag.sentence} {flag.remedy}", "")
     yield from guess_cautions(guesses)
+    yield from friction_cautions(ds.attrs)
     words = _not_given(ds)
     if words:
-        told = ", ".join(f"{long_name_of(name)} {value}" for name, value in words.items())
-        yield Caution("not_given", 1, 1, told, "")
+        text = ", ".join(f"{long_name_of(name)} {value}" for name, value in words.items())
+        yield Caution("not_given", 1, 1, text, "")

@@ -11,23 +11,23 @@ import xarray as xr
 from trackroller.parameters import REGIMES
 from trackroller.parameters.carriage_fields import long_name_of
 from trackroller.results.answer import Answer, Column, Curve
-from trackroller.results.answer_parts import (
+from trackroller.results.case_ranges import CaseRanges
+from trackroller.results.comparison import Comparison, compared_output
+from trackroller.results.effect_curves import Effects
+from trackroller.results.ends_by_factor import ends_by_factor
+from trackroller.results.factor_levels import BINS, groups
+from trackroller.results.ranking import estimate, headline, index_words, order, robust_design
+from trackroller.results.requirement import required_of
+from trackroller.results.sensitivity import analysis_of
+from trackroller.results.solved_cases import SolvedCases
+from trackroller.results.study_facts import (
     case_cautions,
     checks_left_out,
     facts_of,
     given_for_nothing,
     not_given_words,
 )
-from trackroller.results.case_ranges import CaseRanges
-from trackroller.results.comparison import Comparison, compared_output
-from trackroller.results.effect_curves import Effects
-from trackroller.results.first_ends import ends_by_factor
-from trackroller.results.groups import BINS, groups
-from trackroller.results.places import level_text
-from trackroller.results.ranking import estimate, headline, index_words, order, robust_design
-from trackroller.results.requirement import required_of
-from trackroller.results.sensitivity import analysis_of
-from trackroller.results.solved_cases import SolvedCases
+from trackroller.results.subgroups import level_text
 from trackroller.roller.output_names import is_life
 from trackroller.study.design.entries import OPTION_FACTORS
 from trackroller.study.outputs import default_names
@@ -51,9 +51,9 @@ def shown_ranges(results: SolvedCases) -> CaseRanges | None:
         if life is not None and named[0] == life[0]:
             return CaseRanges(results, life, True)
         return CaseRanges(results, (named[0], words, units), is_life(named[0]))
-    found = compared_output(results, required)
-    if found is not None:
-        return CaseRanges(results, *found)
+    compared = compared_output(results, required)
+    if compared is not None:
+        return CaseRanges(results, *compared)
     for name in default_names(results.data, results.design.factors, results.dims):
         _, units, words = results.quantity(name)
         return CaseRanges(results, (name, words, units), False)
@@ -84,9 +84,12 @@ def answer_what_matters(results: SolvedCases) -> Answer:
     if sens is not None and OF_GROUPS in sens:
         table = _by_group(table, sens.sel(output=ranges.output[0]), curves)
     rows = results.of_one_model()
+    kind = "indices"
+    if sens is None:
+        kind = "curves"
     return Answer(
         question="what matters",
-        kind="curves" if sens is None else "indices",
+        kind=kind,
         headline={
             "factors": [_named(table, curves, place) for place in range(min(2, len(table)))],
             **_met_by(results, rows),
@@ -114,7 +117,9 @@ def _indices(results: SolvedCases, ranges: CaseRanges) -> xr.Dataset | None:
     name = ranges.output[0]
     if sens is None or robust_design(sens) or name not in sens["output"].values:
         return None
-    return sens if order(sens, name) and headline(sens) in sens else None
+    if order(sens, name) and headline(sens) in sens:
+        return sens
+    return None
 
 
 def _by_group(table: pd.DataFrame, part: xr.Dataset, curves: tuple[Curve, ...]) -> pd.DataFrame:
@@ -124,7 +129,7 @@ def _by_group(table: pd.DataFrame, part: xr.Dataset, curves: tuple[Curve, ...]) 
     place = {curve.factor: number for number, curve in enumerate(curves)}  # the largest one first
     own = table.set_index("name", drop=False)
     value, low, high = estimate(part, OF_GROUPS).clip(0.0, 1.0)
-    found = []
+    rows = []
     for number, title in enumerate(part["group_name"].values):
         words = str(part["group_members"].values[number])
         members = [name for name in own.index if long_name_of(name) in words.split(", ")]
@@ -134,10 +139,11 @@ def _by_group(table: pd.DataFrame, part: xr.Dataset, curves: tuple[Curve, ...]) 
         row |= {"index": value[number], "index_low": low[number], "index_high": high[number]}
         row |= {"lost": int(own.loc[members, "lost"].max()), "interacts": ""}
         if len(members) > 1:
-            row["role"] = "" if own.loc[members, "role"].nunique() > 1 else row["role"]
-        found.append(row)
+            roles = own.loc[members, "role"].unique()
+            row["role"] = " and ".join(roles)
+        rows.append(row)
     return (
-        pd.DataFrame(found)
+        pd.DataFrame(rows)
         .sort_values("index", ascending=False, kind="stable")
         .reset_index(drop=True)
     )
@@ -161,26 +167,34 @@ def _table(results: SolvedCases, ranges: CaseRanges, curves: tuple[Curve, ...]) 
     known = {curve.factor: curve for curve in curves}
     lost = _lost(results, ranges)
     met = _met_at(results)
-    found = []
+    rows = []
     for name in (n for n in results.factors if n not in OPTION_FACTORS):
-        curve = known.get(name)
         row: dict[str, Any] = {
             "factor": long_name_of(name),
             "name": name,
             "role": results.roles.get(name, ""),
             "range": _range(results, name),
-            "height": np.nan if curve is None else curve.height,
-            "shape": "" if curve is None else curve.shape,
-            "at_low": np.nan if curve is None else float(curve.middle[0]),
-            "at_high": np.nan if curve is None else float(curve.middle[-1]),
+            "height": np.nan,
+            "shape": "",
+            "at_low": np.nan,
+            "at_high": np.nan,
             "lost": lost[name],
         } | met.get(name, {})
+        curve = known.get(name)
+        if curve is not None:
+            row["height"] = curve.height
+            row["shape"] = curve.shape
+            row["at_low"] = float(curve.middle[0])
+            row["at_high"] = float(curve.middle[-1])
         if sens is not None:
             row |= _index(sens, ranges.output[0], name)
-        found.append(row)
-    table = pd.DataFrame(found)
+        rows.append(row)
+    table = pd.DataFrame(rows)
     by_index = sens is not None and not index_words(sens, headline(sens)).sized
-    keys = ["index", "height"] if by_index and "index" in table else ["height"]
+    if by_index and "index" in table:
+        keys = ["index", "height"]
+    else:
+        keys = ["height"]
     return table.sort_values(keys, ascending=False, na_position="last", kind="stable").reset_index(
         drop=True
     )
@@ -198,7 +212,8 @@ def _index(sens: xr.Dataset, output: str, name: str) -> dict[str, Any]:
     value, low, high = estimate(part, index)[:, names.index(name)]
     if index_words(sens, index).sized:
         largest = float(np.nanmax(np.abs(estimate(part, index)[0])))
-        value = 0.0 if abs(value) < ROUNDING * largest else value
+        if abs(value) < ROUNDING * largest:
+            value = 0.0
     else:
         value, low, high = (float(np.clip(one, 0.0, 1.0)) for one in (value, low, high))
     return {
@@ -248,7 +263,7 @@ def _lost(results: SolvedCases, ranges: CaseRanges) -> dict[str, int]:
     or its classes of equally many cases: most less fewest.
     """
     rows = results.of_one_model()
-    lost = ~ranges.held[rows]
+    lost = ~ranges.holds[rows]
     out = {}
     for name in results.factors:
         classes = groups(results.table, name, rows)
@@ -288,19 +303,19 @@ def _named(table: pd.DataFrame, curves: tuple[Curve, ...], place: int) -> dict[s
     """Return what a headline says of a factor."""
     row = table.iloc[place]
     curve = next((one for one in curves if one.factor == row["name"]), None)
-    told: dict[str, Any] = {
+    head: dict[str, Any] = {
         "title": row["factor"],
         "name": row["name"],
         "height": float(row["height"]),
     }
     if row.get("largest", row["factor"]) != row["factor"]:
-        told["largest"] = row["largest"]
-    told |= {key: float(row.get(key, np.nan)) for key in ("index", "index_low", "index_high")}
+        head["largest"] = row["largest"]
+    head |= {key: float(row.get(key, np.nan)) for key in ("index", "index_low", "index_high")}
     if curve is not None:
         low, high = (0, len(curve.levels) - 1)
         if not curve.ordered or curve.shape in ("hump", "dip"):
             low, high = int(curve.middle.argmin()), int(curve.middle.argmax())
-        told |= {
+        head |= {
             "units": curve.units,
             "from": curve.levels[low],
             "to": curve.levels[high],
@@ -308,7 +323,7 @@ def _named(table: pd.DataFrame, curves: tuple[Curve, ...], place: int) -> dict[s
             "at_to": float(curve.middle[high]),
             "by_ratio": curve.by_ratio,
         }
-    return told
+    return head
 
 
 def _in_order(curves: tuple[Curve, ...], table: pd.DataFrame) -> tuple[Curve, ...]:
@@ -316,9 +331,42 @@ def _in_order(curves: tuple[Curve, ...], table: pd.DataFrame) -> tuple[Curve, ..
     return tuple(sorted(curves, key=lambda curve: place.get(curve.factor, len(place))))
 
 
+def _index_columns(ranges: CaseRanges, table: pd.DataFrame, sens: xr.Dataset) -> list[Column]:
+    """Return the columns of the index of each factor, and of the factors it acts together with."""
+    index = headline(sens)
+    if "members" in table:
+        index = OF_GROUPS
+    meaning = str(sens[index].attrs.get("long_name", index))
+    scale = ""
+    if "scale" in sens.coords:
+        scale = str(sens["scale"].sel(output=ranges.output[0]).item())
+    if index_words(sens, index).sized:
+        title = "Main effect"
+        kind = "number"
+        unit = ranges.output[2]
+        if scale == "log10":
+            unit = "decades"
+    else:
+        title = "Index"
+        kind = "share"
+        unit = "1"
+        meaning += ", cut to 0 to 100 %"
+    columns = [
+        Column("index", title, unit, meaning, kind),
+        Column("index_low", "95 %", unit, "interval of the index", kind, until="index_high"),
+    ]
+    if table["interacts"].any():
+        meaning = (
+            f"factors with which a pair surely holds {100 * WORTH:.0f} % of the variance or more"
+        )
+        columns.append(Column("interacts", "Interacts with", "", meaning, "text"))
+    return columns
+
+
 def _columns(
     ranges: CaseRanges, table: pd.DataFrame, sens: xr.Dataset | None, by_ratio: bool
 ) -> tuple[Column, ...]:
+    """Return the columns of the table of factors."""
     _, words, units = ranges.output
     columns = [
         Column("factor", "Factor", "", "factor of the study", "text", role="name"),
@@ -338,30 +386,7 @@ def _columns(
             columns[2],
         ]
     if sens is not None:
-        index = OF_GROUPS if grouped else headline(sens)
-        share = not index_words(sens, index).sized
-        meaning = str(sens[index].attrs.get("long_name", index))
-        scale = (
-            str(sens["scale"].sel(output=ranges.output[0]).item()) if "scale" in sens.coords else ""
-        )
-        unit = "1" if share else "decades" if scale == "log10" else units
-        kind = "share" if share else "number"
-        columns += [
-            Column(
-                "index",
-                "Index" if share else "Main effect",
-                unit,
-                meaning + (", cut to 0 to 100 %" if share else ""),
-                kind,
-            ),
-            Column("index_low", "95 %", unit, "interval of the index", kind, until="index_high"),
-        ]
-        if table["interacts"].any():
-            meaning = (
-                f"factors with which a pair surely holds {100 * WORTH:.0f} % of the "
-                "variance or more"
-            )
-            columns.append(Column("interacts", "Interacts with", "", meaning, "text"))
+        columns += _index_columns(ranges, table, sens)
     height = Column("height", "Height", units, "largest less smallest value of the curve")
     if by_ratio:
         height = Column("height", "Height", "", "largest over smallest value of the curve", "ratio")

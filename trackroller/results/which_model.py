@@ -13,31 +13,34 @@ import pandas as pd
 from trackroller.parameters import EXACTNESS
 from trackroller.parameters.carriage_fields import long_name_of
 from trackroller.results.answer import Answer, Column
-from trackroller.results.answer_parts import (
+from trackroller.results.candidate_table import candidate_table, names_of
+from trackroller.results.candidates import Candidates
+from trackroller.results.case_columns import codes
+from trackroller.results.case_ranges import CaseRanges
+from trackroller.results.comparison import Comparison, compared_output
+from trackroller.results.decide import Decider
+from trackroller.results.effect_curves import Effects
+from trackroller.results.ends_by_factor import ends_by_factor
+from trackroller.results.requirement import required_of
+from trackroller.results.solved_cases import SolvedCases
+from trackroller.results.study_facts import (
     case_cautions,
     checks_left_out,
     facts_of,
     given_for_nothing,
     not_given_words,
 )
-from trackroller.results.candidate_table import candidate_table, names_of
-from trackroller.results.candidates import Candidates
-from trackroller.results.case_ranges import CaseRanges
-from trackroller.results.columns import codes
-from trackroller.results.comparison import Comparison, compared_output
-from trackroller.results.decide import Decider
-from trackroller.results.effect_curves import Effects
-from trackroller.results.first_ends import ends_by_factor
-from trackroller.results.places import level_text, plain
-from trackroller.results.requirement import required_of
-from trackroller.results.solved_cases import SolvedCases
+from trackroller.results.subgroups import level_text, plain
 
 MODEL = "contact_model"
 
 
 def models_of(results: SolvedCases) -> list[str]:
     """Return the contact models of a study, the most exact one first."""
-    known = set(results.table[MODEL]) if MODEL in results.table else set()
+    if MODEL in results.table:
+        known = set(results.table[MODEL])
+    else:
+        known = set()
     return [model for model in EXACTNESS if model in known]
 
 
@@ -70,9 +73,9 @@ def answer_which_model(results: SolvedCases) -> Answer:
     """
     models = models_of(results)
     required = required_of(results)
-    found = compared_output(results, required)
-    assert found is not None
-    ranges = CaseRanges(results, *found)
+    compared = compared_output(results, required)
+    assert compared is not None
+    ranges = CaseRanges(results, *compared)
     parts = {model: _of_model(results, ranges, model, models[0]) for model in models}
     table = pd.DataFrame([parts[model] for model in models])
     verdicts = {str(row["verdict"]) for row in parts.values()}
@@ -80,24 +83,29 @@ def answer_which_model(results: SolvedCases) -> Answer:
     changed = [word for word, own in (("verdict", verdicts), ("order", leaders)) if len(own) > 1]
     several = len(set(table["leader"])) > 1 or table["leader"].iloc[0] != ""
     base = models[0]
-    told = {
+    smallest = np.nan
+    if table["ratio_low"].notna().any():
+        smallest = float(np.nanmin(table["ratio_low"]))
+    largest = np.nan
+    if table["ratio_high"].notna().any():
+        largest = float(np.nanmax(table["ratio_high"]))
+    head = {
         "changes": " and ".join(changed),
         "base": base,
         "models": [
             {**{k: plain(v) for k, v in parts[m].items() if k in TOLD}, "leader": parts[m]["names"]}
             for m in models
         ],
-        "smallest": float(np.nanmin(table["ratio_low"]))
-        if table["ratio_low"].notna().any()
-        else np.nan,
-        "largest": float(np.nanmax(table["ratio_high"]))
-        if table["ratio_high"].notna().any()
-        else np.nan,
+        "smallest": smallest,
+        "largest": largest,
     }
+    kind = "same"
+    if changed:
+        kind = "changes"
     return Answer(
         question="which model",
-        kind="changes" if changed else "same",
-        headline=told,
+        kind=kind,
+        headline=head,
         output=ranges.output,
         table=table.drop(columns=["names", "leader_key"]),
         columns=_columns(ranges, bool(required), several),
@@ -134,6 +142,15 @@ def _of_model(results: SolvedCases, ranges: CaseRanges, model: str, base: str) -
     names = names_of(own, decided.order[:1])[0]
     ratios = _ratios(results, ranges, model, base)
     sure = own.met()[0]
+    ratio_low = np.nan
+    ratio_high = np.nan
+    if ratios.size:
+        ratio_low = float(np.min(ratios))
+        ratio_high = float(np.max(ratios))
+    if required:
+        meets = int(sure[own.own].sum())
+    else:
+        meets = int(own.ranges.holds[own.own].sum())
     return {
         "model": model,
         "verdict": plain(leader["state"]) or decided.kind,
@@ -145,11 +162,11 @@ def _of_model(results: SolvedCases, ranges: CaseRanges, model: str, base: str) -
         "low": float(leader["low"]),
         "high": float(leader["high"]),
         "error": float(leader["error"]),
-        "ratio_low": float(np.min(ratios)) if ratios.size else np.nan,
-        "ratio_high": float(np.max(ratios)) if ratios.size else np.nan,
+        "ratio_low": ratio_low,
+        "ratio_high": ratio_high,
         "like": int(ratios.size),
-        "meets": int(sure[own.own].sum()) if required else int(own.ranges.held[own.own].sum()),
-        "holds": int(own.ranges.held[own.own].sum()),
+        "meets": meets,
+        "holds": int(own.ranges.holds[own.own].sum()),
         "of": int(own.own.sum()),
         "skids": int((own.ranges.reason[own.own] == "skids").sum()),
     }
@@ -159,13 +176,13 @@ def _like(results: SolvedCases, model: str, base: str) -> tuple[np.ndarray, np.n
     """Return the cases of two models that agree in all other factors, shape (k,) each."""
     others = [name for name in results.factors if name != MODEL]
     key = codes(results.table, others)
-    found = []
+    pairs = []
     for name in (model, base):
         rows = np.flatnonzero((results.table[MODEL] == name).to_numpy())
         first = np.unique(key[rows], return_index=True)
-        found.append((first[0], rows[first[1]]))
-    both = np.intersect1d(found[0][0], found[1][0], assume_unique=True)
-    return tuple(rows[np.searchsorted(keys, both)] for keys, rows in found)  # type: ignore[return-value]
+        pairs.append((first[0], rows[first[1]]))
+    both = np.intersect1d(pairs[0][0], pairs[1][0], assume_unique=True)
+    return tuple(rows[np.searchsorted(keys, both)] for keys, rows in pairs)  # type: ignore[return-value]
 
 
 def _ratios(results: SolvedCases, ranges: CaseRanges, model: str, base: str) -> np.ndarray:
@@ -173,11 +190,11 @@ def _ratios(results: SolvedCases, ranges: CaseRanges, model: str, base: str) -> 
     shape (k,).
     """
     one, other = _like(results, model, base)
-    both = ranges.held[one] & ranges.held[other]
+    both = ranges.holds[one] & ranges.holds[other]
     mine, theirs = ranges.value[one[both]], ranges.value[other[both]]
     with np.errstate(divide="ignore", invalid="ignore"):
-        found = np.where(mine == theirs, 1.0, mine / theirs)
-    return np.asarray(found[np.isfinite(found)])
+        ratios = np.where(mine == theirs, 1.0, mine / theirs)
+    return np.asarray(ratios[np.isfinite(ratios)])
 
 
 def _like_against_like(
@@ -189,7 +206,7 @@ def _like_against_like(
     points = {}
     for model in models[1:]:
         one, other = _like(results, model, models[0])
-        both = ranges.held[one] & ranges.held[other]
+        both = ranges.holds[one] & ranges.holds[other]
         points[model] = {"y": ranges.value[one[both]], "x": ranges.value[other[both]]}
     return {"base": models[0], "points": points}
 

@@ -118,9 +118,9 @@ class Case(_Numbers):
     placeholder_position : float or None
         Place of the placeholders of materials in their ranges: -1 the worse end, 0 the value, 1 the
         better end [1]. Without it, lives have the range between the ends.
-    bearing, catalogue, wear_table : mapping or None
-        Bearing inside the roller, limits of a maker's catalogue, and table of the energy law of
-        wear; see "Parameters, options and results".
+    bearing, catalogue, wear_table, stud : mapping or None
+        Bearing inside the roller, limits of a maker's catalogue, table of the energy law of wear,
+        and stud or axle that carries the roller; see "Parameters, options and results".
 
     Attributes
     ----------
@@ -168,7 +168,7 @@ Write a number that is allowed, such as 30.
 
     def _check(self) -> None:
         """Check every field, and keep its value as it is computed with."""
-        columns: dict[str, np.ndarray] = {}
+        numbers: dict[str, float] = {}
         wrong = Collector()
         for name, value in vars(self).copy().items():
             if not isinstance(value, (Default, DefaultName)):
@@ -184,12 +184,12 @@ Write a number that is allowed, such as 30.
         object.__setattr__(self, "not_given", missing)
         for name in PARAMETERS:
             with wrong.part():
-                columns[name] = np.array([self._checked_number(name)])
+                numbers[name] = self._checked_number(name)
         for name in (*MATERIAL_FIELDS, *MAPPING_FIELDS):
             with wrong.part():
                 object.__setattr__(self, name, _checked_word(name, getattr(self, name)))
         wrong.check()
-        problem = geometry_problem(columns)
+        problem = geometry_problem(numbers)
         if problem is not None:
             raise problem
 

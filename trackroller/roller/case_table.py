@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from trackroller.damage.wear import table_of_laws
 from trackroller.materials import Material
 from trackroller.materials.properties import PROPERTIES
 from trackroller.numerics.rows import Rows, distinct
@@ -26,7 +27,7 @@ _Fields: Any = make_dataclass(
 
 
 # columns of `MaterialArrays` that hold no numbers
-TEXTS = ("name", "guesses", "ends", "temperature_dependence", "sn_points")
+TEXTS = ("name", "guesses", "ends", "temperature_dependence", "sn_points", "energy_wear")
 
 
 @dataclass(frozen=True)
@@ -37,8 +38,8 @@ class MaterialArrays(_OptionalValues):  # type: ignore[misc, valid-type]
     The base class adds the optional values of a material, NaN where they are not given. `guesses`
     holds the values of limits that are placeholders, a mapping of names to `Value` for each
     material, and `ends` the ends of their ranges over the values. `temperature_dependence` holds
-    the tables over temperature as JSON, "" for none, and `sn_points` the points of S-N curves as
-    JSON, "" for none.
+    the tables over temperature as JSON, "" for none, `sn_points` the points of S-N curves and
+    `energy_wear` the tables of the energy law likewise.
     """
 
     name: np.ndarray
@@ -52,6 +53,7 @@ class MaterialArrays(_OptionalValues):  # type: ignore[misc, valid-type]
     ends: np.ndarray
     temperature_dependence: np.ndarray
     sn_points: np.ndarray
+    energy_wear: np.ndarray
 
     @classmethod
     def of(cls, materials: list[Material]) -> MaterialArrays:
@@ -65,11 +67,14 @@ class MaterialArrays(_OptionalValues):  # type: ignore[misc, valid-type]
 
         lines = [""] * len(different)
         tables = [""] * len(different)
+        laws = [""] * len(different)
         for i, material in enumerate(different):
             if material.sn_points:
                 lines[i] = json.dumps(material.sn_points)
             if material.temperature_dependence is not None:
                 tables[i] = material.temperature_dependence.text
+            if material.energy_wear is not None:
+                laws[i] = material.energy_wear.text
 
         return cls(
             name=np.array([m.name for m in different], dtype=object)[index],
@@ -77,6 +82,7 @@ class MaterialArrays(_OptionalValues):  # type: ignore[misc, valid-type]
             ends=np.array([m.ends_of_limits for m in different], dtype=object)[index],
             temperature_dependence=np.array(tables, dtype=object)[index],
             sn_points=np.array(lines, dtype=object)[index],
+            energy_wear=np.array(laws, dtype=object)[index],
             **{f.name: values(f.name) for f in fields(cls) if f.name not in TEXTS},
         )
 
@@ -96,3 +102,20 @@ class CaseTable(_Fields):
 
     def __len__(self) -> int:
         return len(self.axis_distance)
+
+    @property
+    def loss_tables(self) -> np.ndarray:
+        """Return the table of the energy law of each case as JSON, (n,): its own `wear_table`, or
+        that of its materials if both have one; "" for none.
+        """
+        rollers = self.roller.energy_wear
+        guides = self.guide.energy_wear
+        tables = self.wear_table
+        open_rows = (tables == "") & (rollers != "") & (guides != "")
+        if not open_rows.any():
+            return tables
+        tables = tables.copy()
+        for roller, guide in set(zip(rollers[open_rows], guides[open_rows], strict=True)):
+            here = open_rows & (rollers == roller) & (guides == guide)
+            tables[here] = table_of_laws(roller, guide)
+        return tables

@@ -214,6 +214,13 @@ _GROUPS = {
             _SHOWN | SUM,
         ),
         (
+            "rolling_resistance",
+            (),
+            "N",
+            "F_r",
+            "force along the track that the losses in both contacts take",
+        ),
+        (
             "friction_energy_balance",
             _C,
             "J m-1",

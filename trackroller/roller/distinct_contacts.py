@@ -60,8 +60,8 @@ def distinct_mechanics(table: CaseTable) -> tuple[np.ndarray, np.ndarray]:
     columns += [m.poisson_ratio for m in (table.roller, table.guide)]
     columns.append(np.where(table.friction_law != "", table.velocity, 0.0))
     # the wear of a patch by the energy law is computed once, too
-    for name in (*MECHANICAL_MAPPINGS, "wear_table"):
-        texts = getattr(table, name)
+    mappings = [getattr(table, name) for name in MECHANICAL_MAPPINGS]
+    for texts in (*mappings, table.loss_tables):
         known = {text: i for i, text in enumerate(dict.fromkeys(texts.tolist()))}
         columns.append(np.array([known[text] for text in texts.tolist()], dtype=float))
     return distinct_rows(np.stack(columns, axis=1))

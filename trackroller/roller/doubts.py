@@ -72,6 +72,7 @@ OTHER_UNITS = {
     "m/min": ("m/s", "mm/s", "km/h"),
     "kg/m3": ("g/cm3",),
     "-": ("%",),
+    "km": ("m", "mm"),
 }
 # entries of mappings that the radial force of a roller usually does not exceed, in N; the others in
 # N mm times 1 mm
@@ -79,7 +80,17 @@ RATINGS = {
     "bearing": {"dynamic_rating": "N", "static_rating": "N", "permissible_moment": "N mm"},
     "catalogue": {"radial_force": "N", "axial_force": "N", "moment": "N mm"},
 }
+# ASSUME: kilometres at a load factor of 1, which catalogues state as 40 to 1000
+BASIC_LIFE = (10.0, 2e4)
 LARGER_UNITS = {"N": "kN", "N mm": "Nm"}
+# ASSUME: sizes [mm] and strengths [MPa] between which those of studs and axles lie
+STUD = {
+    "diameter": (2.0, 300.0),
+    "length": (1.0, 1000.0),
+    "yield_strength": (50.0, 2500.0),
+    "tensile_strength": (50.0, 3000.0),
+}
+SHORT = 0.5  # ASSUME: diameters of free length below which a stud is no beam
 # share of the radial force below which a rating is asked about; 1 for the others
 SMALL = {"axial_force": 0.02}
 # ASSUME: width of measured points over the radius of the guide; inches as mm are below, micrometres
@@ -120,16 +131,17 @@ def doubts(values: Mapping[str, Any], materials: Iterable[Material] = ()) -> lis
         sentences += [
             text
             for number in ends
-            if (text := _unusual(name, number, PARAMETERS[name].unit, usual, ""))
+            if (text := sentence_of_unusual(name, number, PARAMETERS[name].unit, usual, ""))
         ]
     for material in {m.name: m for m in materials}.values():
         for name, usual in OF_FAMILY.get(material.family, {}).items():
             number = getattr(material, name)
             kind = f" for the family {material.family} (material '{material.name}')"
             if number is not None:
-                sentences += [_unusual(name, number, PROPERTIES[name].unit, usual, kind)]
+                sentences += [sentence_of_unusual(name, number, PROPERTIES[name].unit, usual, kind)]
         sentences += [_exponent(material, name) for name in ("woehler_exponent", "second_exponent")]
     sentences += ratings(values)
+    sentences += _studs(values)
     guide_radii = _numbers(values.get("guide_profile_radius", EXAMPLE["guide_profile_radius"]))
     for name in ("guide_profile", "roller_profile"):
         radius = next((r for r in guide_radii if r > 0.0), math.nan)
@@ -151,8 +163,22 @@ def doubts_of_case(case: Case, database: MaterialDatabase) -> list[str]:
     )
 
 
-def _unusual(name: str, number: float, unit: str, usual: tuple[float, float], kind: str) -> str:
-    """Return the sentence about an unusual number, '' for a usual one."""
+def sentence_of_unusual(
+    name: str, number: float, unit: str, usual: tuple[float, float], kind: str
+) -> str:
+    """Return the sentence about a number outside its usual sizes, '' for a usual one.
+
+    Parameters
+    ----------
+    name, unit : str
+        Field and unit of the number.
+    number : float
+        The number; its sign does not count.
+    usual : tuple of float
+        Smallest and largest usual size.
+    kind : str
+        For what they are usual, such as ' for the family metal'.
+    """
     low, high = usual
     size = abs(number)
     shown = "" if unit == "-" else f" {unit}"
@@ -193,7 +219,7 @@ def _exponent(material: Material, name: str) -> str:
 
 def ratings(values: Mapping[str, Any]) -> list[str]:
     """Return a sentence for each rating of a bearing or catalogue that is smaller than the smallest
-    radial force.
+    radial force, and for an unusual basic life of a catalogue.
     """
     loads = [
         abs(v)
@@ -220,7 +246,27 @@ def ratings(values: Mapping[str, Any]) -> list[str]:
                 f"{number:g} {larger} is "
                 f"meant, write '{number:g} {larger}' or {1e3 * number:g}."
             )
-    return list(dict.fromkeys(out))
+    for mapping in _mappings(values.get("catalogue")):
+        life = mapping.get("basic_life")
+        if isinstance(life, (int, float)):
+            out.append(sentence_of_unusual("catalogue.basic_life", life, "km", BASIC_LIFE, ""))
+    return [text for text in dict.fromkeys(out) if text]
+
+
+def _studs(values: Mapping[str, Any]) -> list[str]:
+    """Return sentences about studs of an unusual size or strength, and about short ones."""
+    sentences = []
+    for stud in _mappings(values.get("stud")):
+        for name, usual in STUD.items():
+            if name in stud:
+                unit = "MPa" if "strength" in name else "mm"
+                sentences.append(sentence_of_unusual(f"stud.{name}", stud[name], unit, usual, ""))
+        if stud["length"] < SHORT * stud["diameter"]:
+            sentences.append(
+                f"stud.length = {stud['length']:g} mm is less than half the diameter; the stress "
+                "of so short a stud is not that of a beam."
+            )
+    return sentences
 
 
 def _mappings(value: Any) -> list[dict[str, Any]]:

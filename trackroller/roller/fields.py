@@ -11,7 +11,10 @@ import numpy as np
 
 from trackroller.contact import friction_laws, profiles
 from trackroller.damage import LIMITS
+from trackroller.damage.stud import FIELD as STUD
+from trackroller.damage.stud import MATERIAL, OF_MATERIAL
 from trackroller.errors import InputError
+from trackroller.materials import load_database
 from trackroller.numerics.numbers import number_or_nan
 from trackroller.numerics.rows import once_each
 from trackroller.parameters import MAPPING_FIELDS, MATERIAL_FIELDS, PARAMETERS
@@ -81,7 +84,10 @@ def _with_name(field: str, value: Mapping[str, Any]) -> dict[str, Any]:
     """Return the checked mapping of a limit, with the name by which tables call it where one is
     given.
     """
-    mapping = _OF_LIMITS[field].canonical({key: own for key, own in value.items() if key != NAME})
+    given = {key: own for key, own in value.items() if key != NAME}
+    if field == STUD.name:
+        given = _with_material(given)
+    mapping = _OF_LIMITS[field].canonical(given)
     own = value.get(NAME)
     if own is None:
         return mapping
@@ -89,6 +95,29 @@ def _with_name(field: str, value: Mapping[str, Any]) -> dict[str, Any]:
         allowed = f"a text of at most {LONGEST_NAME} signs"
         raise InputError(f"{field}.{NAME}", own, allowed, "For example name: NSK-6000.")
     return mapping | {NAME: own.strip()}
+
+
+def _with_material(given: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the values of a stud with those of its material where the user gives none.
+
+    A value of the database that has no source is left out, so that no stud rests on a guess. The
+    values stand in the case from then on, whatever becomes of the database.
+    """
+    name = given.get(MATERIAL)
+    lacking = [key for key in OF_MATERIAL if given.get(key) is None]
+    if not isinstance(name, str) or not lacking:
+        return dict(given)
+    material = load_database().material(name, f"{STUD.name}.{MATERIAL}")
+    if material.sn_points:  # a line by points has no cycles at the tensile strength
+        lacking = [key for key in lacking if key != "cycles_at_tensile_strength"]
+    out = dict(given)
+    for key in lacking:
+        value = getattr(material, key)
+        record = material.records.get(key)
+        if value is None or not math.isfinite(value) or (record is not None and record.placeholder):
+            continue
+        out[key] = float(value)
+    return out
 
 
 def number(name: str, value: Any) -> float:

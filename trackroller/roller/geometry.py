@@ -6,7 +6,7 @@ Lengths are in mm and angles in rad unless a name says otherwise; arrays have sh
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -114,7 +114,7 @@ def contact_geometry(columns: Mapping[str, np.ndarray]) -> ContactGeometry:
     return ContactGeometry(alpha, radius, *curvatures(*profiles, radius, alpha))
 
 
-def geometry_problem(columns: Mapping[str, np.ndarray]) -> InputError | None:
+def geometry_problem(columns: Mapping[str, Any]) -> InputError | None:
     """Return the first physical contradiction among the geometry of cases, or None.
 
     Parameters
@@ -133,7 +133,7 @@ def geometry_problem(columns: Mapping[str, np.ndarray]) -> InputError | None:
     return next((problem for _, problem in geometry_problems(columns)), None)
 
 
-def geometry_problems(columns: Mapping[str, np.ndarray]) -> Iterator[tuple[int, InputError]]:
+def geometry_problems(columns: Mapping[str, Any]) -> Iterator[tuple[int, InputError]]:
     """Yield the number of each case whose geometry contradicts itself, with the error; see
     `geometry_problem`.
     """

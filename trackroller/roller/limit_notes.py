@@ -17,6 +17,8 @@ import numpy as np
 
 from trackroller.damage import fields_of, judged, limits_of
 from trackroller.damage.limit import SN_SCATTER, Limit, SolvedRollers, missing
+from trackroller.damage.wear import TABLE as WEAR_TABLE
+from trackroller.materials.energy_wear import FIELD as ENERGY_WEAR
 from trackroller.materials.material import UNNAMED
 from trackroller.materials.properties import Value
 from trackroller.parameters import BODIES, MAPPING_FIELDS, PARAMETERS
@@ -185,6 +187,8 @@ def notes_on_limits(table: CaseTable, options: Options) -> list[str]:
         required = {}
         if limit in served:
             required = dict(limit.required_of(solved))
+            if WEAR_TABLE.name in limit.required(solved.options):
+                required[ENERGY_WEAR] = np.stack([table.wear_table == ""] * len(BODIES), axis=1)
         for material, guessed in guesses:
             of = np.stack([own.name == material for own in bodies.values()], axis=1)
             used = [

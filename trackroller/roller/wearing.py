@@ -145,7 +145,7 @@ class Wearing:
         self.rates = _rates(table, options, self.per_km)
         self._law = ""
         if options.wear_law == "energy":
-            self._law = str(table.wear_table[0])
+            self._law = str(table.loss_tables[0])
         self._texts = str(table.guide_profile[0]), str(table.roller_profile[0])
         if table.axial_force[0] == 0.0 and all(map(treats_sides_alike, self._texts)):
             self.contacts = 1
@@ -444,8 +444,8 @@ def _rates(table: CaseTable, options: Options, per_km: np.ndarray) -> np.ndarray
         )
     bodies = table.roller, table.guide
     if options.wear_law == "energy":
-        if not table.wear_table[0]:
-            remedy = "Give wear_table, or take wear_law: archard."
+        if not table.loss_tables[0]:
+            remedy = "Give wear_table, or energy_wear of both materials, or take wear_law: archard."
             raise InputError(
                 "wear_table",
                 None,

@@ -11,7 +11,7 @@ import xarray as xr
 
 import trackroller as tr
 from trackroller.report.build import build_report
-from trackroller.results.contact_models import GOOD, errors, pairs
+from trackroller.results.model_errors import GOOD, errors, pairs
 from trackroller.results.results import Results
 from trackroller.study.store.folder import StudyFolder
 

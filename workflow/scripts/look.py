@@ -5,7 +5,7 @@ import logging
 from pathlib import Path
 
 from trackroller.cli.workflow import log_to
-from trackroller.results.growing import next_step
+from trackroller.results.sample_growth import next_step
 from trackroller.study.file.load import load_study
 from trackroller.study.store.put import put_text
 

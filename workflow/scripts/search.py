@@ -3,7 +3,7 @@
 import logging
 
 from trackroller.cli.workflow import log_to
-from trackroller.results.solving import run_any
+from trackroller.results.run import run_any
 from trackroller.study.file.load import load_study
 
 log_to(snakemake.log[0], "search for the best designs" if snakemake.rule == "search" else "")

@@ -13,8 +13,8 @@ from trackroller.parameters import FIRST_TO_FAIL
 from trackroller.report.explorer.rows import Column
 from trackroller.report.numbers import GUIDE_UNKNOWN, Life, capital, count, part_of, with_unit
 from trackroller.report.tables.table import cell, factor_cell, goal_heading, heading
-from trackroller.results.by_tests import beyond_sn_data
 from trackroller.results.candidates import Candidates, hardest_first
+from trackroller.results.lives_by_tests import beyond_sn_data
 from trackroller.results.pareto import study_pareto
 from trackroller.results.results import Results
 from trackroller.study.file.goals import statistic
@@ -82,21 +82,28 @@ def _designs(candidates: Candidates, worst: str) -> dict[str, Any]:
     fails first.
     """
     heads, cells, note = _goals(candidates)
-    nine = [f"Nine of ten reach [{candidates.goal[2]}]"] if "b10" in candidates.table else []
+    nine = []
+    ends = ["worst"]
+    if "b10" in candidates.table:
+        nine = [f"Nine of ten reach [{candidates.goal[2]}]"]
+        ends = ["b10", "worst"]
     rows = []
     for _, row in candidates.table.head(MOST_LISTED).iterrows():
         key = tuple(row[n] for n in candidates.choices)
-        lives = [
-            Life(row[name], row[f"{name}_beyond"])
-            for name in (["b10", "worst"] if nine else ["worst"])
-        ]
+        lives = [Life(row[name], row[f"{name}_beyond"]) for name in ends]
         valid = part_of(row["valid"], row["cases"])
-        further = [*map(cell, lives if candidates.rising else map(float, lives)), valid]
-        further += [] if alone(candidates) else [first_words(row) or "–"]
+        further = [*map(cell, lives), valid]
+        if not candidates.rising:
+            further = [*(cell(float(life)) for life in lives), valid]
+        if not alone(candidates):
+            further += [first_words(row) or "–"]
         further += cells.get(key, ["–"] * len(heads))
         rows.append([*(cell(factor_cell(n, row[n])) for n in candidates.choices), *further])
-    first = [] if alone(candidates) else ["Fails first"]
-    note += f" {capital(GUIDE_UNKNOWN).replace('`', '')}." if alone(candidates) else ""
+    if alone(candidates):
+        first = []
+        note += f" {capital(GUIDE_UNKNOWN).replace('`', '')}."
+    else:
+        first = ["Fails first"]
     heads = [*map(heading, candidates.choices), *nine, worst, "Holds in", *first, *heads]
     return {
         "factors": candidates.choices,
@@ -146,8 +153,13 @@ def _conditions(
     """List the conditions with the designs that are valid there, the worst life, and the design
     that does best.
     """
-    results, rows = candidates.results, []
-    values, sign = results.column(candidates.goal[0]), 1.0 if candidates.rising else -1.0
+    results = candidates.results
+    rows = []
+    if candidates.rising:
+        sign = 1.0
+    else:
+        sign = -1.0
+    values = results.column(candidates.goal[0])
     beyond = beyond_sn_data(results, candidates.goal[0])
     for there in (place == i for i in range(min(place.max() + 1, MOST_LISTED))):
         cases = np.flatnonzero(there & candidates.usable)

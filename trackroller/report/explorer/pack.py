@@ -18,7 +18,8 @@ from trackroller.report.figures.style import colours
 from trackroller.study.design.levels import OF_MATERIALS
 
 # a page of 6 MB, its figures included, can be sent by mail and opens in three seconds
-MOST_BYTES, MOST_ROWS = 4_500_000, 50_000
+MOST_BYTES = 4_500_000
+MOST_ROWS = 50_000
 PROBED = 2_000
 MOST_COLOURS = 40  # levels that get a colour each, the same as in the figures
 RARE = 1_000  # all cases of a state are kept if it has at most so many cases
@@ -43,7 +44,9 @@ def pack(columns: Sequence[Column]) -> tuple[list[dict[str, Any]], str]:
     second bytes, and so on: equal bytes then stand side by side, which compresses better. Positions
     in a list of levels are stored plus one; 0 stands for no value.
     """
-    header, parts, start = [], [], 0
+    header = []
+    parts = []
+    start = 0
     for column in columns:
         array = _numbers(column)
         part = array.view(np.uint8).reshape(len(array), -1).T.tobytes()
@@ -76,7 +79,9 @@ def affordable_rows(columns: Sequence[Column]) -> int:
 
 def _numbers(column: Column) -> np.ndarray:
     if column.levels is None:
-        kind = "<f4" if column.values.dtype == np.float32 else "<f8"
+        kind = "<f8"
+        if column.values.dtype == np.float32:
+            kind = "<f4"
         return np.ascontiguousarray(column.values, dtype=kind)
     kind = next(k for k in ("<u1", "<u2", "<u4") if len(column.levels) < np.iinfo(k).max)
     return np.ascontiguousarray(column.values + 1, dtype=kind)
@@ -105,11 +110,11 @@ def sample_rows(state: np.ndarray, keep: np.ndarray, most: int) -> np.ndarray:
     rare = strata[counts <= RARE]
     chosen |= np.isin(state, rare)
     left = max(0, most - int(chosen.sum()))
-    rest = int(counts[counts > RARE].sum())
+    frequent = int(counts[counts > RARE].sum())
     for stratum, cases in zip(strata, counts, strict=True):
         if cases > RARE:
             rows = np.flatnonzero((state == stratum) & ~keep)
-            share = min(cases, max(RARE, left * cases // rest))
+            share = min(cases, max(RARE, left * cases // frequent))
             chosen[rng.choice(rows, int(share), replace=False)] = True
     return np.flatnonzero(chosen)
 

@@ -41,23 +41,28 @@ def explorer(results: Results) -> dict[str, Any]:
     `header` (JSON), `rows` (base64), `script` and `style` (text), `sampled` (a sentence, '' if all
     cases are shown)
     """
-    ds, columns = results.data, collect(results)
-    settings, more = solve_inputs(results, {c.name: c for c in columns})
-    columns += more
+    ds = results.data
+    columns = collect(results)
+    settings, setting_columns = solve_inputs(results, {c.name: c for c in columns})
+    columns += setting_columns
     of_designs, lists = design_columns(results)
     columns += of_designs
     state = next(c for c in columns if c.name == "state").values
     cases = len(state)
-    kept = pareto_rows(results, cases) | extreme_rows(
+    chosen = pareto_rows(results, cases) | extreme_rows(
         state, (c.values for c in columns if c.levels is None)
     )
-    rows = sample_rows(state, kept, affordable_rows(columns))
+    rows = sample_rows(state, chosen, affordable_rows(columns))
     if len(rows) < cases:
         columns = [dataclasses.replace(c, values=c.values[rows]) for c in columns]
         columns.append(Column("row", "Row", "", "row", rows.astype(float)))
-    if (numbers := _numbers(results)) is not None:
+    numbers = _numbers(results)
+    if numbers is not None:
         columns.append(Column("case", "Case", "", "row", numbers[rows].astype(float)))
     packed, block = pack(columns)
+    compared = ""
+    if MODEL in results.factors:
+        compared = results.held_level(MODEL)
     header = {
         "name": results.config.name,
         "rows": len(rows),
@@ -68,23 +73,24 @@ def explorer(results: Results) -> dict[str, Any]:
         "states": list(STATES),
         "goals": results.goals,
         "constraints": results.config.constraints,
-        "compared": results.held_level(MODEL) if MODEL in results.factors else "",
+        "compared": compared,
         "lists": lists,
         "columns": packed,
     }
-    said = (
-        f"{count(len(rows))} of {count(cases)} cases are shown: a sample by regime and validity, "
-        "with all cases of "
-        "rare states, the smallest and the largest value of every quantity in every state, and "
-        "the Pareto set of the "
-        "study's goals. Counts and shares are those of the sample."
-    )
+    sampled = ""
+    if len(rows) < cases:
+        sampled = (
+            f"{count(len(rows))} of {count(cases)} cases are shown: a sample by regime and "
+            "validity, with all cases of rare states, the smallest and the largest value of every "
+            "quantity in every state, and the Pareto set of the study's goals. Counts and shares "
+            "are those of the sample."
+        )
     return {
         "header": _json(header),
         "rows": markupsafe.Markup(block),
         "script": markupsafe.Markup(asset("explorer.js")),
         "style": markupsafe.Markup(asset("explorer.css")),
-        "sampled": said if len(rows) < cases else "",
+        "sampled": sampled,
     }
 
 
@@ -98,7 +104,9 @@ def _numbers(results: Results) -> np.ndarray | None:
     ):
         return None
     numbers = flat(ds, "case", results.dims)
-    return None if (numbers == np.arange(len(numbers))).all() else numbers
+    if (numbers == np.arange(len(numbers))).all():
+        return None
+    return numbers
 
 
 def pareto_rows(results: Results, cases: int) -> np.ndarray:

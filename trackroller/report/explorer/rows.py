@@ -26,10 +26,10 @@ from trackroller.parameters.carriage_fields import parameter_of
 from trackroller.parameters.validity import VALIDITY
 from trackroller.report.numbers import BEYOND, capital, level_text, long_name, plain, unit_text
 from trackroller.report.tables.inputs import stored_materials
-from trackroller.results.by_tests import beyond_sn_data
-from trackroller.results.columns import BODY_RESULTS, CONTACT_RESULTS, WHOLE_RESULTS
+from trackroller.results.case_columns import BODY_RESULTS, CONTACT_RESULTS, WHOLE_RESULTS
+from trackroller.results.factor_levels import spaced_by_ratio
 from trackroller.results.first_limits import first_limit
-from trackroller.results.groups import spaced_by_ratio
+from trackroller.results.lives_by_tests import beyond_sn_data
 from trackroller.results.results import Results
 from trackroller.roller.duty import years
 from trackroller.roller.output_names import body_of, declared, is_life
@@ -90,7 +90,8 @@ def collect(results: Results) -> list[Column]:
     Columns of equal length. Outputs hold the numbers that `pareto` and the analyses use, in double
     precision; figures of single contacts hold single precision.
     """
-    ds, dims = results.data, results.dims
+    ds = results.data
+    dims = results.dims
     columns = [_setting(results, name, "factor") for name in results.factors]
     columns += [_setting(results, name, "input") for name in results.derived]
     columns += [_good(results, name) for name in results.goods]
@@ -107,7 +108,9 @@ def _setting(results: Results, name: str, role: str) -> Column:
     """Return the column of a factor or of an input that follows from factors."""
     values = results.table[name].to_numpy()
     parameter = parameter_of(name)
-    unit = unit_text(parameter.unit) if parameter and name not in NAMED else ""
+    unit = ""
+    if parameter and name not in NAMED:
+        unit = unit_text(parameter.unit)
     label = capital(long_name(name))
     few = not results.numeric(name) or results.grid or len(results.levels(name)) <= 12
     if not few or (role == "input" and results.numeric(name)):
@@ -159,7 +162,10 @@ def coded(
     array = np.asarray(values)
     number = array.dtype.kind in "fiu"
     codes, different = pd.factorize(array, sort=number)
-    levels = different.astype(float if number else str).tolist()
+    if number:
+        levels = different.astype(float).tolist()
+    else:
+        levels = different.astype(str).tolist()
     return Column(
         name, label, unit, role, codes, tuple(levels), tuple(texts) or tuple(map(str, levels))
     )
@@ -213,12 +219,17 @@ def _outputs(ds: xr.Dataset, dims: tuple[str, ...], names: list[str]) -> list[Ou
 def _output(one: Output, role: str, results: Results) -> Column:
     # a roller that skids, and a body above its tensile strength, have no fatigue life
     if is_life(one.name):
-        body = body_of(one.name) if results.by_body else ""
+        body = ""
+        if results.by_body:
+            body = body_of(one.name)
         one = replace(
             one,
             values=np.where(results.rolling & ~results.flagged("static", body), one.values, np.nan),
         )
-    values = one.values.astype(np.float32) if role == "detail" else one.values
+    if role == "detail":
+        values = one.values.astype(np.float32)
+    else:
+        values = one.values
     log = declared(one.name).scale == "log10"
     return Column(one.name, capital(one.long_name), unit_text(one.units), role, values, log=log)
 
@@ -252,10 +263,13 @@ def _states(ds: xr.Dataset, dims: tuple[str, ...], results: Results) -> list[Col
             masks = np.nan_to_num(results.column(name, 0.0)).astype(int)
             texts_of_masks = [flag_text(int(mask), results.flags) for mask in np.unique(masks)]
             body = name.partition("_")[2]
+            of_body = ""
+            if body:
+                of_body = f" of the {body}"
             columns.append(
                 coded(
                     name,
-                    f"Flags{f' of the {body}' if body else ''}",
+                    f"Flags{of_body}",
                     "state",
                     masks,
                     texts_of_masks,
@@ -276,11 +290,10 @@ def _states(ds: xr.Dataset, dims: tuple[str, ...], results: Results) -> list[Col
             )
         )
     if "reason" in ds:
-        reason = (
-            ds["reason"].broadcast_like(ds["regime"]).transpose(*dims)
-            if "regime" in ds
-            else ds["reason"]
-        )
+        if "regime" in ds:
+            reason = ds["reason"].broadcast_like(ds["regime"]).transpose(*dims)
+        else:
+            reason = ds["reason"]
         texts = reason.values.astype(str).ravel()
         if (texts != "").any():
             columns.append(coded("reason", "Reason", "state", texts))
@@ -293,9 +306,8 @@ def _first_limits(results: Results) -> list[Column]:
     """
     if not results.limits:
         return []
-    words = np.array(
-        [LIMITS[name].title if name in LIMITS else "not known" for name in results.limits]
-    )
+    titles = {name: limit.title for name, limit in LIMITS.items()}
+    words = np.array([titles.get(name, "not known") for name in results.limits])
     last = len(words) - 1
     columns = {
         "limiting_mechanism": [
@@ -317,8 +329,8 @@ def _first_limits(results: Results) -> list[Column]:
 
 def flag_text(mask: int, flags: Sequence[str]) -> str:
     """Write the validity flags of a bit mask in words, 'none' without a flag."""
-    said = [VALIDITY[flag].words for i, flag in enumerate(flags) if mask & (1 << i)]
-    return "; ".join(said) or "none"
+    words = [VALIDITY[flag].words for i, flag in enumerate(flags) if mask & (1 << i)]
+    return "; ".join(words) or "none"
 
 
 def solve_inputs(
@@ -337,19 +349,25 @@ def solve_inputs(
         the text varies
     columns : further columns that the settings name
     """
-    ds, dims = results.data, results.dims
-    settings, more = [], []
+    ds = results.data
+    dims = results.dims
+    settings = []
+    columns = []
     for key in (*PARAMETERS, *MATERIAL_FIELDS, *MAPPING_FIELDS, *OPTIONS):
-        name = f"{key}_value" if f"{key}_value" in ds.variables else key
+        name = key
+        if f"{key}_value" in ds.variables:
+            name = f"{key}_value"
         if name in ds.variables and set(ds[name].dims) & set(dims):
             if name not in known:
-                more.append(_input(name, flat(ds, name, dims)))
+                columns.append(_input(name, flat(ds, name, dims)))
             settings.append([key, [name]])
-        elif (text := setting_text(_fixed(ds, results, name))) is not None and key != "shortcuts":
+            continue
+        text = setting_text(_fixed(ds, results, name))
+        if text is not None and key != "shortcuts":
             settings.append([key, text])
     if results.config.duty:
         settings.append(["duty", setting_text(dict(results.config.duty)) or ""])
-    return settings, more
+    return settings, columns
 
 
 def _input(name: str, values: np.ndarray) -> Column:
@@ -364,7 +382,9 @@ def _fixed(ds: xr.Dataset, results: Results, name: str) -> Any:
         return ds[name].item()
     if name in OPTIONS:
         stated = getattr(results.config, name, None)
-        return ds.attrs.get(name) if stated is None else stated
+        if stated is None:
+            return ds.attrs.get(name)
+        return stated
     return results.config.base.get(name, getattr(PARAMETERS.get(name), "default", None))
 
 

@@ -57,9 +57,12 @@ def views(ds: xr.Dataset) -> style.Drawn:
         for colour, scale, forces in zip(style.PAIR, scales, (radial, axial), strict=False):
             _arrows(axes, at[:, [across, up]], scale * forces[:, [across, up]], colour)
         _name(axes, own, at[:, [across, up]], worst, masses[:, [across, up]], size)
+        direction = "y, left"
+        if up == 2:
+            direction = "z, up"
         axes.set(
             xlabel="x, forward [mm]",
-            ylabel=f"{'z, up' if up == 2 else 'y, left'} [mm]",
+            ylabel=f"{direction} [mm]",
             title=words,
         )
         axes.set_aspect("equal", adjustable="datalim")
@@ -77,10 +80,8 @@ def views(ds: xr.Dataset) -> style.Drawn:
     legend(figure, looks, columns=4)
     caption = (
         f"Carriage from the side and from above in the load case {case}, which damages roller "
-        f"{worst} most. Arrows are "
-        "the forces of the rollers on their rails, radial and axial ones to scales of their own; "
-        "both forces (N) stand "
-        "beside each roller; diamonds are masses."
+        f"{worst} most. Arrows are the forces of the rollers on their rails, radial and axial ones "
+        "to scales of their own; both forces (N) stand beside each roller; diamonds are masses."
     )
     return figure, style.FigureInfo("carriage", caption)
 
@@ -112,13 +113,21 @@ def _name(
     labels: dict[tuple[float, float], list[str]] = {}
     for j, name in enumerate(own["roller"].values):
         radial, axial = (rounded(float(own[key][j])) for key in ("radial_force", "axial_force"))
-        forces = "lifted" if float(own["radial_force"][j]) == 0 else f"{radial}, {axial}"
-        text = f"{name} {forces}{' (worst)' if name == worst else ''}"
+        if float(own["radial_force"][j]) == 0:
+            forces = "lifted"
+        else:
+            forces = f"{radial}, {axial}"
+        text = f"{name} {forces}"
+        if name == worst:
+            text += " (worst)"
         labels.setdefault((float(at[j, 0]), float(at[j, 1])), []).append(text)
     for place, texts in labels.items():
         away = (masses - np.array(place)) / size
-        taken = ((away > 0) & (away < np.array([LABEL_WIDTH, LABEL_HEIGHT]))).all(axis=1).any()
-        offset, side = ((6, -6), "top") if taken else ((6, 6), "baseline")
+        is_taken = ((away > 0) & (away < np.array([LABEL_WIDTH, LABEL_HEIGHT]))).all(axis=1).any()
+        if is_taken:
+            offset, side = ((6, -6), "top")
+        else:
+            offset, side = ((6, 6), "baseline")
         axes.annotate(
             "\n".join(texts), place, xytext=offset, textcoords="offset points", fontsize=7, va=side
         )

@@ -34,9 +34,9 @@ LIGHT = ListedColormap(matplotlib.colormaps["YlGnBu"](np.linspace(0, 0.62, 64)))
 
 
 def _shapes(patches: list[Patch]) -> str:
-    return (
-        "the loaded part of both contact patches" if patches[0].solved else "both contact ellipses"
-    )
+    if patches[0].solved:
+        return "the loaded part of both contact patches"
+    return "both contact ellipses"
 
 
 def _canvas(
@@ -46,28 +46,48 @@ def _canvas(
 
     The patches are drawn to one scale unless they are very slender.
     """
-    boxes, count = np.array([p.box for p in patches]), len(patches)
+    boxes = np.array([p.box for p in patches])
+    count = len(patches)
     (left, rear), (right, front) = boxes[:, ::2].min(axis=0), boxes[:, 1::2].max(axis=0)
     a, b = 0.5 * (right - left), 0.5 * (front - rear)
     to_scale = 1 / SLENDER <= b / a <= SLENDER
-    height = float(np.clip(PANEL_MM * b / a, 22, 66)) if to_scale else 40.0
+    height = 40.0
+    if to_scale:
+        height = float(np.clip(PANEL_MM * b / a, 22, 66))
     figure = style.new_figure(39 + height + 40 * profile)
-    grid = figure.add_gridspec(1 + profile, count, height_ratios=[height, 30] if profile else None)
+    ratios = None
+    if profile:
+        ratios = [height, 30]
+    grid = figure.add_gridspec(1 + profile, count, height_ratios=ratios)
     maps = [figure.add_subplot(grid[0, i]) for i in range(count)]
     for axes in maps:
         axes.set(xlim=(left - 0.08 * a, right + 0.08 * a), ylim=(rear - 0.12 * b, front + 0.12 * b))
-        axes.set(aspect="equal" if to_scale else "auto", xlabel="$x_\\mathrm{C}$ (lateral) [mm]")
-        axes.xaxis.set_major_locator(MaxNLocator(5 if to_scale and b < 1.2 * a else 3))
+        aspect = "auto"
+        if to_scale:
+            aspect = "equal"
+        axes.set(aspect=aspect, xlabel="$x_\\mathrm{C}$ (lateral) [mm]")
+        ticks = 3
+        if to_scale and b < 1.2 * a:
+            ticks = 5
+        axes.xaxis.set_major_locator(MaxNLocator(ticks))
         axes.yaxis.set_major_locator(MaxNLocator(5))
         axes.grid(False)
     maps[0].set_ylabel("$y_\\mathrm{C}$ (rolling) [mm]")
-    return figure, maps, figure.add_subplot(grid[-1, :]) if profile else None, to_scale
+    profile_axes = None
+    if profile:
+        profile_axes = figure.add_subplot(grid[-1, :])
+    return figure, maps, profile_axes, to_scale
 
 
 def _fill(axes: Axes, patch: Patch, values: np.ndarray, top: float, cmap: Any) -> Any:
     """Draw filled contours clipped to the edge of the patch, and return them."""
     levels = np.linspace(0, top, 17)
-    x, y, shown = patch.framed(values) if patch.solved else (patch.x, patch.y, values)
+    if patch.solved:
+        x, y, shown = patch.framed(values)
+    else:
+        x = patch.x
+        y = patch.y
+        shown = values
     image = axes.contourf(x, y, np.clip(shown, 0, levels[-1]), levels=levels, cmap=cmap)
     edge = PathPatch(outline(patch), facecolor="none", edgecolor="black", linewidth=0.9)
     axes.add_patch(edge)
@@ -80,7 +100,8 @@ def shear_arrows(ds: xr.Dataset) -> style.Drawn:
     """Draw direction and size of the shear traction on the roller, with the spin pole."""
     patches = patches_of(ds, "shear_lateral", "shear_rolling")
     sizes = [np.hypot(p.field("shear_lateral"), p.field("shear_rolling")) for p in patches]
-    top, image = max((float(s.max()) for s in sizes), default=0.0), None
+    top = max((float(s.max()) for s in sizes), default=0.0)
+    image = None
     if not top > 0:  # no contact, or no friction
         return None
     figure, grid, _, to_scale = _canvas(patches)
@@ -89,18 +110,14 @@ def shear_arrows(ds: xr.Dataset) -> style.Drawn:
         _arrows(axes, patch, top, to_scale)
         _pole(axes, patch)
     style.colour_bar(figure, image, grid, "Shear traction $|\\tau|$ on the roller [MPa]")
-    pole = any(p.spin_pole is not None for p in patches)
     style.head(figure, "Shear traction on the roller")
     best = int(np.argmax([s.max() for s in sizes]))
+    pole = ""
+    if any(p.spin_pole is not None for p in patches):
+        pole = "The black dot is the spin pole, about which the surfaces turn on each other. "
     caption = (
         f"Shear traction on the roller over {_shapes(patches)} (arrows: direction and size; "
-        "shade: size, MPa). "
-        + (
-            "The black dot is the spin pole, about which the surfaces turn on each other. "
-            if pole
-            else ""
-        )
-        + case_text(ds, to_scale)
+        f"shade: size, MPa). {pole}{case_text(ds, to_scale)}"
     )
     largest = number(float(sizes[best].max()))
     sentence = f"The largest shear traction is {largest} MPa, in contact {patches[best].contact}."
@@ -108,7 +125,10 @@ def shear_arrows(ds: xr.Dataset) -> style.Drawn:
 
 
 def _arrows(axes: Axes, patch: Patch, top: float, to_scale: bool) -> None:
-    count = ARROWS if patch.a >= patch.b else ARROWS[::-1]
+    if patch.a >= patch.b:
+        count = ARROWS
+    else:
+        count = ARROWS[::-1]
     columns, rows = (_every(len(v), n) for v, n in ((patch.x, count[0]), (patch.y, count[1])))
     pick = np.ix_(rows, columns)
     keep = patch.inside[pick]
@@ -151,7 +171,10 @@ def _pole(axes: Axes, patch: Patch) -> None:
             zorder=5,
         )
     elif np.isfinite(x):
-        at, side = (0.99, "right") if x > 0.5 * (left + right) else (0.01, "left")
+        if x > 0.5 * (left + right):
+            at, side = (0.99, "right")
+        else:
+            at, side = (0.01, "left")
         axes.text(
             at,
             0.03,
@@ -169,7 +192,8 @@ def friction_energy(ds: xr.Dataset) -> style.Drawn:
     name = "friction_energy_density"
     patches = patches_of(ds, name)
     fields = [np.where(p.inside, p.field(name), 0.0) for p in patches]
-    top, image = max((float(f.max()) for f in fields), default=0.0), None
+    top = max((float(f.max()) for f in fields), default=0.0)
+    image = None
     if not top > 0:
         return None
     figure, grid, across, to_scale = _canvas(patches, profile=True)
@@ -188,8 +212,8 @@ def friction_energy(ds: xr.Dataset) -> style.Drawn:
     style.head(figure, "Friction energy of both contacts")
     caption = (
         f"Friction energy per area and distance travelled over {_shapes(patches)}, and summed "
-        "along the rolling "
-        f"direction over each strip of the running track. {case_text(ds, to_scale)}"
+        "along the rolling direction over each strip of the running track. "
+        f"{case_text(ds, to_scale)}"
     )
     totals = [float(q.summed(p)) for p, q in zip(profiles, patches, strict=True)]
     words = " and ".join(

@@ -60,7 +60,10 @@ class Patch:
 
         Values of elements are summed; between points of a grid the trapezoidal rule holds.
         """
-        places = self.y if values.ndim == 2 else self.x
+        if values.ndim == 2:
+            places = self.y
+        else:
+            places = self.x
         if self.solved:
             return values.sum(axis=0) * (places[1] - places[0])
         return np.trapezoid(values, places, axis=0)
@@ -73,9 +76,9 @@ class Patch:
         wide = [
             np.concatenate([[2 * v[0] - v[1]], v, [2 * v[-1] - v[-2]]]) for v in (self.x, self.y)
         ]
-        return *wide, np.pad(field, 1, mode="edge") if rim is None else np.pad(
-            field, 1, constant_values=rim
-        )
+        if rim is None:
+            return *wide, np.pad(field, 1, mode="edge")
+        return *wide, np.pad(field, 1, constant_values=rim)
 
     @property
     def spin_pole(self) -> tuple[float, float] | None:
@@ -102,10 +105,11 @@ def _bears(part: xr.Dataset) -> np.ndarray:
 
 def _strips(part: xr.Dataset, axis: str) -> list[tuple[float, float]]:
     """Return the first and last edge [mm] of each run of loaded elements along 'x' or 'y'."""
-    centres, loaded = (
-        part[f"patch_{axis}"].values,
-        np.any(_bears(part), axis=0 if axis == "x" else 1),
-    )
+    other_axis = 1
+    if axis == "x":
+        other_axis = 0
+    centres = part[f"patch_{axis}"].values
+    loaded = np.any(_bears(part), axis=other_axis)
     half = 0.5 * (centres[1] - centres[0])
     steps = np.diff(np.concatenate([[0], loaded.astype(int), [0]]))
     starts, ends = np.flatnonzero(steps == 1), np.flatnonzero(steps == -1) - 1
@@ -147,28 +151,39 @@ def case_name(ds: xr.Dataset) -> str:
     if CASE not in ds.attrs:
         return "one case"
     given = {name: value for name, value in inputs_of(ds).items() if not is_default(name, value)}
-    said = [
+    texts = [
         setting(n, v)
         for n, v in given.items()
         if n in PARAMETERS and isinstance(v, float) and v == v
     ]
     pair = [str(inputs_of(ds)[name]) for name in MATERIAL_FIELDS]
-    said += (
-        [level_text("material_pair", " / ".join(pair))] if set(given) & set(MATERIAL_FIELDS) else []
-    )
-    said += [long_name(name) for name in given if name in MAPPING_FIELDS]
-    return listing(said) if said else "default case"
+    if set(given) & set(MATERIAL_FIELDS):
+        texts += [level_text("material_pair", " / ".join(pair))]
+    texts += [long_name(name) for name in given if name in MAPPING_FIELDS]
+    if texts:
+        return listing(texts)
+    return "default case"
 
 
 def case_text(ds: xr.Dataset, to_scale: bool) -> str:
     """Return case, regime and normal forces for a caption, as far as the data set holds them."""
-    regime = int(ds["regime"]) if "regime" in ds else 0
-    forces = ds["normal_force"].values if "normal_force" in ds else np.array([])
+    regime = 0
+    if "regime" in ds:
+        regime = int(ds["regime"])
+    if "normal_force" in ds:
+        forces = ds["normal_force"].values
+    else:
+        forces = np.array([])
     text = f"{capital(case_name(ds))}. Regime: {REGIME_LABELS[regime]}"
     loads = [
         f"{rounded(float(f), 4)} N in contact {i + 1}"
         for i, f in enumerate(forces)
         if np.isfinite(f)
     ]
-    text += f"; normal force {' and '.join(loads)}." if loads else "."
-    return text if to_scale else f"{text} Axes not to one scale."
+    if loads:
+        text += f"; normal force {' and '.join(loads)}."
+    else:
+        text += "."
+    if to_scale:
+        return text
+    return f"{text} Axes not to one scale."

@@ -18,7 +18,7 @@ from trackroller.halfspace.stress import FRICTION_SIGNS, stress_on_grid, von_mis
 from trackroller.report.figures import style
 from trackroller.report.figures.contact_outline import Patch, case_text, outline, widths
 from trackroller.report.numbers import near, rounded
-from trackroller.results.columns import at_surface
+from trackroller.results.case_columns import at_surface
 from trackroller.roller.stored_inputs import MATERIALS, materials_of
 
 PLANES = (
@@ -49,18 +49,11 @@ def sections(ds: xr.Dataset, contact: int) -> style.Drawn:
     surfaces = {
         body: stress for body in bodies if (stress := surface_stress(ds, contact, body)) is not None
     }
-    shown = [
-        *(part[plane[0]] for plane in PLANES),
-        *([part["peak_stress"]] if "peak_stress" in part else []),
-    ]
+    shown = [part[plane[0]] for plane in PLANES]
+    if "peak_stress" in part:
+        shown.append(part["peak_stress"])
     top = float(np.nanmax([*(v.max() for v in shown), *(s[2].max() for s in surfaces.values())]))
-    first = part.sel(body=bodies[0])
-    spans = [float(np.ptp(first[name].values)) for name in ("xz_x", "yz_y")]
-    to_scale = 1 / SLENDER < spans[0] / spans[1] < SLENDER
-    shares = [*spans, spans[0]] if to_scale else [1.0, 1.0, 1.0]
-    shares = shares[: 3 if surfaces else 2]
-    deep = max(spans[1] if surfaces else 0.0, float(np.ptp(first["xz_z"].values)))
-    height = min(SHARE_MM * deep / sum(shares), 60.0) if to_scale else ROW_MM
+    shares, height, to_scale = _panel_sizes(part.sel(body=bodies[0]), bool(surfaces))
     figure = style.new_figure(34 + (height + 7) * len(bodies))
     grid = figure.subplots(len(bodies), len(shares), squeeze=False, width_ratios=shares)
     image: Any = None
@@ -73,14 +66,35 @@ def sections(ds: xr.Dataset, contact: int) -> style.Drawn:
             )
     style.colour_bar(figure, image, list(grid.ravel()), "Von Mises stress [MPa]")
     style.head(figure, f"Von Mises stress under contact {contact}")
+    surface_words = ""
+    if surfaces:
+        surface_words = " and on its surface"
     caption = (
         f"Von Mises stress (MPa) under contact {contact} in the lateral and the rolling section "
-        "plane through the peak "
-        f"of each body{' and on its surface' if surfaces else ''}; z counts into the body. A "
-        "cross marks the peak; on "
-        f"the surface a ring marks a peak below it. {case_text(ds, to_scale)}"
+        f"plane through the peak of each body{surface_words}; z counts into the body. A cross "
+        f"marks the peak; on the surface a ring marks a peak below it. {case_text(ds, to_scale)}"
     )
     return figure, style.FigureInfo(f"contact_{contact}_stress", caption, _sentence(part, bodies))
+
+
+def _panel_sizes(part: xr.Dataset, with_surface: bool) -> tuple[list[float], float, bool]:
+    """Return the shares of the width that the panels of a row have, the height of a row [mm], and
+    whether lengths are drawn to one scale.
+    """
+    lateral = float(np.ptp(part["xz_x"].values))
+    rolling = float(np.ptp(part["yz_y"].values))
+    depth = float(np.ptp(part["xz_z"].values))
+    to_scale = 1 / SLENDER < lateral / rolling < SLENDER
+    shares = [1.0, 1.0]
+    if to_scale:
+        shares = [lateral, rolling]
+    if with_surface:
+        shares.append(shares[0])
+        depth = max(rolling, depth)
+    height = ROW_MM
+    if to_scale:
+        height = min(SHARE_MM * depth / sum(shares), 60.0)
+    return shares, height, to_scale
 
 
 def surface_stress(
@@ -97,7 +111,9 @@ def surface_stress(
     x (nx) and y (ny) in the contact [mm] and the stress (ny, nx) [MPa], or None where tractions or
     materials are not known
     """
-    patch = Patch(ds, contact) if {"patch_x", "patch_y", *TRACTIONS} <= set(ds.variables) else None
+    patch = None
+    if {"patch_x", "patch_y", *TRACTIONS} <= set(ds.variables):
+        patch = Patch(ds, contact)
     if patch is None or not patch.there or MATERIALS not in ds.attrs:
         return None
     margin = [max(1, int(np.ceil(AROUND * v.size))) for v in (patch.y, patch.x)]
@@ -118,12 +134,22 @@ def _section(
     axes: Axes, part: xr.Dataset, body: str, plane: tuple[str, ...], drawn: tuple[float, bool]
 ) -> Any:
     name, across, down, axis, words = plane
-    x, z, stress = part[across].values, part[down].values, part[name].values
+    x = part[across].values
+    z = part[down].values
+    stress = part[name].values
     image = _fill(axes, x, z, stress, drawn[0])
     roller = body == "roller"
     far, near_ = float(z.max()), float(z.min()) - 0.03 * float(np.ptp(z))
-    axes.set_ylim((near_, far) if roller else (far, near_))
-    axes.set_aspect("equal" if drawn[1] else "auto", anchor="S" if roller else "N")
+    if roller:
+        axes.set_ylim(near_, far)
+        axes.set_anchor("S")
+    else:
+        axes.set_ylim(far, near_)
+        axes.set_anchor("N")
+    if drawn[1]:
+        axes.set_aspect("equal")
+    else:
+        axes.set_aspect("auto")
     for ends in widths(part, axis):
         axes.plot(
             ends,
@@ -134,12 +160,16 @@ def _section(
             clip_on=False,
             zorder=4,
         )
-    other = "y" if axis == "x" else "x"
+    other = "x"
+    if axis == "x":
+        other = "y"
     place = ""
     if f"peak_{other}" in part:
         where = near(float(part[f"peak_{other}"]), float(np.ptp(x)))
         place = f"\nat ${other}_\\mathrm{{C}}$ = {where} mm"
-    depth = "Depth $z_\\mathrm{C}$ [mm]" if axis == "x" else "$z_\\mathrm{C}$ [mm]"
+    depth = "$z_\\mathrm{C}$ [mm]"
+    if axis == "x":
+        depth = "Depth $z_\\mathrm{C}$ [mm]"
     axes.set(title=f"{body.capitalize()}, {words} section{place}", ylabel=depth)
     _labels(axes, f"${axis}_\\mathrm{{C}}$ ({words}) [mm]")
     if axis == "y":  # the narrow section
@@ -173,9 +203,12 @@ def _surface(
     for limit, own, places in ((axes.set_xlim, "xz_x", x), (axes.set_ylim, "yz_y", y)):
         reach = part[own].values
         limit(max(float(reach[0]), float(places[0])), min(float(reach[-1]), float(places[-1])))
+    aspect = "auto"
+    if drawn[1]:
+        aspect = "equal"
     axes.set(
         title=f"{str(part['body'].item()).capitalize()}, surface",
-        aspect="equal" if drawn[1] else "auto",
+        aspect=aspect,
     )
     axes.set_ylabel("$y_\\mathrm{C}$ (rolling) [mm]", labelpad=1)
     _labels(axes, "$x_\\mathrm{C}$ (lateral) [mm]")
@@ -189,8 +222,11 @@ def _mark_peak(axes: Axes, part: xr.Dataset, plane: tuple[str, str]) -> None:
     if not np.isfinite(x + y + value):
         return
     below = plane[1] == "y" and at_surface(part) == 0
+    marker = "x"
+    if below:
+        marker = "o"
     look: dict[str, Any] = {
-        "marker": "o" if below else "x",
+        "marker": marker,
         "markerfacecolor": "none",
         "clip_on": False,
     }
@@ -199,24 +235,38 @@ def _mark_peak(axes: Axes, part: xr.Dataset, plane: tuple[str, str]) -> None:
     if below:
         return
     right = x < np.mean(axes.get_xlim())
-    up = 9 if plane[1] == "y" or axes.get_ylim()[1] > axes.get_ylim()[0] else -9
+    if plane[1] == "y" or axes.get_ylim()[1] > axes.get_ylim()[0]:
+        up = 9
+    else:
+        up = -9
     box = {"facecolor": "white", "edgecolor": "none", "pad": 1.0, "alpha": 0.9}
+    if right:
+        right_of = 8
+    else:
+        right_of = -8
     place: dict[str, Any] = {
-        "xytext": (8 if right else -8, up),
+        "xytext": (right_of, up),
         "textcoords": "offset points",
         "va": "center",
     }
-    place |= {"ha": "left" if right else "right", "zorder": 7, "bbox": box}
+    aligned = "right"
+    if right:
+        aligned = "left"
+    place |= {"ha": aligned, "zorder": 7, "bbox": box}
     axes.annotate(f"{value:.0f} MPa", (x, y), fontsize=7, **place)
 
 
 def _sentence(part: xr.Dataset, bodies: list[str]) -> str:
     if "peak_stress" not in part or "peak_z" not in part:
         return "The peak was not computed."
-    said = []
+    texts = []
     for body in bodies:
         own = part.sel(body=body)
-        value, depth = float(own["peak_stress"]), float(own["peak_z"])
-        where = "at the surface" if at_surface(own) == 1 else f"{rounded(depth, 2)} mm deep"
-        said.append(f"{value:.0f} MPa {where} in the {body}")
-    return f"The peak is {' and '.join(said)}."
+        value = float(own["peak_stress"])
+        depth = float(own["peak_z"])
+        if at_surface(own) == 1:
+            where = "at the surface"
+        else:
+            where = f"{rounded(depth, 2)} mm deep"
+        texts.append(f"{value:.0f} MPa {where} in the {body}")
+    return f"The peak is {' and '.join(texts)}."

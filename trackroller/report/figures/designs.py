@@ -43,7 +43,8 @@ def pareto_front(front: xr.Dataset, results: Results | None = None) -> style.Dra
     goals = goals_of(front)
     if not (front["optimal"].values == 1).any() or min(front.sizes["row"], len(goals)) < 2:
         return None
-    others, kind = goals[1:4], str(front.attrs.get("kind", "design"))
+    others = goals[1:4]
+    kind = str(front.attrs.get("kind", "design"))
     figure, panels = style.panels(f"Pareto-optimal {kind}s", 78, len(others))
     colour, entries = _colours(front, results, goals[0][0])
     for axes, goal in zip(panels, others, strict=True):
@@ -55,11 +56,11 @@ def pareto_front(front: xr.Dataset, results: Results | None = None) -> style.Dra
         )
     )
     legend(figure, entries)
-    wanted = listing(
+    goals_words = listing(
         [f"{front[n].attrs.get('long_name') or long_name(n)} {_WAYS[w]}" for n, w in goals]
     )
     return figure, style.FigureInfo(
-        "pareto-front", f"Pareto set for {wanted} (arrows on the axes)."
+        "pareto-front", f"Pareto set for {goals_words} (arrows on the axes)."
     )
 
 
@@ -105,10 +106,18 @@ def _trade(
     xs, ys = front[x].values.astype(float), front[y].values.astype(float)
     finite = np.isfinite(xs) & np.isfinite(ys)
     shown = (front["optimal"].values == 1) & finite
-    rest = np.random.default_rng(1).permutation(np.flatnonzero(finite & ~shown))
-    size = 6 if len(rest) > 500 else 14
+    others = np.random.default_rng(1).permutation(np.flatnonzero(finite & ~shown))
+    size = 14
+    if len(others) > 500:
+        size = 6
     axes.scatter(
-        xs[rest], ys[rest], s=size, c=colour[rest].tolist(), alpha=0.6, linewidth=0, rasterized=True
+        xs[others],
+        ys[others],
+        s=size,
+        c=colour[others].tolist(),
+        alpha=0.6,
+        linewidth=0,
+        rasterized=True,
     )
     if joined:
         order = np.argsort(xs[shown])

@@ -27,11 +27,13 @@ def sn_line(fit: Fit) -> style.Drawn:
     if not fit.has("fatigue"):
         return None
     line = fit.group("fatigue").line
-    tests, failed = line.tests, line.tests.failed
+    tests = line.tests
+    failed = line.tests.failed
     figure, (axes,) = style.panels(f"S-N line of {fit.name}", 95)
     reach = max(np.ptp(tests.stress), 0.1)
     low, high = tests.stress.min() - 0.6 * reach, tests.stress.max() + 0.2 * reach
-    stresses, fine = np.linspace(low, high, ACROSS), np.linspace(low, high, FINE)
+    stresses = np.linspace(low, high, ACROSS)
+    fine = np.linspace(low, high, FINE)
     entries = [("failure", {"marker": "o", "linestyle": "none", "color": "0.1"})]
     if failed.any():
         for probability, colour, dash in ((0.5, UP, "-"), (0.1, DOWN, "--")):
@@ -65,9 +67,8 @@ def sn_line(fit: Fit) -> style.Drawn:
     legend(figure, entries)
     caption = (
         "Tests, fitted line, and the interval that holds the true life in nine of ten fits, at "
-        "each stress. Arrows: "
-        "tests that ended without a failure of this kind. Beyond the tests the line is "
-        "extrapolated."
+        "each stress. Arrows: tests that ended without a failure of this kind. Beyond the tests "
+        "the line is extrapolated."
     )
     return figure, style.FigureInfo("fit_sn_line", caption)
 
@@ -90,22 +91,23 @@ def predicted(fit: Fit) -> style.Drawn:
     for axes, own in zip(panels, groups, strict=True):
         _against(axes, own)
     caption = (
-        "Median by the fit and what was observed; an interval is drawn at its middle, and an "
-        "arrow is a test that "
-        "ended without this failure. Dotted: between the lines lie nine of ten failures by the "
-        "fitted scatter."
+        "Median by the fit and what was observed; an interval is drawn at its middle, and an arrow "
+        "is a test that ended without this failure. Dotted: between the lines lie nine of ten "
+        "failures by the fitted scatter."
     )
     return figure, style.FigureInfo("fit_predicted", caption)
 
 
 def _against(axes: Axes, own: Group) -> None:
-    line, failed = own.line, own.line.tests.failed
+    line = own.line
+    failed = own.line.tests.failed
     median = np.array([float(line.log_life(line.best, x, 0.5)) for x in line.tests.stress])
     straight = float(line.best.level) - float(line.best.slope) * (
         line.tests.stress - line.reference
     )
     median = np.where(np.isfinite(median), median, straight)
-    observed, scatter = line.tests.middle, 1.645 * math.exp(float(line.best.log_scatter))
+    observed = line.tests.middle
+    scatter = 1.645 * math.exp(float(line.best.log_scatter))
     _marks(axes, np.exp(median), np.exp(observed), failed)
     both = np.concatenate([median, observed])
     ends = np.array([both.min() - 0.5, both.max() + 0.5])
@@ -153,7 +155,7 @@ def pairs(fit: Fit) -> style.Drawn:
             style.log_ticks(axis, *ends)
     caption = (
         f"{rounded(MOST_DRAWN)} points of the posterior; the cross is the most likely value. A "
-        "narrow diagonal cloud "
-        "means that the tests know a combination of both values better than each of them."
+        "narrow diagonal cloud means that the tests know a combination of both values better than "
+        "each of them."
     )
     return figure, style.FigureInfo("fit_pairs", caption)

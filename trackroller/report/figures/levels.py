@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from trackroller.report.numbers import level_text, long_name, number, rounded, setting
-from trackroller.results.groups import DRIVE, classes
+from trackroller.results.factor_levels import DRIVE, classes
 from trackroller.results.results import Results
 
 COLOURS = 5  # most groups that get a colour each
@@ -34,7 +34,9 @@ def material_of_level(text: str) -> str:
 def _parts(name: str) -> list[str]:
     if name.endswith(" on itself"):
         return [name.removesuffix(" on itself")] * 2
-    return name.split(" / " if " / " in name else " on ")
+    if " / " in name:
+        return name.split(" / ")
+    return name.split(" on ")
 
 
 def _drive(low: float, high: float) -> str:
@@ -42,14 +44,17 @@ def _drive(low: float, high: float) -> str:
     if low == high:
         return level_text(DRIVE, low)
     least, most = sorted((abs(low), abs(high)))
-    return f"{'driven' if low < 0 else 'braked'}, {rounded(least, 2)} to {rounded(most, 2)} N"
+    way = "braked"
+    if low < 0:
+        way = "driven"
+    return f"{way}, {rounded(least, 2)} to {rounded(most, 2)} N"
 
 
-def held_words(held: Mapping[str, Any]) -> str:
+def held_words(levels: Mapping[str, Any]) -> str:
     """State the levels at which factors are held; an empty text if no factor is held."""
-    return (
-        f"Held: {'; '.join(setting(name, level) for name, level in held.items())}." if held else ""
-    )
+    if levels:
+        return f"Held: {'; '.join(setting(name, level) for name, level in levels.items())}."
+    return ""
 
 
 def span(name: str, low: Any, high: Any) -> str:
@@ -65,7 +70,9 @@ def class_words(name: str, end: Any) -> str:
     """
     if isinstance(end, tuple):
         return f"{long_name(name)} {span(name, *end)}"
-    return level_text(name, end) if isinstance(end, str) else setting(name, end)
+    if isinstance(end, str):
+        return level_text(name, end)
+    return setting(name, end)
 
 
 def coloured(results: Results, lead: str, rows: np.ndarray) -> list[tuple[str, np.ndarray]]:

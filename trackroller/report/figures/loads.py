@@ -41,16 +41,16 @@ def stress_against_fit(results: Results) -> style.Drawn:
     if not fits or not bodies:
         return None
     hue = _hue(results, f"peak_stress_{bodies[0]}", fits)
-    rows, held = results.hold((*fits, hue) if hue else fits)
+    rows, levels_held = results.hold(tuple(name for name in (*fits, hue) if name))
     rows, label = add_fit(results, rows[results.rolling[rows.index]])
     if rows["_fit"].nunique() < 2:
         return None
     columns = [f"peak_stress_{body}" for body in bodies]
-    inside = np.isin(np.arange(len(results.table)), rows.index)
-    levels = coloured(results, hue, inside) if hue else [("", np.ones(len(rows), bool))]
+    levels = _levels(results, hue, rows)
     groups = [([text], rows[mask]) for text, mask in levels]
     single = results.grid and not any(part["_fit"].duplicated().any() for _, part in groups)
-    groups = _merged(groups, columns) if single else groups
+    if single:
+        groups = _merged(groups, columns)
     figure, panels = style.panels(
         "Peak stress against fit",
         64 + 3.6 * (len(groups) + 2),
@@ -64,7 +64,8 @@ def stress_against_fit(results: Results) -> style.Drawn:
     for texts, part in groups:
         i = names.index(texts[0])
         look = {"color": colours[i], "marker": style.MARKERS[i], "linestyle": style.LINES[i % 6]}
-        entries += [(listing(texts), look)] if hue else []
+        if hue:
+            entries += [(listing(texts), look)]
         for axes, body in zip(panels, bodies, strict=True):
             _stress_series(axes, part, body, look, single)
     for axes, body in zip(panels, bodies, strict=True):
@@ -77,15 +78,24 @@ def stress_against_fit(results: Results) -> style.Drawn:
             ("hollow: below it", {**dot, "markerfacecolor": "white"}),
         ]
     legend(figure, entries, 2)
-    marks = (
-        "Filled marks: the peak lies at the surface; hollow marks: below it." if single else MEDIANS
-    )
+    marks = MEDIANS
+    if single:
+        marks = "Filled marks: the peak lies at the surface; hollow marks: below it."
     caption = (
-        "Peak von Mises stress (MPa) of roller and guide, the worse of the two contacts, over "
-        "the fit of groove and "
-        f"guide; rolling cases. {marks} {held_words(held)}"
+        "Peak von Mises stress (MPa) of roller and guide, the worse of the two contacts, over the "
+        f"fit of groove and guide; rolling cases. {marks} {held_words(levels_held)}"
     )
     return figure, style.FigureInfo("stress_against_fit", caption.strip())
+
+
+def _levels(results: Results, hue: str, rows: pd.DataFrame) -> list[tuple[str, np.ndarray]]:
+    """Return the levels of the factor that decides the colour, each with its rows; one level
+    without such a factor.
+    """
+    if not hue:
+        return [("", np.ones(len(rows), bool))]
+    inside = np.isin(np.arange(len(results.table)), rows.index)
+    return coloured(results, hue, inside)
 
 
 def _hue(results: Results, column: str, fits: tuple[str, ...]) -> str:
@@ -134,7 +144,8 @@ def _merged(groups: Groups, columns: list[str]) -> Groups:
 def _stress_series(
     axes: Any, part: pd.DataFrame, body: str, look: dict[str, Any], single: bool
 ) -> None:
-    part, y = part.sort_values("_fit"), f"peak_stress_{body}"
+    part = part.sort_values("_fit")
+    y = f"peak_stress_{body}"
     if not single:
         return running(axes, part["_fit"].to_numpy(), part[y].to_numpy(), look)
     axes.plot(part["_fit"], part[y], color=look["color"], linestyle=look["linestyle"], zorder=2)
@@ -159,30 +170,24 @@ def forces_against_axial(results: Results) -> style.Drawn:
     ]
     if not kinds:
         return None
-    levels = results.levels("motor_force") if "motor_force" in results.factors else []
-    # otherwise one line for all drives
-    drives: list[Any] = levels if 0 < len(levels) <= 5 else [None]
-    shown = (*results.behind(x), *(["motor_force"] if drives != [None] else []))
-    rows, held = results.hold(shown)
+    drives: list[Any] = [None]  # one line for all drives
+    shown = tuple(results.behind(x))
+    if "motor_force" in results.factors and len(results.levels("motor_force")) <= 5:
+        drives = results.levels("motor_force")
+        shown = (*shown, "motor_force")
+    rows, levels_held = results.hold(shown)
     figure, panels = style.panels(
         "Forces of both contacts against axial force", 74, len(kinds), sharex=True
     )
-    marks: list[dict[str, Any]] = [{"marker": "o"}, {"marker": "s"}]
-    if results.grid:
-        marks = [
-            {"marker": "o", "markersize": 3},
-            {"marker": "s", "markersize": 4.5, "markerfacecolor": "white"},
-        ]
-    looks = [{"color": colour} | mark for colour, mark in zip(style.PAIR, marks, strict=True)]
+    looks = _looks_of_contacts(results.grid)
     for axes, (name, words, letter) in zip(panels, kinds, strict=True):
         for contact, (j, level) in ((c, d) for c in (1, 2) for d in enumerate(drives)):
-            part = (rows if level is None else rows[rows["motor_force"] == level]).sort_values(x)
-            at, force = (part[n].to_numpy(dtype=float) for n in (x, f"{name}_{contact}"))
+            part = rows
+            if level is not None:
+                part = rows[rows["motor_force"] == level]
+            part = part.sort_values(x)
             look = looks[contact - 1] | {"linestyle": style.LINES[j % 6]}
-            if results.grid:
-                axes.plot(at, force, **look)
-            else:
-                running(axes, at, force, look)
+            _force_series(axes, part[x], part[f"{name}_{contact}"], look, results.grid)
         axes.set(xlabel=factor_label(x), ylabel=with_unit(f"{words} {letter}", "N"))
         axes.margins(y=0.1)
     if results.grid:
@@ -195,13 +200,45 @@ def forces_against_axial(results: Results) -> style.Drawn:
         if d is not None
     ]
     legend(figure, entries, 5)
-    each = f", for {len(drives)} motor forces" if len(drives) > 1 else ""
+    caption = _caption_of_forces(len(drives), levels_held, results.grid)
+    return figure, style.FigureInfo("forces_against_axial_force", caption)
+
+
+def _caption_of_forces(drives: int, levels_held: dict[str, Any], solved: bool) -> str:
+    each = ""
+    if drives > 1:
+        each = f", for {drives} motor forces"
+    note = MEDIANS
+    if solved:
+        note = held_words(levels_held)
     caption = (
         "Forces (N) of contact 1 (circles) and contact 2 (squares) on the roller over the axial "
-        f"force{each}. "
-        f"{held_words(held) if results.grid else MEDIANS}"
+        f"force{each}. {note}"
     )
-    return figure, style.FigureInfo("forces_against_axial_force", caption.strip())
+    return caption.strip()
+
+
+def _looks_of_contacts(solved: bool) -> list[dict[str, Any]]:
+    """Return the looks of the lines of both contacts; `solved` is True where each mark is a solved
+    case and no median.
+    """
+    marks: list[dict[str, Any]] = [{"marker": "o"}, {"marker": "s"}]
+    if solved:
+        marks = [
+            {"marker": "o", "markersize": 3},
+            {"marker": "s", "markersize": 4.5, "markerfacecolor": "white"},
+        ]
+    return [{"color": colour} | mark for colour, mark in zip(style.PAIR, marks, strict=True)]
+
+
+def _force_series(
+    axes: Any, at: pd.Series, forces: pd.Series, look: dict[str, Any], solved: bool
+) -> None:
+    """Draw the solved forces of a grid, or the running median of the forces of a sample."""
+    if solved:
+        axes.plot(at.to_numpy(dtype=float), forces.to_numpy(dtype=float), **look)
+    else:
+        running(axes, at.to_numpy(dtype=float), forces.to_numpy(dtype=float), look)
 
 
 def _shade_lift_off(panels: Any, rows: pd.DataFrame, x: str) -> None:

@@ -24,8 +24,8 @@ from trackroller.report.numbers import (
     rounded,
     with_unit,
 )
-from trackroller.results.by_tests import beyond_sn_data
-from trackroller.results.groups import BINS, classes
+from trackroller.results.factor_levels import BINS, classes
+from trackroller.results.lives_by_tests import beyond_sn_data
 from trackroller.results.ranking import ranked_factors
 from trackroller.results.results import Results
 
@@ -48,30 +48,30 @@ def life_map(results: Results) -> style.Drawn:
     if pair is None:
         return None
     column, words, unit = results.life
-    rows, held = results.hold(pair)
+    rows, levels_held = results.hold(pair)
     lives = rows[column][results.rolling[rows.index]]
     if not (np.isfinite(lives) & (lives > 0)).any():
         return None
     over = capital(f"{words} over {long_name(pair[0])} and {long_name(pair[1])}")
     figure, (axes,) = style.panels(over, 84)
     image = _life_cells(axes, results, rows, pair, column)
-    extend = "max" if np.isposinf(rows[column]).any() else "neither"
+    extend = "neither"
+    if np.isposinf(rows[column]).any():
+        extend = "max"
     bar = figure.colorbar(
         image, ax=axes, aspect=25, pad=0.02, extend=extend, label=with_unit(capital(words), unit)
     )
     style.log_ticks(bar.ax.yaxis, *image.get_clim())
     axes.set(xlabel=factor_label(pair[0]), ylabel=factor_label(pair[1]))
-    how = (
-        "Grey cells have no life"
-        if results.grid
-        else "Each cell is the median of its cases; grey cells have no life"
-    )
+    how = "Each cell is the median of its cases; grey cells have no life"
+    if results.grid:
+        how = "Grey cells have no life"
     if (
         axes.texts
         and (beyond_sn_data(results, column)[rows.index] & results.rolling[rows.index]).any()
     ):
         how += "; lives in brackets lie beyond the S-N data"
-    return figure, style.FigureInfo("life_map", f"{over}. {how}. {held_words(held)}".strip())
+    return figure, style.FigureInfo("life_map", f"{over}. {how}. {held_words(levels_held)}".strip())
 
 
 def _life_pair(results: Results) -> Pair | None:
@@ -81,7 +81,9 @@ def _life_pair(results: Results) -> Pair | None:
     their scatter.
     """
     names = [f for f in results.factors if results.numeric(f) and len(results.levels(f)) > 1]
-    column = results.life[0] if results.life else ""
+    column = ""
+    if results.life:
+        column = results.life[0]
     size = ranked_factors(results.analysis, column, results.factors)
 
     def worth(pair: Pair) -> tuple[float, ...]:
@@ -95,7 +97,9 @@ def _life_pair(results: Results) -> Pair | None:
     x, y = max(pairs, key=worth)
     if not results.grid and size[x] + size[y] < 0.5 * sum(size.values()):
         return None
-    return (x, y) if len(results.levels(x)) >= len(results.levels(y)) else (y, x)
+    if len(results.levels(x)) >= len(results.levels(y)):
+        return x, y
+    return y, x
 
 
 def cell_name(name: str, end: Any) -> str:
@@ -106,7 +110,9 @@ def cell_name(name: str, end: Any) -> str:
         return textwrap.fill(level_text(name, end).replace(" on ", " on\u00a0"), 24).replace(
             "\u00a0", " "
         )
-    return f"{end[0]:.3g}…{end[1]:.3g}" if isinstance(end, tuple) else rounded(end)
+    if isinstance(end, tuple):
+        return f"{end[0]:.3g}…{end[1]:.3g}"
+    return rounded(end)
 
 
 def _table(values: pd.Series, keys: list[np.ndarray], shape: tuple[int, int]) -> np.ndarray:
@@ -121,13 +127,21 @@ def _table(values: pd.Series, keys: list[np.ndarray], shape: tuple[int, int]) ->
 
 def _life_cells(axes: Axes, results: Results, rows: pd.DataFrame, pair: Pair, column: str) -> Any:
     inside = np.isin(np.arange(len(results.table)), rows.index)
-    sides = [classes(results.table, name, inside, None if results.grid else BINS) for name in pair]
-    keys, shape = [index for index, _ in sides], (len(sides[1][1]), len(sides[0][1]))
+    most: int | None = BINS
+    if results.grid:
+        most = None
+    sides = [classes(results.table, name, inside, most) for name in pair]
+    keys = [index for index, _ in sides]
+    shape = (len(sides[1][1]), len(sides[0][1]))
     life = _table(rows[column].where(results.rolling[rows.index]), keys, shape)
     axes.set_facecolor("0.75")  # cells without a life
     cells = np.ma.masked_invalid(np.where(np.isposinf(life), 1e300, life))
     finite = life[np.isfinite(life) & (life > 0)]
-    norm = LogNorm(finite.min(), finite.max() if finite.max() > finite.min() else 10 * finite.min())
+    if finite.max() > finite.min():
+        top = finite.max()
+    else:
+        top = 10 * finite.min()
+    norm = LogNorm(finite.min(), top)
     image = axes.pcolormesh(cells, cmap="cividis", norm=norm, edgecolor="face", linewidth=0.1)
     for axis, name, (_, ends) in zip((axes.xaxis, axes.yaxis), pair, sides, strict=True):
         set_ticks(axis, [cell_name(name, end) for end in ends])
@@ -145,8 +159,13 @@ def _written(axes: Axes, values: np.ndarray, beyond: np.ndarray, image: Any) -> 
         return
     for (j, i), value in np.ndenumerate(values):
         if np.isfinite(value):
-            colour = "black" if image.norm(value) > 0.55 else "white"
-            text = f"({rounded(float(value), 2)})" if beyond[j, i] else rounded(float(value), 2)
+            colour = "white"
+            if image.norm(value) > 0.55:
+                colour = "black"
+            if beyond[j, i]:
+                text = f"({rounded(float(value), 2)})"
+            else:
+                text = rounded(float(value), 2)
             axes.text(i + 0.5, j + 0.5, text, color=colour, ha="center", va="center", fontsize=7)
 
 
@@ -168,7 +187,10 @@ def regime_map(results: Results) -> style.Drawn:
     if len(results.factors) < 2:
         return None
     most = np.unique(results.regime, return_counts=True)[1].max()
-    if len(results.table) - most < (1 if results.grid else FEWEST):
+    fewest = FEWEST
+    if results.grid:
+        fewest = 1
+    if len(results.table) - most < fewest:
         return None
     ranked = sorted(results.factors, key=lambda f: -_regime_spread(results, f))
     # long names go on the vertical axis, where they have room; of two numbers the one with fewer
@@ -203,9 +225,13 @@ def _regime_shares(axes: Axes, results: Results, pair: Pair) -> str:
         {"facecolor": colour, "hatch": hatch, "edgecolor": "0.25"} for colour, hatch in both
     ]
     gaps = [0.04 if len(t) <= 12 else 0.0 for t in texts]
-    width, thin = 1 - 2 * gaps[0], 0.3 if all(gaps) else 0.0
+    thin = 0.0
+    if all(gaps):
+        thin = 0.3
+    width = 1 - 2 * gaps[0]
     for i, j in np.ndindex(len(texts[0]), len(texts[1])):
-        here, left = results.regime[(keys[0] == i) & (keys[1] == j)], i + gaps[0]
+        here = results.regime[(keys[0] == i) & (keys[1] == j)]
+        left = i + gaps[0]
         for code in range(4) if here.size else ():
             part = width * float((here == code).mean())
             if part > 0:
@@ -224,8 +250,8 @@ def _regime_shares(axes: Axes, results: Results, pair: Pair) -> str:
     ]
     axes.figure.legend(handles=handles, loc="outside lower left", ncols=4, handletextpad=0.5)
     others = len(results.factors) > 2
-    return (
-        "Each cell is divided by the share of its cases in each regime, over all other factors."
-        if others
-        else ""
-    )
+    if others:
+        return (
+            "Each cell is divided by the share of its cases in each regime, over all other factors."
+        )
+    return ""

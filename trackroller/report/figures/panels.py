@@ -31,9 +31,14 @@ def capped(life: np.ndarray) -> tuple[np.ndarray, float | None]:
     """
     life = np.asarray(life, dtype=float)
     finite = life[np.isfinite(life) & (life > 0)]
-    top = float(10 ** (np.ceil(np.log10(finite.max())) + 1)) if finite.size else 1.0
+    top = 1.0
+    if finite.size:
+        top = float(10 ** (np.ceil(np.log10(finite.max())) + 1))
     values = np.where(np.isposinf(life), top, np.where(life > 0, life, np.nan))
-    return values, top if np.isposinf(life).any() else None
+    cap = None
+    if np.isposinf(life).any():
+        cap = top
+    return values, cap
 
 
 def legend(figure: Figure, entries: Entries | Mapping[str, Artist], columns: int = 3) -> None:
@@ -42,18 +47,17 @@ def legend(figure: Figure, entries: Entries | Mapping[str, Artist], columns: int
 
     It has fewer columns where its texts are too long for the width of the figure.
     """
-    own = (
-        entries
-        if isinstance(entries, Mapping)
-        else {text: Line2D([], [], **look) for text, look in entries}
-    )
+    if isinstance(entries, Mapping):
+        own = entries
+    else:
+        own = {text: Line2D([], [], **look) for text, look in entries}
     for count in range(columns, 0, -1):
-        made = figure.legend(
+        box = figure.legend(
             own.values(), own, loc="outside lower left", ncols=count, alignment="left"
         )
-        if count == 1 or made.get_window_extent().width <= figure.bbox.width:
+        if count == 1 or box.get_window_extent().width <= figure.bbox.width:
             return
-        made.remove()
+        box.remove()
 
 
 def quantiles(
@@ -86,11 +90,11 @@ def band(
     low, middle, high = values
     if ordered:
         axes.fill_between(at, low, high, color=look["color"], alpha=0.18, linewidth=0)
+        unjoined = {}
     else:
         axes.vlines(at, low, high, color=look["color"], alpha=0.35, linewidth=4)
-    return axes.plot(
-        at, middle, **{"markersize": 3, **look, **({} if ordered else {"linestyle": "none"})}
-    )[0]
+        unjoined = {"linestyle": "none"}
+    return axes.plot(at, middle, **{"markersize": 3, **look, **unjoined})[0]
 
 
 def running(axes: Axes, x: np.ndarray, y: np.ndarray, look: dict[str, Any]) -> None:

@@ -23,7 +23,9 @@ HALF_STUCK = 0.5  # share of the adhesion area of the case whose fields are draw
 
 def along_cases(ds: xr.Dataset) -> xr.Dataset:
     """Return a result with the dimension `case`, which a single one lacks."""
-    return ds if "case" in ds.dims else ds.expand_dims("case")
+    if "case" in ds.dims:
+        return ds
+    return ds.expand_dims("case")
 
 
 def varied_creepage(ds: xr.Dataset) -> str:
@@ -31,7 +33,9 @@ def varied_creepage(ds: xr.Dataset) -> str:
     do.
     """
     varied = [name for name in CREEPAGES if np.ptp(ds[name].values) > 0.0]
-    return varied[0] if varied else CREEPAGES[0]
+    if varied:
+        return varied[0]
+    return CREEPAGES[0]
 
 
 def drawn_case(ds: xr.Dataset) -> int:
@@ -72,8 +76,7 @@ def creep_curve(ds: xr.Dataset) -> style.Drawn:
     legend(figure, entries)
     caption = (
         "Friction forces against the creepage over the largest friction force at rest, and share "
-        "of the adhesion area. "
-        "Each point is a solved case."
+        "of the adhesion area. Each point is a solved case."
     )
     return figure, style.FigureInfo("patch_creep_curve", caption)
 
@@ -97,7 +100,10 @@ def fields(ds: xr.Dataset) -> style.Drawn:
     shear = np.hypot(one["shear_lateral"].values, one["shear_rolling"].values)
     pressure = one["pressure"].values
     discs = ds.attrs["kind"] == "discs"
-    figure, panels = style.panels("Pressure and shear traction", 75, 1 if discs else 3)
+    count = 3
+    if discs:
+        count = 1
+    figure, panels = style.panels("Pressure and shear traction", 75, count)
     middle = len(x) // 2
     axes = panels[-1]
     bound = float(one["friction_coefficient"]) * pressure[:, middle]
@@ -124,13 +130,14 @@ def fields(ds: xr.Dataset) -> style.Drawn:
         f"{WORDS[name][0].split(' [')[0]} {_creepage_text(one, name)}" for name in CREEPAGES
     )
     caption = (
-        f"Case {case}: {parts}. New material enters at the largest place in the rolling "
-        "direction. Where the traction "
-        "is below the friction, the surfaces stick."
+        f"Case {case}: {parts}. New material enters at the largest place in the rolling direction. "
+        "Where the traction is below the friction, the surfaces stick."
     )
     return figure, style.FigureInfo("patch_fields", caption)
 
 
 def _creepage_text(one: xr.Dataset, name: str) -> str:
-    unit = " %" if name != "spin" else " /mm"
+    unit = " /mm"
+    if name != "spin":
+        unit = " %"
     return f"{rounded(WORDS[name][1] * float(one[name]))}{unit}"

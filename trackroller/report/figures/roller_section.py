@@ -59,13 +59,15 @@ class Labels:
         half = 0.5 * np.array([LETTER * (len(text) + 0.8 * len(index)), LINE]) + CLEAR
         angles = math.atan2(direction[1], direction[0]) + TURNS
         toward = np.stack([np.cos(angles), np.sin(angles)], axis=1)
-        best, fewest = tip, math.inf
+        best = tip
+        fewest = math.inf
         for step in STEPS:
             middles = tip + (step + half) * toward
             covered = self._covered(middles, half)
             least = int(np.argmin(covered))
             if covered[least] < fewest:
-                best, fewest = middles[least], covered[least]
+                best = middles[least]
+                fewest = covered[least]
             if not fewest:
                 break
         self.boxes.append((best, half))
@@ -109,7 +111,8 @@ def drawing(ds: xr.Dataset) -> str:
 def content_of(ds: xr.Dataset) -> dict[str, Any]:
     """Return outlines, forces, dimensions and labels of the drawing, in pixels; see `drawing`."""
     values = inputs_of(ds)
-    alpha, r_guide = math.radians(values["contact_angle"]), values["guide_profile_radius"]
+    alpha = math.radians(values["contact_angle"])
+    r_guide = values["guide_profile_radius"]
     height = min(values["axis_distance"], TALLEST * r_guide)
     scale = min(0.84 * SIZE[1] / (height + r_guide), 0.28 * SIZE[0] / r_guide)
     origin = np.array([0.46 * SIZE[0], 0.08 * SIZE[1] + height * scale])
@@ -181,10 +184,12 @@ def _dimensions(
     """
     side, groove = 1.5 * r_guide, outline[int(1.72 * ARC)]  # a point on the right flank
     radius = values["roller_profile_radius"]
-    profile = (
-        ("straight profile", "") if math.isinf(radius) else (f"r {abs(radius):.5g} mm", "C,TR")
-    )
-    profile = ("drawn profile", "") if values.get("roller_profile") else profile
+    if math.isinf(radius):
+        profile = ("straight profile", "")
+    else:
+        profile = (f"r {abs(radius):.5g} mm", "C,TR")
+    if values.get("roller_profile"):
+        profile = ("drawn profile", "")
     rim = r_guide * np.array([-0.8, -0.6])
     return [
         (
@@ -207,10 +212,14 @@ def _flank(values: dict[str, Any], body: str, side: int) -> np.ndarray:
         math.radians(values["contact_angle"]),
         *(values[f"{b}_radius"] for b in PROFILES),
     )
-    radius = r_guide if body == PROFILES[0] else radius
+    if body == PROFILES[0]:
+        radius = r_guide
     try:
+        drawn = ""
+        if values.get(body):
+            drawn = json.dumps(values.get(body))
         shape = cross_section(
-            json.dumps(values.get(body)) if values.get(body) else "",
+            drawn,
             body,
             radius,
             alpha,
@@ -223,11 +232,13 @@ def _flank(values: dict[str, Any], body: str, side: int) -> np.ndarray:
     low, high = shape.limits
     u = np.linspace(max(low, -REACH * r_guide), min(high, REACH * r_guide), ARC)[:, None]
     # over the tangent plane, out of the body
-    height = shape.full_height(u) * (1.0 if body == PROFILES[0] else -1.0)
-    normal, outward = (
-        np.array([math.sin(alpha), math.cos(alpha)]),
-        np.array([math.cos(alpha), -math.sin(alpha)]),
-    )
+    if body == PROFILES[0]:
+        sign = 1.0
+    else:
+        sign = -1.0
+    height = shape.full_height(u) * sign
+    normal = np.array([math.sin(alpha), math.cos(alpha)])
+    outward = np.array([math.cos(alpha), -math.sin(alpha)])
     flank = (r_guide + height) * normal + u * outward
     return flank[flank[:, 0] > 0]
 
@@ -266,14 +277,16 @@ def _forces(
     ds: xr.Dataset, values: dict[str, Any], alpha: float, height: float
 ) -> list[tuple[np.ndarray, str, float, np.ndarray]]:
     """Return the forces on the roller in the section: place [mm], index, size and vector [N]."""
-    forces, axle = [], np.array([0.0, height])
+    forces = []
+    axle = np.array([0.0, height])
     radial, axial = values["radial_force"], values["axial_force"]
     ds = ds[["normal_force", "lateral_force"]]
     for number, sign in ((1, 1.0), (2, -1.0)):
         own = ds.sel(contact=number)
         normal = np.array([sign * math.sin(alpha), math.cos(alpha)])
         along = np.array([math.cos(alpha), -sign * math.sin(alpha)])
-        load, lateral = float(own["normal_force"]), float(own["lateral_force"])
+        load = float(own["normal_force"])
+        lateral = float(own["lateral_force"])
         if math.isfinite(load):
             forces.append(
                 (values["guide_profile_radius"] * normal, f"N{number}", load, load * normal)
@@ -283,4 +296,7 @@ def _forces(
                 (values["guide_profile_radius"] * normal, f"T{number}", lateral, lateral * along)
             )
     forces.append((axle, "rad", radial, np.array([0.0, radial])))
-    return forces + ([(axle, "ax", axial, np.array([axial, 0.0]))] if axial else [])
+    axial_force = []
+    if axial:
+        axial_force = [(axle, "ax", axial, np.array([axial, 0.0]))]
+    return forces + axial_force

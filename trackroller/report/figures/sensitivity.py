@@ -28,7 +28,8 @@ def main_outputs(sens: xr.Dataset) -> list[str]:
     """Name the outputs that have an index, the most important first."""
     index = headline(sens)
     names = [str(n) for n in sens["output"].values if np.isfinite(sens[index].sel(output=n)).any()]
-    return sorted(names, key=lambda n: USUAL.index(n) if n in USUAL else len(USUAL))  # lives first
+    usual = [name for name in USUAL if name in names]  # lives first
+    return [*usual, *(name for name in names if name not in usual)]
 
 
 def title(sens: xr.Dataset, output: str) -> str:
@@ -81,7 +82,9 @@ def morris_plane(sens: xr.Dataset, output: str) -> style.Drawn:
     )
     top = float(x[both].max()) * 1.15 or 1.0
     for share, dash in ((1.0, "--"), (0.5, ":")):
-        label = "σ = μ*" if share == 1 else "σ = μ*/2"
+        label = "σ = μ*/2"
+        if share == 1:
+            label = "σ = μ*"
         axes.plot(
             [0, top], [0, share * top], color="0.4", linestyle=dash, linewidth=0.8, label=label
         )
@@ -100,9 +103,9 @@ def morris_plane(sens: xr.Dataset, output: str) -> style.Drawn:
     axes.set(xlim=(0, top), ylim=(0, float(y[both].max()) * 1.15 or 1.0))
     figure.legend(loc="outside right upper")
     caption = (
-        "Elementary effects over each factor's whole range. Above the lines the effect of a "
-        "factor differs from place "
-        "to place: it is curved or depends on other factors. Whiskers: 95 % intervals."
+        "Elementary effects over each factor's whole range. Above the lines the effect of a factor "
+        "differs from place to place: it is curved or depends on other factors. Whiskers: 95 % "
+        "intervals."
     )
     if left_out:
         caption += f" Not drawn, because one effect has no spread: {listing(left_out)}."
@@ -123,21 +126,26 @@ def interactions(sens: xr.Dataset, output: str) -> style.Drawn:
     if not sized and np.nanmax(part[name].values) < WORTH:
         return None
     fitted = name == "interaction_share" and "main_share" not in part
-    own = (
-        "fit_alone"
-        if fitted
-        else {"S2": "S1", "interaction_share": "main_share", "interaction": "effect"}[name]
-    )
+    if fitted:
+        own = "fit_alone"
+    else:
+        own = {"S2": "S1", "interaction_share": "main_share", "interaction": "effect"}[name]
     table = np.where(np.isfinite(part[name].values), part[name].values, part[name].values.T)
     np.fill_diagonal(table, part[own].values)
     # estimates of a share may be negative
-    table = np.abs(table) if sized else np.maximum(table, 0.0)
+    if sized:
+        table = np.abs(table)
+    else:
+        table = np.maximum(table, 0.0)
     table = np.where(np.triu(np.ones_like(table, dtype=bool)), table, np.nan)
     names = [capital(str(n)) for n in part["factor_name"].values]
-    label = f"size [{indices.effect_unit(sens, output)}]" if sized else "share of variance [–]"
+    label = "share of variance [–]"
+    if sized:
+        label = f"size [{indices.effect_unit(sens, output)}]"
     figure = _heat(table, names, label, f"{title(sens, output)}: interactions")
     caption = (
         "Off the diagonal: the interaction of two factors; on the diagonal: each factor alone."
     )
-    caption += " Approximate: from a polynomial fitted to the sample." if fitted else ""
+    if fitted:
+        caption += " Approximate: from a polynomial fitted to the sample."
     return figure, style.FigureInfo(f"interactions-{output}", caption)

@@ -34,7 +34,8 @@ def sn_diagram(results: Results) -> style.Drawn:
     its fatigue limit? A body without a life on the axis gets no panel, because marks piled up at
     the edge would not be readable.
     """
-    known, rule = _known(results), results.config.life_rule
+    known = _known(results)
+    rule = results.config.life_rule
     bodies = [(body, points) for body in BODIES if (points := _points(results, body, known, rule))]
     if not bodies:
         return None
@@ -91,8 +92,12 @@ def _points(results: Results, body: str, known: Mapping[str, Material], rule: st
     If no rolling case has a life, return those of all cases with a life.
     """
     life = results.column(f"life_cycles_{body}")
-    rows = (life > 0) & results.rolling if ((life > 0) & results.rolling).any() else life > 0
-    given, points = results.material(body), {}
+    if ((life > 0) & results.rolling).any():
+        rows = (life > 0) & results.rolling
+    else:
+        rows = life > 0
+    given = results.material(body)
+    points = {}
     for material in dict.fromkeys(given):
         mine = (given == material) & rows
         if material not in known or not mine.any():
@@ -109,7 +114,9 @@ def _amplitude(results: Results) -> str:
     """Name the result that entered the S-N curve: the peak stress, or that of another life
     criterion.
     """
-    return "fatigue_stress" if results.has("fatigue_stress_roller") else "peak_stress"
+    if results.has("fatigue_stress_roller"):
+        return "fatigue_stress"
+    return "peak_stress"
 
 
 def _ends(points: list, materials: list[Material]) -> tuple[float, float]:
@@ -117,19 +124,27 @@ def _ends(points: list, materials: list[Material]) -> tuple[float, float]:
     low = min(m.sn_line[0][1] for m in materials)
     knee = max(m.cycles_at_fatigue_limit for m in materials)
     finite = lives[np.isfinite(lives)]
-    top = min(max(finite.max() * 2 if finite.size else knee, 20 * knee), BEYOND * knee)
-    low = min(low, finite.min() if finite.size else low)
-    return max(low / 2, 1.0), top
+    high = 20 * knee
+    if finite.size:
+        low = min(low, finite.min())
+        high = max(high, 2 * finite.max())
+    return max(low / 2, 1.0), min(high, BEYOND * knee)
 
 
 def _lines(
     axes: Axes, material: Material, rule: str, colour: Any, ends: tuple[float, float]
 ) -> None:
     """Draw the S-N curve of a material, with its scatter if it gives one."""
-    at, median = np.geomspace(*ends, 400), SNCurve.of(material, rule)
-    for probability in PROBABILITIES if median.scatters else (0.5,):
+    at = np.geomspace(*ends, 400)
+    median = SNCurve.of(material, rule)
+    probabilities: tuple[float, ...] = (0.5,)
+    if median.scatters:
+        probabilities = PROBABILITIES
+    for probability in probabilities:
         stress = median.changed(failure_probability=probability).allowable_stress(at)
-        width = 1.0 if probability == 0.5 else 0.8
+        width = 0.8
+        if probability == 0.5:
+            width = 1.0
         axes.plot(
             at,
             stress,
@@ -179,7 +194,9 @@ def _entries(
     entries.append(("90 % of the cases", {"color": "0.5", "linewidth": 4}))
     entries.append(("their median", {"marker": "o", "markerfacecolor": "white", **none}))
     ends = r"$R_\mathrm{m}$ and $\sigma_\mathrm{D}$"
-    given = f"{ends}, or points as given" if any(known[n].sn_points for n in names) else ends
+    given = ends
+    if any(known[n].sn_points for n in names):
+        given = f"{ends}, or points as given"
     entries.append((given, {"marker": "|", "markersize": 8, **none}))
     if any(SNCurve.of(known[n]).scatters for n in names):
         dashes = [(p, {"color": "0.3", "linestyle": _DASHES.get(p, "-")}) for p in PROBABILITIES]
@@ -192,11 +209,8 @@ def _info(
 ) -> style.FigureInfo:
     caption = (
         "S-N curves of the materials (failure probability 50 %, and 10 and 90 % where the "
-        "material gives its scatter) "
-        f"with the {_WORDS[_amplitude(results)]} (MPa) and the life in overrollings of the "
-        "rolling cases at the worse "
-        "contact. "
-        f"{CONVENTIONS[rule]}."
+        f"material gives its scatter) with the {_WORDS[_amplitude(results)]} (MPa) and the life in "
+        f"overrollings of the rolling cases at the worse contact. {CONVENTIONS[rule]}."
     )
     if any(known[name].second_exponent is not None for _, points in shown for name in points):
         caption += f" {capital(GIVEN_SLOPE)}."
@@ -208,8 +222,10 @@ def _scatter_words(known: Mapping[str, Material], names: Points) -> str:
     """Say at which share of the median life one in ten has failed, for each material that gives its
     scatter.
     """
-    said = []
+    texts = []
     for name in (n for n in names if SNCurve.of(known[n]).scatters):
         scatter = float(SNCurve.of(known[name]).scatter_ranges[0])
-        said.append(f"{rounded(scatter**-0.5, 2)} times its median life ({name})")
-    return f"By the scatter of the material, 10 % have failed at {listing(said)}." if said else ""
+        texts.append(f"{rounded(scatter**-0.5, 2)} times its median life ({name})")
+    if texts:
+        return f"By the scatter of the material, 10 % have failed at {listing(texts)}."
+    return ""

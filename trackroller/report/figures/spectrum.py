@@ -24,10 +24,12 @@ def damage_by_block(ds: xr.Dataset) -> style.Drawn:
     -------
     The figure and its caption, or None if no body has known damage.
     """
-    shares, unknown = {}, {}
+    shares = {}
+    unknown = {}
     for body in BODIES:
         _, damage = known_damage(ds, body)
-        if (whole := float(np.nansum(damage))) > 0:
+        whole = float(np.nansum(damage))
+        if whole > 0:
             shares[body] = np.nan_to_num(damage) / whole
             unknown[body] = np.isnan(damage)
     if not shares:
@@ -36,14 +38,20 @@ def damage_by_block(ds: xr.Dataset) -> style.Drawn:
     order = np.argsort(-sum(shares.values()), kind="stable")
     nowhere = np.logical_and.reduce(list(unknown.values()))
     order = order[~nowhere[order]]
-    shown, rest = order[:MOST], order[MOST:]
-    words = [names[i] for i in shown] + ([f"{len(rest)} others"] if len(rest) else [])
+    shown = order[:MOST]
+    further = order[MOST:]
+    words = [names[i] for i in shown]
+    if len(further):
+        words.append(f"{len(further)} others")
     figure, panels = style.panels(
         f"Damage by block: {ds.attrs['title']}", 24 + 6.0 * len(words), len(shares), sharey=True
     )
     worst_blocks = []
     for axes, colour, (body, part) in zip(panels, style.PAIR, shares.items(), strict=False):
-        values = np.append(part[shown], part[rest].sum()) if len(rest) else part[shown]
+        if len(further):
+            values = np.append(part[shown], part[further].sum())
+        else:
+            values = part[shown]
         bars = axes.barh(words, 100 * values, color=colour, height=0.62)
         axes.bar_label(bars, [chance(float(v)) for v in values], padding=2, fontsize=7)
         axes.set(xlim=(0, 125), xticks=range(0, 101, 25), xlabel=f"damage of the {body} [%]")

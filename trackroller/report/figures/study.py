@@ -45,7 +45,9 @@ def draw_all(results: Results, out_dir: Path) -> list[style.FigureInfo]:
 def _jobs(results: Results) -> Iterator[Callable[[], style.Drawn]]:
     """Yield the drawings in the order of the report."""
     sens = results.analysis
-    outputs = sensitivity.main_outputs(sens) if sens is not None and not robust_design(sens) else []
+    outputs = []
+    if sens is not None and not robust_design(sens):
+        outputs = sensitivity.main_outputs(sens)
 
     def of_analysis(draw: Callable[..., style.Drawn], most: int) -> list[Callable[[], style.Drawn]]:
         return [partial(draw, sens, name) for name in outputs[:most]]

@@ -88,9 +88,9 @@ def colours(texts: Sequence[str], materials: bool) -> list[str]:
         return palette(len(texts))
     known = builtin_database().names()
     names = [material_of_level(text) for text in short_levels(texts)]
-    rest = len(COLOURS) - len(known)
+    spare = len(COLOURS) - len(known)
     places = [
-        known.index(n) if n in known else len(known) + zlib.crc32(n.encode()) % rest for n in names
+        known.index(n) if n in known else len(known) + zlib.crc32(n.encode()) % spare for n in names
     ]
     return [COLOURS[place % len(COLOURS)] for place in places]
 
@@ -131,13 +131,15 @@ def log_ticks(axis: Any, low: float, high: float) -> None:
     such as 1, 2 and 5.
     """
     axis.set_minor_formatter(NullFormatter())
-    powers = math.log10(high / low) if low > 0 and high > low else 0.0
+    powers = 0.0
+    if low > 0 and high > low:
+        powers = math.log10(high / low)
     if not 0 < powers <= 1.6:
         return
-    few = powers < 0.7
-    axis.set_major_locator(
-        MaxNLocator(5, steps=[1, 2, 2.5, 5, 10]) if few else LogLocator(subs=(1.0, 2.0, 5.0))
-    )
+    if powers < 0.7:
+        axis.set_major_locator(MaxNLocator(5, steps=[1, 2, 2.5, 5, 10]))
+    else:
+        axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
     axis.set_major_formatter(FuncFormatter(lambda value, _: number(float(f"{value:.3g}"))))
     axis.set_minor_locator(NullLocator())
 
@@ -150,7 +152,9 @@ def save(figure: Figure, out_dir: Path, name: str) -> tuple[Path, Path]:
     paths = out_dir / f"{name}.svg", out_dir / f"{name}.png"
     for path in paths:
         # the same data gives the same file
-        metadata = {"Date": None} if path.suffix == ".svg" else None
+        metadata = None
+        if path.suffix == ".svg":
+            metadata = {"Date": None}
         drawn = io.BytesIO()
         figure.savefig(drawn, format=path.suffix[1:], metadata=metadata)
         write_whole(path, partial(Path.write_bytes, data=drawn.getvalue()))
@@ -170,9 +174,11 @@ def draw_all(jobs: Iterable[Callable[[], Drawn]], out_dir: Path) -> list[FigureI
         warnings.simplefilter("ignore")  # empty slices and all-NaN panels are expected here
         for number, draw in enumerate(jobs, 1):
             log.info("draw figure %d", number)
-            if (drawn := draw()) is not None:
-                save(drawn[0], out_dir, drawn[1].name)
-                infos.append(drawn[1])
+            drawn = draw()
+            if drawn is not None:
+                figure, info = drawn
+                save(figure, out_dir, info.name)
+                infos.append(info)
     return infos
 
 

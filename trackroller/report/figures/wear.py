@@ -29,7 +29,10 @@ def profiles(ds: xr.Dataset) -> style.Drawn:
     """
     contact = deeper_contact(ds)
     own = ds.sel(contact=contact)
-    travel, outward = own["travel"].values, 1 if contact == 1 else -1
+    travel = own["travel"].values
+    outward = -1
+    if contact == 1:
+        outward = 1
     goals = np.linspace(travel[0], travel[-1], TRAVELS)
     shown = sorted({int(np.argmin(np.abs(travel - goal))) for goal in goals})
     middle, half = outward * own["pressure_centre"].values, own["semi_axis_lateral"].values
@@ -55,8 +58,8 @@ def profiles(ds: xr.Dataset) -> style.Drawn:
     magnified = reach * 1e3 / max(float(np.ptp(new)), 1e-9)
     caption = (
         "Worn surfaces of roller and guide over the new surface of the guide, moved together "
-        "until they touch. Grey: "
-        f"width of the patch under load. Heights are magnified about {rounded(magnified, 1)} times."
+        "until they touch. Grey: width of the patch under load. Heights are magnified about "
+        f"{rounded(magnified, 1)} times."
     )
     depth = 1e3 * float(own["groove_depth"].isel(travel=-1).sum("body"))
     wide = f"The patch grows from {rounded(2 * half[0])} to {rounded(2 * half[-1])} mm"
@@ -119,34 +122,36 @@ def course(ds: xr.Dataset) -> style.Drawn:
     -------
     The figure and its caption.
     """
-    travel, contacts = ds["travel"].values, ds["contact"].values.tolist()
+    travel = ds["travel"].values
+    contacts = ds["contact"].values.tolist()
     rows = [("groove_depth", "depth [µm]", 1e3), ("max_pressure", "largest pressure [MPa]", 1.0)]
-    rows += [("fatigue_damage", "damage sum [–]", 1.0)] if "fatigue_damage" in ds else []
+    if "fatigue_damage" in ds:
+        rows += [("fatigue_damage", "damage sum [–]", 1.0)]
     figure, panels = style.panels("Depth, pressure and fatigue over the travel", 58, len(rows))
     for axes, (name, words, scale) in zip(panels, rows, strict=True):
         for body, colour in zip(BODIES, style.PAIR, strict=False):
             for contact, line in zip(contacts, style.LINES, strict=False):
                 own = ds[name].sel(contact=contact)
-                values = scale * (own.sel(body=body) if "body" in own.dims else own).values
-                if np.isnan(values).all() or ("body" not in own.dims and body == BODIES[1]):
+                of = f"contact {contact}"
+                look = {"color": "0.25", "ls": line, "marker": "."}
+                if "body" in own.dims:
+                    own = own.sel(body=body)
+                    of = f"{body}, contact {contact}"
+                    look["color"] = colour
+                elif body == BODIES[1]:
                     continue
-                of = f"{body}, contact {contact}" if "body" in own.dims else f"contact {contact}"
-                axes.plot(
-                    travel,
-                    values,
-                    color=colour if "body" in own.dims else "0.25",
-                    ls=line,
-                    marker=".",
-                    label=of,
-                )
+                values = scale * own.values
+                if not np.isnan(values).all():
+                    axes.plot(travel, values, label=of, **look)
         axes.set(title=words, xlabel="travel [km]")
         # room for the legend
-        axes.set_ylim(0.0, (1.6 if "body" in ds[name].dims else 1.0) * axes.get_ylim()[1])
+        head_room = 1.0
+        if "body" in ds[name].dims:
+            head_room = 1.6
+        axes.set_ylim(0.0, head_room * axes.get_ylim()[1])
         axes.legend(frameon=False)
-    error, relative = (
-        1e3 * float(ds["groove_depth_error"][-1]),
-        100 * float(ds["pressure_error"].max()),
-    )
+    error = 1e3 * float(ds["groove_depth_error"][-1])
+    relative = 100 * float(ds["pressure_error"].max())
     caption = (
         "Points are solved states. Steps and elements cause an estimated error of the depth of "
         f"{rounded(error, 2)} µm, and of the pressure of {rounded(relative, 2)} % at most."

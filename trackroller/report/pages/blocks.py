@@ -104,11 +104,15 @@ def screen_of(answer: Answer) -> dict[str, Any]:
         shown = table_of(answer)
         beside = picture is not None and picture.beside
         effects = curves.effects(answer)
-        first = (
-            MOST_EFFECTS
-            if _curves_are_the_picture(answer, picture is not None or bool(shown.bars))
-            else 0
-        )
+        first = 0
+        if _curves_are_the_picture(answer, picture is not None or bool(shown.bars)):
+            first = MOST_EFFECTS
+        transposed = []
+        if beside:
+            transposed = transposed_names(answer)
+        caption = ""
+        if effects:
+            caption = curves.caption(answer)
         return {
             "title": str(answer.facts.get("name", "")),
             "description": str(answer.facts.get("description") or ""),
@@ -116,12 +120,12 @@ def screen_of(answer: Answer) -> dict[str, Any]:
             "headline": headline_of(answer),
             "table": shown,
             "others": _others(answer),
-            "transposed": transposed_names(answer) if beside else [],
+            "transposed": transposed,
             "shared": shown.rows.shared,
             "picture": picture,
             "effects_first": effects[:first],
             "effects": effects[first:],
-            "effects_caption": curves.caption(answer) if effects else "",
+            "effects_caption": caption,
             "map": map_of(answer),
             "not_checked": answer.not_checked,
             "not_used": {plain(name): why for name, why in answer.not_used.items()},
@@ -176,13 +180,20 @@ def facts_line(answer: Answer) -> str:
         sizes.append(f"{count(candidates)} candidates")
     conditions = _conditions(facts.get("conditions"))
     if conditions:
-        drawn = "drawn " if facts.get("drawn") else ""
+        drawn = ""
+        if facts.get("drawn"):
+            drawn = "drawn "
         sizes.append(f"{conditions} {drawn}conditions")
     counted = facts.get("counted", "cases")
-    cases = f"{count(facts['cases'])} {counted}" if facts.get("cases", 0) > 1 else ""
-    size = f"{cases}: {', '.join(sizes)}" if cases and sizes else cases
+    cases = ""
+    if facts.get("cases", 0) > 1:
+        cases = f"{count(facts['cases'])} {counted}"
+    size = cases
+    if cases and sizes:
+        size = f"{cases}: {', '.join(sizes)}"
     models = facts.get("models", "")
-    models = models if isinstance(models, str) else ", ".join(map(str, models))
+    if not isinstance(models, str):
+        models = ", ".join(map(str, models))
     parts = [
         answer.question,
         str(facts.get("date") or "")[:10],
@@ -197,7 +208,10 @@ def _conditions(number: Any) -> str:
     """Return how many conditions candidates have, as one number or as a range; '' for one
     condition.
     """
-    ends = [number, number] if isinstance(number, int) else list(number or ())
+    if isinstance(number, int):
+        ends = [number, number]
+    else:
+        ends = list(number or ())
     if not ends or max(ends) < 2:
         return ""
     return " to ".join(dict.fromkeys(count(end) for end in ends))
@@ -211,7 +225,9 @@ def table_of(answer: Answer) -> Shown:
     rows = rows_of(answer, fit.shown)
     names = [column.name for column in fit.shown]
     bars = Bars.of(answer)
-    key = tuple(bars.key()) if bars else ()
+    key: tuple[tuple[Markup, str], ...] = ()
+    if bars:
+        key = tuple(bars.key())
     return Shown(
         rows, tuple(_drawn(answer, names)), key, rows_before_fold(answer), len(answer.table)
     )

@@ -12,6 +12,7 @@ import numpy as np
 import xarray as xr
 
 from trackroller.errors import listing
+from trackroller.fit.catalogue import CatalogueFit
 from trackroller.fit.fitted import WORDS, Fit, Group
 from trackroller.report import html
 from trackroller.report.numbers import capital, rounded, with_unit
@@ -39,7 +40,10 @@ def value_table(fit: Fit) -> Table:
         for name in own.names:
             unit = WORDS[name][0]
             low, high = own.interval(name)
-            estimate = "not identified" if name in own.unidentified else cell(own.estimate(name))
+            if name in own.unidentified:
+                estimate = "not identified"
+            else:
+                estimate = cell(own.estimate(name))
             if own.line.tests.failed.any():
                 band = own.band(name)
                 after = f"{cell(band[1])} ({cell(band[0])} to {cell(band[2])})"
@@ -65,13 +69,16 @@ def _prior(own: Group, name: str) -> str:
         "fatigue_limit": "log_strength",
     }.get(name)
     if key is None or key not in own.priors:
-        return "flat" if name in ("woehler_exponent",) else "flat in its logarithm"
+        if name in ("woehler_exponent",):
+            return "flat"
+        return "flat in its logarithm"
     prior = own.priors[key]
     if key == "slope":
         return f"{cell(prior.mean)} ± {cell(prior.deviation)}"
-    middle = (
-        math.exp(prior.mean) if key == "log_strength" else math.exp(2.563 * math.exp(prior.mean))
-    )
+    if key == "log_strength":
+        middle = math.exp(prior.mean)
+    else:
+        middle = math.exp(2.563 * math.exp(prior.mean))
     return f"median {cell(middle)}, ± {cell(prior.deviation)} in ln"
 
 
@@ -80,18 +87,19 @@ def _ends(low: float, high: float) -> str:
         return "any value"
     if math.isinf(high):
         return f"at least {cell(low)}"
-    return (
-        f"at most {cell(high)}" if low <= 0 or math.isinf(low) else f"{cell(low)} to {cell(high)}"
-    )
+    if low <= 0 or math.isinf(low):
+        return f"at most {cell(high)}"
+    return f"{cell(low)} to {cell(high)}"
 
 
 def sentences(fit: Fit) -> list[str]:
     """Return the statements at the head of the page: what was fitted, and what is not
     identified.
     """
-    said = []
+    texts = []
     for own in fit.groups:
-        failed, size = int(own.line.tests.failed.sum()), own.line.size
+        failed = int(own.line.tests.failed.sum())
+        size = own.line.size
         ends = {
             "fatigue": "failed by fatigue",
             "wear": "reached a depth",
@@ -99,7 +107,10 @@ def sentences(fit: Fit) -> list[str]:
         }[own.kind]
         values = []
         for name in own.names:
-            unit = "" if WORDS[name][0] == "1" else f" {WORDS[name][0]}"
+            if WORDS[name][0] == "1":
+                unit = ""
+            else:
+                unit = f" {WORDS[name][0]}"
             low, high = own.interval(name)
             if name in own.unidentified:
                 values.append(f"{_short(name)} not identified ({_ends(low, high)}{unit})")
@@ -107,10 +118,10 @@ def sentences(fit: Fit) -> list[str]:
                 values.append(
                     f"{_short(name)} {cell(own.estimate(name))}{unit} ({_ends(low, high)})"
                 )
-        said.append(
+        texts.append(
             f"{failed} of {size} tests {ends}: {', '.join(values)}; 90 % intervals in brackets."
         )
-    return said
+    return texts
 
 
 def _short(name: str) -> str:
@@ -124,29 +135,29 @@ def _short(name: str) -> str:
 
 def cannot_tell(fit: Fit) -> list[str]:
     """Return sentences on what the tests do not tell."""
-    said = []
+    texts = []
     for name in fit.unidentified:
-        said.append(
+        texts.append(
             f"The tests do not identify the {_short(name)}: its estimate lies at a bound, "
             "and is no number."
         )
     if fit.has("fatigue"):
-        said += _of_fatigue(
-            fit.group("fatigue"), fit.knee if "fatigue_limit" in fit.material else math.nan
-        )
-    return [*said, *fit.notes, *fit.not_given]
+        limit = math.nan
+        if "fatigue_limit" in fit.material:
+            limit = fit.knee
+        texts += _of_fatigue(fit.group("fatigue"), limit)
+    return [*texts, *fit.notes, *fit.not_given]
 
 
 def _of_fatigue(own: Group, knee: float) -> list[str]:
     """Return sentences on the range of a line, and on how wide its lives are."""
     low, high, longest = own.tested
-    said = [
+    texts = [
         f"Stresses of {rounded(low)} to {rounded(high)} MPa and up to {rounded(longest)} cycles "
-        "were tested. A life at "
-        "another stress, or a longer one, is an extrapolation of the line."
+        "were tested. A life at another stress, or a longer one, is an extrapolation of the line."
     ]
     if not own.line.knee and knee > 1.05 * longest:
-        said.append(
+        texts.append(
             f"The strength is stated at {rounded(knee)} cycles, beyond the longest test: "
             "it is extrapolated."
         )
@@ -154,19 +165,18 @@ def _of_fatigue(own: Group, knee: float) -> list[str]:
         ends = own.line.interval_of_life(math.log(low), 0.1)
         width = math.exp(min(ends.high - ends.low, 50.0))
         if width > WIDE:
-            said.append(
+            texts.append(
                 f"B10 at {rounded(low)} MPa is known within a factor of {rounded(width, 2)}. "
                 "`trackroller fit next` says which test narrows it most."
             )
-    said.append(
+    texts.append(
         "B10 lies below its interval in up to some 8 % of the fits where 5 % are nominal (page "
-        "'Intervals of fitted "
-        "S-N lines')."
+        "'Intervals of fitted S-N lines')."
     )
-    return said
+    return texts
 
 
-def table_of_tests(fit: Fit) -> Table:
+def table_of_tests(fit: Fit | CatalogueFit) -> Table:
     """List the tests as they were given."""
     names = list(dict.fromkeys(name for row in fit.tests.rows for name in row))
     rows = [
@@ -198,7 +208,9 @@ def write_fit(fit: Fit, path: Path | str) -> Path:
         partial(figures.sn_line, fit), partial(figures.predicted, fit), partial(figures.pairs, fit)
     )
     under = [f"{capital(key.replace('_', ' '))}: {value}" for key, value in fit.given.items()]
-    digest = f", sha256 {fit.tests.digest[:16]}" if fit.tests.digest else ""
+    digest = ""
+    if fit.tests.digest:
+        digest = f", sha256 {fit.tests.digest[:16]}"
     content = {
         "name": fit.name,
         "synthetic": SYNTHETIC in fit.tests.name.lower(),
@@ -246,7 +258,10 @@ def _factor(ds: xr.Dataset, deviation: float) -> str:
     The interval by the tests so far narrows as the deviation does.
     """
     low, high = np.log(ds["interval_now"].values)
-    width = high - low if math.isfinite(high - low) else 2.0 * 1.645 * float(ds["deviation_now"])
+    if math.isfinite(high - low):
+        width = high - low
+    else:
+        width = 2.0 * 1.645 * float(ds["deviation_now"])
     return (
         "a factor of "
         f"{rounded(math.exp(min(width * deviation / float(ds['deviation_now']), 50.0)), 2)}"
@@ -262,24 +277,24 @@ def next_sentences(ds: xr.Dataset) -> list[str]:
     )
     hours = float(ds["hours"].values[ds["chosen"].values].sum())
     low, high = ds["interval_now"].values
-    known = (
-        "without end"
-        if math.isinf(low)
-        else f"{rounded(low)} to {rounded(high)} h"
-        if math.isfinite(high)
-        else f"at least {rounded(low)} h"
-    )
+    if math.isinf(low):
+        known = "without end"
+    elif math.isfinite(high):
+        known = f"{rounded(low)} to {rounded(high)} h"
+    else:
+        known = f"at least {rounded(low)} h"
     return [
         f"B10 of the design is {known} by the tests so far (90 %), {now} between both ends.",
         f"Test {listing([f'candidate {i}' for i in chosen])}, about {rounded(hours)} h in all: on "
-        "average that leaves "
-        f"{after}. As many random candidates leave {random}.",
+        f"average that leaves {after}. As many random candidates leave {random}.",
     ]
 
 
 def until_sentences(ds: xr.Dataset, factor: float) -> list[str]:
     """Return sentences on how many more tests are needed, from the campaigns of `tests_until`."""
-    tests, hours, most = ds["tests"].values, ds["hours"].values, int(ds.attrs["most"])
+    tests = ds["tests"].values
+    hours = ds["hours"].values
+    most = int(ds.attrs["most"])
     if not tests.max() > 0:
         return [
             f"The ends of B10 lie within a factor of {cell(factor)} already: no further test "
@@ -290,20 +305,20 @@ def until_sentences(ds: xr.Dataset, factor: float) -> list[str]:
         many = int(np.isinf(tests).sum())
         return [
             f"For a factor of {cell(factor)} more than {most} tests are needed, in {many} of "
-            f"{len(tests)} simulated "
-            "campaigns that repeat this plan. Give other candidates, or a wider factor."
+            f"{len(tests)} simulated campaigns that repeat this plan. Give other candidates, or a "
+            "wider factor."
         ]
     low, middle, high = (
         str(int(end)) if math.isfinite(end) else f"more than {most}" for end in ends
     )
     times = np.quantile(hours, (0.05, 0.5, 0.95), method="inverted_cdf")
-    longest = f"to {rounded(times[2], 2)} h" if math.isfinite(times[2]) else "h or more"
+    longest = "h or more"
+    if math.isfinite(times[2]):
+        longest = f"to {rounded(times[2], 2)} h"
     return [
         f"For a factor of {cell(factor)} about {middle} more tests are needed, "
         f"{rounded(times[1], 2)} h of testing.",
         f"That is the median of {len(tests)} simulated campaigns that repeat this plan, each by a "
-        "line that the tests "
-        f"allow; nine of ten need {low} to {high} tests, {rounded(times[0], 2)} {longest}. Ask "
-        "again after each "
-        "test.",
+        f"line that the tests allow; nine of ten need {low} to {high} tests, "
+        f"{rounded(times[0], 2)} {longest}. Ask again after each test.",
     ]

@@ -67,7 +67,10 @@ def _is_rounding(ds: xr.Dataset, name: str) -> bool:
 
 
 def _head(ds: xr.Dataset, name: str) -> str:
-    units = "%" if name in IN_PER_CENT else unit_text(str(ds[name].attrs["units"]))
+    if name in IN_PER_CENT:
+        units = "%"
+    else:
+        units = unit_text(str(ds[name].attrs["units"]))
     words = HEADS.get(name) or capital(str(ds[name].attrs["long_name"]))
     return with_unit(words, units)
 
@@ -97,36 +100,43 @@ def sentences(ds: xr.Dataset) -> list[str]:
     """
     own = along_cases(ds)
     used = own["friction_force_share"]
-    said = []
+    texts = []
     if used.notnull().any():
         best = own.isel(case=int(np.nanargmax(used.values.round(4))))  # the first of equal ones
         creepages = ", ".join(
-            f"{best[name].attrs['long_name']} {rounded(_shown(best, name))} "
-            f"{'/mm' if name == 'spin' else '%'}"
+            f"{best[name].attrs['long_name']} {rounded(_shown(best, name))} {_unit_shown(name)}"
             for name in CREEPAGES
             if float(best[name]) != 0.0
         )
         share = rounded(PER_CENT * float(best["friction_force_share"]))
-        said.append(
+        texts.append(
             f"The largest friction force is {share} % of mu F_N, at {creepages or 'no creepage'}."
         )
     missed = int((own["converged"] == 0).sum())
     if missed:
-        said.append(
+        texts.append(
             f"{missed} of {own.sizes['case']} cases have not converged: the friction law is not "
             "met there."
         )
     steep = int((own["steep_friction"] == 1).sum())
     if steep:
-        said.append(
+        texts.append(
             f"{capital(own['steep_friction'].attrs['long_name'])} in {steep} of "
             f"{own.sizes['case']} cases."
         )
-    return said
+    return texts
 
 
 def _shown(one: xr.Dataset, name: str) -> float:
-    return float(one[name]) * (PER_CENT if name in IN_PER_CENT else 1.0)
+    if name in IN_PER_CENT:
+        return float(one[name]) * PER_CENT
+    return float(one[name])
+
+
+def _unit_shown(creepage: str) -> str:
+    if creepage == "spin":
+        return "/mm"
+    return "%"
 
 
 def write_patch(

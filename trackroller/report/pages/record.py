@@ -112,17 +112,18 @@ def _used(ds: xr.Dataset, option: str) -> str:
     if option != "contact_model" or "contact_model_used" not in ds or ds["contact_model_used"].ndim:
         return ""
     used = solved_by(ds).item()
-    return f" (solved by {used})" if used != ds.attrs[option] else ""
+    if used != ds.attrs[option]:
+        return f" (solved by {used})"
+    return ""
 
 
 def body_materials(materials: Mapping[str, Mapping[str, Any]]) -> list[tuple[str, list[Row], str]]:
     """Return head, values and source of each material, once if both bodies are of the same."""
     roller, guide = (materials[f"{body}_material"] for body in BODIES)
-    by_body = (
-        [("roller and guide", roller)]
-        if roller == guide
-        else [("roller", roller), ("guide", guide)]
-    )
+    if roller == guide:
+        by_body = [("roller and guide", roller)]
+    else:
+        by_body = [("roller", roller), ("guide", guide)]
     return [
         (head, material_rows(record.as_material(values)), material_source(values))
         for head, values in by_body
@@ -144,9 +145,9 @@ def command_of(ds: xr.Dataset, words: tuple[str, ...] = ("solve",)) -> str:
 def _options_of(ds: xr.Dataset) -> dict[str, str]:
     """Return the options of a result: those that decide most, and all that are not the default."""
     model = str(ds.attrs["contact_model"])
-    found = {}
+    options = {}
     for name, option in OPTIONS.items():
         text = ds.attrs.get(name)
         if text and (name in DECISIVE or text != option.attribute(option.default, model)):
-            found[name] = str(text)
-    return found
+            options[name] = str(text)
+    return options

@@ -37,8 +37,8 @@ from trackroller.report.words.assumptions import (
 )
 from trackroller.results.answer import Answer, plain_value
 from trackroller.results.answers import answer_of
-from trackroller.results.flags import flags_of
 from trackroller.results.roller_answer import answer_of_roller, materials_of_case
+from trackroller.results.validity_flags import flags_of
 from trackroller.roller import stored_inputs as record
 from trackroller.roller.dataset import solved_by
 from trackroller.roller.duty import OVERROLLINGS, duty_of, duty_words, strokes_of, years
@@ -96,6 +96,9 @@ def render(ds: xr.Dataset, name: str = "") -> str:
 
         drawn = pictures(*contact.figures_of(ds), partial(wear.over_patch, ds))
     answer = named_answer(ds, name or "Track roller")
+    picture = ""
+    if "normal_force" in ds:
+        picture = drawing(ds)
     return record_text(
         answer,
         KIND,
@@ -103,7 +106,7 @@ def render(ds: xr.Dataset, name: str = "") -> str:
         signed=[
             (head.capitalize(), sheet_of(ds).get(head, "")) for head in (*SHEET_FIELDS, "signature")
         ],
-        drawing=drawing(ds) if "normal_force" in ds else "",
+        drawing=picture,
         figures=[drawn[one] for one in SHOWN if one in drawn],
         figures_title="Shear and stress",
         aside=_less_stressed(ds),
@@ -118,8 +121,8 @@ def render(ds: xr.Dataset, name: str = "") -> str:
 def named_answer(ds: xr.Dataset, name: str) -> Answer:
     """Return the record of one roller with the name of its sheet."""
     answer = answer_of_roller(ds)
-    told = sheet_of(ds)
-    return replace(answer, facts={**answer.facts, "name": name, "date": told.get("date", "")})
+    sheet = sheet_of(ds)
+    return replace(answer, facts={**answer.facts, "name": name, "date": sheet.get("date", "")})
 
 
 def notes_of_sheet(ds: xr.Dataset) -> dict[str, list[str]]:
@@ -147,7 +150,9 @@ def sheet_inputs(ds: xr.Dataset) -> list[Row]:
     inputs = inputs_of(ds)
     if strokes_of(ds):
         inputs.pop(OVERROLLINGS)  # the strokes give it; the table of lives shows it
-    from_database = ["friction_coefficient"] if friction_records(ds.attrs) else []
+    from_database = []
+    if friction_records(ds.attrs):
+        from_database = ["friction_coefficient"]
     return [*rows, *input_rows(inputs, record.not_given_of(ds), from_database)]
 
 
@@ -155,9 +160,10 @@ def _less_stressed(ds: xr.Dataset) -> str:
     """Name the stress figure that the print leaves out: that of the contact with the lower peak
     stress.
     """
-    peaks = (
-        np.nan_to_num(ds["peak_stress"].max("body").values) if "peak_stress" in ds else np.zeros(2)
-    )
+    if "peak_stress" in ds:
+        peaks = np.nan_to_num(ds["peak_stress"].max("body").values)
+    else:
+        peaks = np.zeros(2)
     return f"contact_{np.argmin(peaks) + 1}_stress"
 
 
@@ -168,15 +174,11 @@ def print_facts(ds: xr.Dataset) -> None:
     """
     answer = answer_of_roller(ds)
     print_text(headline_of(answer).text)
-    converged = "converged" if answer.facts["converged"] else "NOT converged"
+    converged = "NOT converged"
+    if answer.facts["converged"]:
+        converged = "converged"
     print_text(f"regime: {REGIME_LABELS[int(ds['regime'])]}, {converged}")
-    rows = [[row.words, row.value, row.unit, row.origin] for row in sheet_inputs(ds)]
-    print_table(["input", "value", "unit", "from"], rows, (1,))
-    if any(row[3] == "example" for row in rows):
-        print_text(
-            "Values from 'example' were not given: the paper's example has them. Give yours."
-        )
-    print_text(options_text(ds), "options")
+    _print_inputs(ds)
     if answer.facts["regime"] == "failed":  # nothing else is known
         for caution in answer.warnings:
             if caution.code == "not_given":
@@ -192,6 +194,17 @@ def print_facts(ds: xr.Dataset) -> None:
     for part in answer.parts:
         print_part(answer, part)
     print_below_headline(answer)
+
+
+def _print_inputs(ds: xr.Dataset) -> None:
+    """Print the inputs of a roller, and the options of the calculation."""
+    rows = [[row.words, row.value, row.unit, row.origin] for row in sheet_inputs(ds)]
+    print_table(["input", "value", "unit", "from"], rows, (1,))
+    if any(row[3] == "example" for row in rows):
+        print_text(
+            "Values from 'example' were not given: the paper's example has them. Give yours."
+        )
+    print_text(options_text(ds), "options")
 
 
 @lives_in_years
@@ -243,7 +256,8 @@ def as_json(ds: xr.Dataset) -> str:
             name: {"value": plain_value(v), "default": is_default(name, v)}
             for name, v in inputs.items()
         }
-        content["materials"], content["friction"] = materials_of(ds), friction_records(ds.attrs)
+        content["materials"] = materials_of(ds)
+        content["friction"] = friction_records(ds.attrs)
         content["flags"] = [vars(flag) for flag in flags_of(ds)]
         content["options"] = {k: plain_value(v) for k, v in ds.attrs.items() if k not in _RECORDS}
         content["versions"] = versions()

@@ -47,7 +47,8 @@ def write_spectrum(ds: xr.Dataset, path: Path | str, file: str = "spectrum.yaml"
     from trackroller.report.figures import spectrum  # heavy: matplotlib
 
     drawn = pictures(partial(spectrum.damage_by_block, ds))
-    inputs, given = json.loads(ds.attrs["roller"]), json.loads(ds.attrs[NOT_GIVEN])
+    inputs = json.loads(ds.attrs["roller"])
+    given = json.loads(ds.attrs[NOT_GIVEN])
     text = record_text(
         answer_of_spectrum(ds),
         KIND,

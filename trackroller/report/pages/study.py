@@ -28,9 +28,9 @@ from trackroller.report.tables.indices import index_tables
 from trackroller.report.tables.table import Table, cell
 from trackroller.report.workbook import export, write_answer
 from trackroller.results.answer import Answer
-from trackroller.results.judging import OPTIMUM
-from trackroller.results.looks import UNTIL
+from trackroller.results.interim_looks import UNTIL
 from trackroller.results.results import Results, shown_answer
+from trackroller.results.search_fitness import OPTIMUM
 from trackroller.roller.dataset import solved_by
 from trackroller.roller.doubts import doubts
 from trackroller.roller.stored_inputs import NOT_GIVEN, as_material
@@ -38,8 +38,8 @@ from trackroller.study.store.put import put_text, replacing
 
 OPTIONS = tuple(option.name for option in parameters.OPTIONS.values() if option.recorded)
 _ELSEWHERE = (
-    "notice study materials friction comment title coordinates Conventions "
-    "life_conventions sign_conventions design"
+    "notice study materials friction comment title coordinates Conventions life_conventions "
+    "sign_conventions design"
 )
 # attributes that do not stand in the record
 _NO_RECORD = {*_ELSEWHERE.split(), *OPTIONS, OPTIMUM, UNTIL, NOT_GIVEN}
@@ -138,12 +138,16 @@ def _doubts(results: Results) -> list[str]:
 
 def _levels(results: Results, name: str, value: Any) -> Any:
     """Return the levels of an option that is a factor, otherwise its value."""
-    return results.levels(name) if name in results.factors else value
+    if name in results.factors:
+        return results.levels(name)
+    return value
 
 
 def _option_text(value: Any) -> str:
     """Write an option: a list, as of a factor or of terms, as its entries."""
-    return ", ".join(map(str, value)) if isinstance(value, (list, tuple)) else str(value)
+    if isinstance(value, (list, tuple)):
+        return ", ".join(map(str, value))
+    return str(value)
 
 
 def models_used(ds: xr.Dataset) -> list[inputs.Row]:
@@ -186,5 +190,8 @@ def solution_facts(results: Results) -> list[inputs.Row]:
 
 
 def _finite(ds: xr.Dataset, name: str) -> np.ndarray:
-    values = ds[name].values.astype(float) if name in ds else np.empty(0)
+    if name in ds:
+        values = ds[name].values.astype(float)
+    else:
+        values = np.empty(0)
     return values[np.isfinite(values)]

@@ -39,17 +39,17 @@ class Axis:
 
         Infinite and undefined values stand at its ends, and so does 0 on a logarithmic axis.
         """
-        found = np.asarray(list(values), dtype=float)
-        found = found[np.isfinite(found)]
-        positive = found[found > 0]
+        numbers = np.asarray(list(values), dtype=float)
+        numbers = numbers[np.isfinite(numbers)]
+        positive = numbers[numbers > 0]
         if logarithmic is None:
             wide = positive.size > 0 and positive.max() > WIDE_RATIO * positive.min()
-            logarithmic = bool(wide and (found >= 0).all())
+            logarithmic = bool(wide and (numbers >= 0).all())
         if logarithmic and positive.size:
             return cls(*_logarithmic_ends(float(positive.min()), float(positive.max()), room), True)
-        if not found.size:
+        if not numbers.size:
             return cls(0.0, 1.0)
-        return cls(*_linear_ends(float(found.min()), float(found.max()), room))
+        return cls(*_linear_ends(float(numbers.min()), float(numbers.max()), room))
 
     def place(self, value: float) -> float:
         """Return where a value stands, from 0 to 100 %."""
@@ -61,8 +61,10 @@ class Axis:
             if math.isinf(value):
                 return 100.0
             share = math.log(value / self.low) / math.log(self.high / self.low)
+        elif self.high == self.low:
+            share = 0.5
         else:
-            share = 0.5 if self.high == self.low else (value - self.low) / (self.high - self.low)
+            share = (value - self.low) / (self.high - self.low)
         return 100 * min(1.0, max(0.0, share))
 
     def ticks(self, length: float) -> list[tuple[float, str]]:
@@ -148,18 +150,20 @@ def _steps(low: float, high: float) -> list[list[float]]:
     steps = sorted(
         one * 10.0**exponent for exponent in (power, power + 1) for one in (1, 2, 2.5, 5)
     )
-    found = []
+    marks = []
     for step in steps:
         first = math.ceil(low / step - 1e-9)
         last = math.floor(high / step + 1e-9)
         if 1 <= last - first <= 20:
-            found.append([float(f"{one * step:.12g}") for one in range(first, last + 1)])
-    return found
+            marks.append([float(f"{one * step:.12g}") for one in range(first, last + 1)])
+    return marks
 
 
 def tick_text(value: float) -> str:
     """Write the number of a tick: '100,000', but '10⁶'."""
-    power = math.log10(value) if value > 0 else 0.0
+    power = 0.0
+    if value > 0:
+        power = math.log10(value)
     if (power >= 6 or power <= -4) and abs(power - round(power)) < 1e-9:
         return f"10{str(round(power)).translate(_RAISED)}"
     return grouped(value, 4)

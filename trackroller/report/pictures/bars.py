@@ -76,7 +76,9 @@ class Bars:
         values = answer.table[names].to_numpy(dtype=float).ravel()
         axis = Axis.of([*values, *(value for value, _ in bounds)])
         unit = unit_text(answer.output[2]).replace("–", "")
-        length = SHORT if any(column.role == "use" for column in answer.columns) else LENGTH
+        length = LENGTH
+        if any(column.role == "use" for column in answer.columns):
+            length = SHORT
         return cls(capital(answer.output[1]), unit, axis, columns, False, bounds, state, length)
 
     def head(self) -> Markup:
@@ -97,7 +99,12 @@ class Bars:
     def _bound(self, value: float, text: str) -> Markup:
         place = self.axis.place(value)
         reach = 50 * width_of(text) / self.length
-        anchor = "start" if place < reach else "end" if place > 100 - reach else "middle"
+        if place < reach:
+            anchor = "start"
+        else:
+            anchor = "middle"
+            if place > 100 - reach:
+                anchor = "end"
         return label(text, place, "10", anchor, "rt")
 
     def row(self, row: Mapping[Any, Any]) -> Markup:
@@ -105,7 +112,10 @@ class Bars:
         colour = COLOURS.get(str(row.get(self.state, "")), "cm")
         grid = [upright("g", self.axis.place(value)) for value in self._grid()]
         required = [upright("r", self.axis.place(value)) for value, _ in self.bounds]
-        marks = self._share_marks(row) if self.shares else self._range_marks(row)
+        if self.shares:
+            marks = self._share_marks(row)
+        else:
+            marks = self._range_marks(row)
         return picture(joined([*grid, *required, *marks]), ROW, self.words(row), colour)
 
     def _grid(self) -> list[float]:
@@ -113,7 +123,9 @@ class Bars:
         if self.shares:
             return [0.0, 0.25, 0.5, 0.75, 1.0]
         powers = self.axis.powers()
-        return powers if len(powers) > 1 else [value for value, _ in self.axis.ticks(self.length)]
+        if len(powers) > 1:
+            return powers
+        return [value for value, _ in self.axis.ticks(self.length)]
 
     def _share_marks(self, row: Mapping[Any, Any]) -> Iterator[Markup]:
         for column in self.columns.values():
@@ -137,35 +149,43 @@ class Bars:
         """
         first = next(iter(self.columns.values()))
         low = float(row[first.name])
-        high = float(row[first.until]) if first.until else low
+        high = low
+        if first.until:
+            high = float(row[first.until])
         best = float(row.get("best", math.nan))
         if not (math.isnan(best) or math.isnan(low)):
             yield line("t", self.axis.place(low), "50%", self.axis.place(best), "50%")
         if not math.isnan(low):
             start = self.axis.place(low)
-            end = self.axis.place(high) if not math.isnan(high) else start
+            end = start
+            if not math.isnan(high):
+                end = self.axis.place(high)
             if end - start < DIFFERENT:
                 yield dot("d", start, "50%", 4.5)
             else:
                 yield line("w", start, "50%", end, "50%")
-        median = float(row["median"]) if "median" in self.columns else math.nan
+        median = math.nan
+        if "median" in self.columns:
+            median = float(row["median"])
         if not math.isnan(median):
             yield line("q", self.axis.place(median), "25%", self.axis.place(median), "75%")
 
     def words(self, row: Mapping[Any, Any]) -> str:
         """Return the numbers of a bar in words."""
-        said = []
+        texts = []
         for column in self.columns.values():
             low = float(row[column.name])
             if math.isnan(low):
                 continue
-            high = float(row[column.until]) if column.until else low
+            high = low
+            if column.until:
+                high = float(row[column.until])
             if self.shares:
                 text = " to ".join(dict.fromkeys((grouped(100 * low, 3), grouped(100 * high, 3))))
-                said.append(f"{column.title} {text} %")
+                texts.append(f"{column.title} {text} %")
             else:
-                said.append(f"{column.title} {carried_range(low, high)} {self.units}".rstrip())
-        return ", ".join(said) or "unknown"
+                texts.append(f"{column.title} {carried_range(low, high)} {self.units}".rstrip())
+        return ", ".join(texts) or "unknown"
 
     def key(self) -> list[tuple[Markup, str]]:
         """Return the marks of a bar with their words."""
@@ -192,10 +212,10 @@ def drawn_columns(answer: Answer) -> dict[str, Column]:
     """Return the columns that the bars of a table draw: those of role `bar`, otherwise those of a
     share.
     """
-    found = [column for column in answer.columns if column.role == "bar"]
-    if not found:
-        found = [column for column in answer.columns if column.kind == "share"]
-    return {column.name: column for column in found}
+    bars = [column for column in answer.columns if column.role == "bar"]
+    if not bars:
+        bars = [column for column in answer.columns if column.kind == "share"]
+    return {column.name: column for column in bars}
 
 
 def _sample(mark: Markup) -> Markup:

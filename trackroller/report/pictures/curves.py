@@ -82,7 +82,8 @@ def _drawn(answer: Answer, curve: Curve, axis: Axis) -> Markup:
     parts = [upright_axis(axis, HEIGHT)]
     if numeric:
         parts += [_band(curve, axis, places), required_levels(answer, axis)]
-        parts += _dots(curve, axis, places) if len(places) <= MOST_NAMES else []
+        if len(places) <= MOST_NAMES:
+            parts += _dots(curve, axis, places)
         parts.append(_below(curve))
     else:
         parts += [
@@ -159,13 +160,13 @@ def points(places: Sequence[tuple[float, float]]) -> str:
 
 def _runs(known: np.ndarray) -> list[list[int]]:
     """Return neighbouring levels that have a value."""
-    found: list[list[int]] = []
+    runs: list[list[int]] = []
     for i in np.flatnonzero(known):
-        if found and found[-1][-1] == i - 1:
-            found[-1].append(int(i))
+        if runs and runs[-1][-1] == i - 1:
+            runs[-1].append(int(i))
         else:
-            found.append([int(i)])
-    return found
+            runs.append([int(i)])
+    return runs
 
 
 def _dots(curve: Curve, axis: Axis, places: Sequence[float]) -> list[Markup]:
@@ -200,7 +201,9 @@ def caption(answer: Answer) -> str:
     if any(math.isfinite(end) for one in answer.required for end in (one.least, one.most)):
         text += "; dashed: required"
     ratios = all(curve.by_ratio for curve in answer.curves)
-    height = "× is the largest over" if ratios else "Δ is the largest less"
+    height = "Δ is the largest less"
+    if ratios:
+        height = "× is the largest over"
     text += f". {height} the smallest middle."
     numbered = [
         curve for curve in answer.curves if not curve.ordered and len(curve.levels) > MOST_NAMES
@@ -211,8 +214,8 @@ def caption(answer: Answer) -> str:
         )
         text += f" {curve.title}: {names}."
     left = [f"{curve.title} {curve.left_out:,}" for curve in answer.curves if curve.left_out]
-    return (
-        f"{text} Valid cases without a partner at some level are left out: {', '.join(left)}."
-        if left
-        else text
-    )
+    if left:
+        return (
+            f"{text} Valid cases without a partner at some level are left out: {', '.join(left)}."
+        )
+    return text

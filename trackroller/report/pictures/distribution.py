@@ -47,9 +47,10 @@ def draw_distribution(answer: Answer, data: Mapping[str, Any]) -> Picture:
     }
     shown = dict(list(values.items())[:MOST_LINES])
     bounds = bounds_of(answer)
-    every = (
-        np.concatenate([one[np.isfinite(one)] for one in shown.values()]) if shown else np.empty(0)
-    )
+    if shown:
+        every = np.concatenate([one[np.isfinite(one)] for one in shown.values()])
+    else:
+        every = np.empty(0)
     across = Axis.of([*every[every > 0], *(value for value, _ in bounds)])
     up = Axis(0.0, 100.0)
     lines = [_reached(one, across, place) for place, one in enumerate(shown.values())]
@@ -67,13 +68,11 @@ def draw_distribution(answer: Answer, data: Mapping[str, Any]) -> Picture:
         if one.size
     )
     drawn = framed(joined(parts), FLAT, words, left=46, right=14, top=24)
-    more = (
-        f" {len(values) - len(shown):,} more candidates are not drawn."
-        if len(values) > len(shown)
-        else ""
-    )
+    further = ""
+    if len(values) > len(shown):
+        further = f" {len(values) - len(shown):,} more candidates are not drawn."
     return Picture(
-        drawn, caption_of(data, f"Share of the conditions that reach a value [%].{more}")
+        drawn, caption_of(data, f"Share of the conditions that reach a value [%].{further}")
     )
 
 
@@ -89,15 +88,21 @@ def _reached(values: np.ndarray, across: Axis, place: int) -> Markup:
     if not ordered.size:
         return Markup()
     rows = np.unique(np.linspace(0, ordered.size - 1, min(MOST_STEPS, ordered.size)).astype(int))
-    line = [(0.0, 0.0)] if ordered[0] > 0 else []
+    line = []
+    if ordered[0] > 0:
+        line = [(0.0, 0.0)]
     for row in rows:
         reached = 100 * (ordered.size - row) / ordered.size
-        x = across.place(float(ordered[row])) if ordered[row] > -math.inf else 0.0
+        x = 0.0
+        if ordered[row] > -math.inf:
+            x = across.place(float(ordered[row]))
         line.append((x, 100 - reached))
     last = float(ordered[-1])
     if math.isfinite(last):
         line.append((across.place(last), 100.0))
-    kind = "cm" if place == 0 else "cg"
+    kind = "cg"
+    if place == 0:
+        kind = "cm"
     return element(
         "polyline", class_=f"l {kind} {STROKES[place % len(STROKES)]}".rstrip(), points=points(line)
     )
@@ -115,16 +120,23 @@ def _names_of_lines(shown: Mapping[str, np.ndarray], across: Axis) -> list[Marku
             continue
         x = across.place(float(np.quantile(known, rows[place], method="nearest")))
         end = x > 70
-        kind = "strong cm" if place == 0 else "strong"
+        kind = "strong"
+        if place == 0:
+            kind = "strong cm"
         y = percent_place(100 * float(rows[place]))
+        anchor = "start"
+        shift = 10
+        if end:
+            anchor = "end"
+            shift = -10
         parts.append(
             label(
                 cut(name, WIDE / 2),
                 x,
                 y,
-                "end" if end else "start",
+                anchor,
                 kind,
-                dx=-10 if end else 10,
+                dx=shift,
                 dy=-2,
             )
         )

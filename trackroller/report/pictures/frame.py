@@ -31,7 +31,9 @@ STEP = 12  # of the room beside a picture that the style sheet knows [px]
 def with_unit(title: str, units: str) -> str:
     """Return a title with its unit in brackets; a plain number has none."""
     unit = unit_text(units).replace("–", "")
-    return f"{title} [{unit}]" if unit else title
+    if unit:
+        return f"{title} [{unit}]"
+    return title
 
 
 def upright_axis(axis: Axis, height: float) -> Markup:
@@ -68,7 +70,9 @@ def lower_names(names: Sequence[str], places: Sequence[float], width: float) -> 
     parts = []
     for name, place in zip(names, places, strict=True):
         text = cut(name, share)
-        whole = element("title", name) if text != name else ""
+        whole = ""
+        if text != name:
+            whole = element("title", name)
         content = joined([Markup.escape(text), Markup(whole)])
         at = percent_place(place)
         parts.append(element("text", content, x=at, y="100%", dy=15, text_anchor="middle"))
@@ -121,4 +125,6 @@ def output_title(answer: Answer) -> str:
 def left_out_words(picture_data: Mapping[str, Any]) -> str:
     """Return how many rows a picture leaves out; '' for none."""
     left = int(picture_data.get("left_out", 0))
-    return f"{left:,} rows are not drawn: they are not valid at every level." if left else ""
+    if left:
+        return f"{left:,} rows are not drawn: they are not valid at every level."
+    return ""

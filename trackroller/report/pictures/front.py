@@ -49,13 +49,9 @@ def draw_front(answer: Answer, data: Mapping[str, Any]) -> Picture | None:
     across, up = Axis.of(values[:, 0]), Axis.of(values[:, 1])
     parts = [upright_axis(up, TALL)]
     rows = _thinned(front)
+    styles = np.where(front, "d small cm", "ring")
     parts += [
-        dot(
-            "d small cm" if front[i] else "ring",
-            across.place(values[i, 0]),
-            100 - up.place(values[i, 1]),
-            2.6,
-        )
+        dot(styles[i], across.place(values[i, 0]), 100 - up.place(values[i, 1]), 2.6)
         for i in rows
         if known[i]
     ]
@@ -75,17 +71,17 @@ def draw_front(answer: Answer, data: Mapping[str, Any]) -> Picture | None:
         f"{one['title']}: {grouped(one['x'], 3)}, {grouped(one['y'], 3)}" for one in named
     )
     drawn = framed(joined(parts), TALL, spoken or title, left=left, right=14, top=24)
-    said = f"Small dots: {int(front.sum()):,} designs that no other one beats"
+    caption = f"Small dots: {int(front.sum()):,} designs that no other one beats"
     if (~front).any():
-        said += "; rings: other designs"
-    said += "; large: those of the headline."
+        caption += "; rings: other designs"
+    caption += "; large: those of the headline."
     if len(values[0]) < len(words):
-        said += f" Not drawn: {', '.join(words[2:])}."
+        caption += f" Not drawn: {', '.join(words[2:])}."
     if not known.all():
-        said += f" Not drawn, because a goal is not known: {int((~known).sum()):,} designs."
+        caption += f" Not drawn, because a goal is not known: {int((~known).sum()):,} designs."
     if len(rows) < len(front):
-        said += f" {len(front) - len(rows):,} designs are not drawn."
-    return Picture(drawn, caption_of(data, said), beside=True)
+        caption += f" {len(front) - len(rows):,} designs are not drawn."
+    return Picture(drawn, caption_of(data, caption), beside=True)
 
 
 def _thinned(best: np.ndarray) -> list[int]:
@@ -93,7 +89,10 @@ def _thinned(best: np.ndarray) -> list[int]:
     others = np.flatnonzero(~best)
     room = max(0, MOST_POINTS - int(best.sum()))
     if len(others) > room:
-        others = others[np.linspace(0, len(others) - 1, room).astype(int)] if room else others[:0]
+        if room:
+            others = others[np.linspace(0, len(others) - 1, room).astype(int)]
+        else:
+            others = others[:0]
     front = np.flatnonzero(best)
     if len(front) > MOST_POINTS:
         front = front[np.linspace(0, len(front) - 1, MOST_POINTS).astype(int)]
@@ -121,9 +120,15 @@ def _named_dots(
         title = str(one["title"])
         end = _stands_left(title, x, height, dots)
         parts.append(dot("d cm", x, y, 5.5))
-        text = cut(title, WIDE * (x if end else 100 - x) / 100)
-        anchor = "end" if end else "start"
-        parts.append(label(text, x, f"{height:.0f}", anchor, "strong", dx=-12 if end else 12, dy=4))
+        room = 100 - x
+        anchor = "start"
+        shift = 12
+        if end:
+            room = x
+            anchor = "end"
+            shift = -12
+        text = cut(title, WIDE * room / 100)
+        parts.append(label(text, x, f"{height:.0f}", anchor, "strong", dx=shift, dy=4))
     return parts
 
 

@@ -40,11 +40,10 @@ def ratios_of(own: Any, other: Any) -> np.ndarray:
 def draw_like(answer: Answer, data: Mapping[str, Any]) -> Picture:
     """Draw ratios of results on like rows, one row of dots for each model and output."""
     ratios = {model: ratios_of(one["y"], one["x"]) for model, one in data["points"].items()}
-    every = (
-        np.concatenate([one[np.isfinite(one)] for one in ratios.values()])
-        if ratios
-        else np.empty(0)
-    )
+    if ratios:
+        every = np.concatenate([one[np.isfinite(one)] for one in ratios.values()])
+    else:
+        every = np.empty(0)
     across = Axis.of([*every, 1.0])
     height = max(60.0, 44.0 * len(ratios))
     left = max([width_of(cut(name, 150)) for name in ratios], default=40.0) + 16
@@ -56,16 +55,20 @@ def draw_like(answer: Answer, data: Mapping[str, Any]) -> Picture:
         y = 100 * (place + 0.5) / len(ratios)
         parts.append(label(cut(name, 150), 0, percent_place(y), "end", dx=-10, dy=4))
         known = one[np.isfinite(one)]
-        kept = (
-            known if known.size <= MOST_DOTS else np.quantile(known, np.linspace(0, 1, MOST_DOTS))
-        )
+        if known.size <= MOST_DOTS:
+            dots = known
+        else:
+            dots = np.quantile(known, np.linspace(0, 1, MOST_DOTS))
         spread = 30.0 / len(ratios)
-        for number_of, value in enumerate(kept):
+        for number_of, value in enumerate(dots):
             # golden section: an even scatter without chance
             moved = y + spread * (((number_of * 0.618034) % 1) - 0.5)
+            style = "d faint co"
+            if place % 2 == 0:
+                style = "d faint cm"
             parts.append(
                 dot(
-                    "d faint cm" if place % 2 == 0 else "d faint co",
+                    style,
                     across.place(float(value)),
                     moved,
                     3,
@@ -78,7 +81,9 @@ def draw_like(answer: Answer, data: Mapping[str, Any]) -> Picture:
     )
     pairs = max((int(np.isfinite(one).sum()) for one in ratios.values()), default=0)
     drawn = framed(joined(parts), height, words, left=left, right=14)
-    thinned = f", {MOST_DOTS} of them drawn evenly" if pairs > MOST_DOTS else ""
+    thinned = ""
+    if pairs > MOST_DOTS:
+        thinned = f", {MOST_DOTS} of them drawn evenly"
     return Picture(
         drawn,
         caption_of(

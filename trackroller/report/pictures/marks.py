@@ -40,7 +40,10 @@ def level(kind: str, y: float) -> Markup:
 
 def dot(kind: str, x: float, y: float | str, radius: float) -> Markup:
     """Return a filled circle; `y` is a place in percent or a length."""
-    height = y if isinstance(y, str) else percent_place(y)
+    if isinstance(y, str):
+        height = y
+    else:
+        height = percent_place(y)
     return element("circle", class_=kind, cx=percent_place(x), cy=height, r=radius)
 
 
@@ -48,7 +51,8 @@ def label(
     text: str, x: float, y: str, anchor: str = "middle", kind: str = "", **shift: float
 ) -> Markup:
     """Return a text at a place in percent, moved by `dx` and `dy` [px]."""
-    anchor = "" if anchor == "start" else anchor
+    if anchor == "start":
+        anchor = ""
     return element("text", text, class_=kind, x=percent_place(x), y=y, text_anchor=anchor, **shift)
 
 
@@ -56,7 +60,9 @@ def anchor_at(place: float) -> str:
     """Return the anchor of a text so that it stays inside a picture."""
     if place < 15:
         return "start"
-    return "end" if place > 85 else "middle"
+    if place > 85:
+        return "end"
+    return "middle"
 
 
 def joined(parts: Iterable[Markup]) -> Markup:

@@ -37,8 +37,8 @@ def map_of(answer: Answer) -> tuple[Markup, str] | None:
     own = np.tril(np.nan_to_num(shares), -1)
     if own.max(initial=0.0) < WORTH:
         return None
-    kept = [i for i in range(len(names)) if max(own[i].max(), own[:, i].max()) >= WORTH]
-    return _drawn_map(own[np.ix_(kept, kept)], [names[i] for i in kept])
+    shown = [i for i in range(len(names)) if max(own[i].max(), own[:, i].max()) >= WORTH]
+    return _drawn_map(own[np.ix_(shown, shown)], [names[i] for i in shown])
 
 
 def _drawn_map(shares: np.ndarray, names: Sequence[str]) -> tuple[Markup, str]:

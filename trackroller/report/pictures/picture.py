@@ -25,23 +25,27 @@ class Picture:
     beside: bool = False
 
 
-def caption_of(data: Mapping[str, Any], said: str) -> str:
+def caption_of(data: Mapping[str, Any], words: str) -> str:
     """Return what a picture draws: the words of the record if it has some, otherwise those of the
     picture.
     """
-    parts = [data.get("caption") or said, left_out_words(data)]
+    parts = [data.get("caption") or words, left_out_words(data)]
     return " ".join(part for part in parts if part)
 
 
 def row_names(answer: Answer, count: int) -> list[str]:
     """Return the names of the first rows of the table of an answer, each another one."""
     columns = [column for column in answer.columns if column.role == "name"]
-    found: list[str] = []
+    names: list[str] = []
     for place in range(min(count, len(answer.table))):
         row = answer.table.iloc[place]
         text = ", ".join(_level_words(column, row[column.name]) for column in columns)
-        found.append(text if text and text not in found else f"{text} ({place + 1})".strip())
-    return found
+        if text and text not in names:
+            words = text
+        else:
+            words = f"{text} ({place + 1})".strip()
+        names.append(words)
+    return names
 
 
 def _level_words(column: Column, value: Any) -> str:

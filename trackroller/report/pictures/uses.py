@@ -66,10 +66,12 @@ class UseBars:
         marks = [*grid, upright("r", self.axis.place(1.0))]
         if not math.isnan(low):
             start, end = self.axis.place(low), self.axis.place(high)
-            marks.append(line("w", 0.0 if end - start < DIFFERENT else start, "50%", end, "50%"))
-        words = (
-            "not known"
-            if math.isnan(low)
-            else f"{carried_range(100 * low, 100 * high)} % of the limit"
-        )
+            left = start
+            if end - start < DIFFERENT:
+                left = 0.0
+            marks.append(line("w", left, "50%", end, "50%"))
+        if math.isnan(low):
+            words = "not known"
+        else:
+            words = f"{carried_range(100 * low, 100 * high)} % of the limit"
         return picture(joined(marks), ROW, words, COLOURS.get(str(row.get(self.state, "")), "cm"))

@@ -8,8 +8,8 @@ import xarray as xr
 from trackroller.parameters.validity import VALIDITY
 from trackroller.report.numbers import plain
 from trackroller.report.tables.table import Table
-from trackroller.results.flags import bodies_of
 from trackroller.results.results import Results
+from trackroller.results.validity_flags import bodies_of
 
 OF_LIVES = ("deep_life",)  # validity flags that say how far a life holds
 MOST_REASONS = 8

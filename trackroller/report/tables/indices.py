@@ -28,17 +28,17 @@ def of_output(sens: xr.Dataset, output: str) -> str:
     """Name an output, 'log life of the roller' on the logarithmic scale."""
     part = sens.sel(output=output)
     text = str(part["output_name"].item())
-    return f"log {text}" if str(part["scale"].item()) == "log10" else text
+    if str(part["scale"].item()) == "log10":
+        return f"log {text}"
+    return text
 
 
 def effect_unit(sens: xr.Dataset, output: str) -> str:
     """Name the unit of an effect; on the logarithmic scale it is a power of ten."""
     part = sens.sel(output=output)
-    return (
-        "powers of ten"
-        if str(part["scale"].item()) == "log10"
-        else unit_text(str(part["output_units"].item()))
-    )
+    if str(part["scale"].item()) == "log10":
+        return "powers of ten"
+    return unit_text(str(part["output_units"].item()))
 
 
 def category(sens: xr.Dataset) -> str:

@@ -20,7 +20,7 @@ from trackroller.parameters import (
     PARAMETERS,
 )
 from trackroller.parameters.carriage_fields import parameter_of
-from trackroller.parameters.example import ABSENT
+from trackroller.parameters.example import is_absent
 from trackroller.report.numbers import (
     capital,
     level_text,
@@ -68,7 +68,9 @@ class Row:
         """Return where the value comes from, in a word."""
         if self.database:
             return "database"
-        return "example" if self.default else "given"
+        if self.default:
+            return "example"
+        return "given"
 
 
 def input_rows(
@@ -92,8 +94,8 @@ def input_rows(
             and is_default(name, value)
         )
         optional = name in (*MAPPING_FIELDS, "guide_overrollings_per_hour") and value is None
-        absent = name in (*OF_LIMITS, *ABSENT) and is_default(name, value)
-        if not (drawn or optional or absent):
+        unused = name in OF_LIMITS and is_default(name, value)
+        if not (drawn or optional or unused or is_absent(name, value)):
             row = input_row(name, value)
             if not_given is not None:
                 row = replace(
@@ -107,23 +109,29 @@ def input_row(name: str, value: Any) -> Row:
     """Return an input with its unit; mark the default."""
     if name in PARAMETERS:
         parameter = PARAMETERS[name]
-        shown = (
-            "not given"
-            if value is None
-            else number(value)
-            if isinstance(value, (int, float))
-            else str(value)
-        )
+        if value is None:
+            shown = "not given"
+        elif isinstance(value, (int, float)):
+            shown = number(value)
+        else:
+            shown = str(value)
         words = f"{parameter.long_name} {parameter.symbol}"
         return Row(words, shown, row_unit(parameter.unit), is_default(name, value))
     if name in MAPPING_FIELDS and name not in MECHANICAL_MAPPINGS:
-        shown = entries(json.loads(value) if isinstance(value, str) else value)
+        mapping = value
+        if isinstance(value, str):
+            mapping = json.loads(value)
+        shown = entries(mapping)
     elif name in MAPPING_FIELDS:
-        shown = level_text(
-            name, value if isinstance(value, str) else json.dumps(value, sort_keys=True)
-        )
+        if isinstance(value, str):
+            text = value
+        else:
+            text = json.dumps(value, sort_keys=True)
+        shown = level_text(name, text)
+    elif isinstance(value, Mapping):
+        shown = str(value.get("name", "inline"))
     else:
-        shown = str(value.get("name", "inline")) if isinstance(value, Mapping) else str(value)
+        shown = str(value)
     return Row(plain(name), shown, "", is_default(name, value))
 
 
@@ -133,14 +141,14 @@ def material_rows(material: Material) -> list[Row]:
     for one in map({**PROPERTIES, **ALTERNATIVES}.__getitem__, SHOWN):
         value = getattr(material, one.name)
         # a symbol that the words or the unit hold already is not repeated
-        words = (
-            one.label if one.symbol in f"{one.label} {one.unit}" else f"{one.label} {one.symbol}"
-        )
-        rows.append(
-            Row(words, "not given")
-            if value is None
-            else Row(words, number(value), row_unit(one.unit))
-        )
+        if one.symbol in f"{one.label} {one.unit}":
+            words = one.label
+        else:
+            words = f"{one.label} {one.symbol}"
+        row = Row(words, "not given")
+        if value is not None:
+            row = Row(words, number(value), row_unit(one.unit))
+        rows.append(row)
     rows.append(Row("exponent k of the S-N curve", rounded(material.woehler_exponent)))
     if material.second_exponent is not None:
         rows.append(
@@ -166,12 +174,18 @@ def factor_table(results: Results) -> Table | None:
     ]
     rows = []
     for name in (*results.factors, *follows):
-        levels, parameter = results.levels(name), parameter_of(name)
+        levels = results.levels(name)
+        parameter = parameter_of(name)
         if results.numeric(name) and (name in follows or not results.grid) and len(levels) > 12:
             values = " … ".join(near(v, levels[-1] - levels[0]) for v in (levels[0], levels[-1]))
         else:
             values = ", ".join(level_text(name, v, unit=name in NAMED) for v in levels)
-        symbol, unit = (parameter.symbol, unit_text(parameter.unit)) if parameter else ("", "")
+        if parameter:
+            symbol = parameter.symbol
+            unit = unit_text(parameter.unit)
+        else:
+            symbol = ""
+            unit = ""
         rows.append(
             [
                 f"{capital(long_name(name))} {symbol}",
@@ -181,11 +195,9 @@ def factor_table(results: Results) -> Table | None:
                 len(levels),
             ]
         )
-    return (
-        Table("factors", "Factors", ["Factor", "Unit", "Values", "Set as", "Number"], rows)
-        if rows
-        else None
-    )
+    if rows:
+        return Table("factors", "Factors", ["Factor", "Unit", "Values", "Set as", "Number"], rows)
+    return None
 
 
 def _spec(spec: Any) -> str:
@@ -200,25 +212,27 @@ def _spec(spec: Any) -> str:
             "rows of a table with "
             f"{', '.join(long_name(column) for column in value[0] if column != 'name')}"
         )
-    return "" if kind == "values" else f"{kind} {', '.join(f'{v:g}' for v in value)}"
+    if kind == "values":
+        return ""
+    return f"{kind} {', '.join(f'{v:g}' for v in value)}"
 
 
 def correlation_row(results: Results) -> list[Row]:
     """Return the rank correlations of the study file as one row, if there are any."""
-    said = [
+    texts = [
         f"{long_name(one)} with {long_name(other)} {number(rho)}"
         for one, other, rho in results.config.rank_correlations
     ]
-    return [Row("Rank correlations", "; ".join(said))] if said else []
+    if texts:
+        return [Row("Rank correlations", "; ".join(texts))]
+    return []
 
 
 def base_rows(results: Results) -> list[Row]:
     """List the inputs that are the same in all cases."""
-    names = [
-        *PARAMETERS,
-        *(MATERIAL_FIELDS if "material_pair" not in results.factors else ()),
-        *MAPPING_FIELDS,
-    ]
+    names = [*PARAMETERS, *MATERIAL_FIELDS, *MAPPING_FIELDS]
+    if "material_pair" in results.factors:
+        names = [*PARAMETERS, *MAPPING_FIELDS]
     given = {
         name: results.base.get(name)
         for name in names
@@ -252,7 +266,9 @@ def materials_table(attrs: Mapping[str, Any]) -> Table | None:
         ]
         for name, values in stored_materials(attrs).items()
     ]
-    return Table("materials", "Materials", heads, rows) if rows else None
+    if rows:
+        return Table("materials", "Materials", heads, rows)
+    return None
 
 
 def stored_materials(attrs: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
@@ -263,20 +279,18 @@ def stored_materials(attrs: Mapping[str, Any]) -> dict[str, dict[str, Any]]:
         stored = json.loads(str(attrs.get("materials", "{}")))
     except ValueError:
         return {}
-    return (
-        {n: v for n, v in stored.items() if isinstance(v, dict)} if isinstance(stored, dict) else {}
-    )
+    if isinstance(stored, dict):
+        return {n: v for n, v in stored.items() if isinstance(v, dict)}
+    return {}
 
 
 def material_source(values: Mapping[str, Any]) -> str:
     """Return where the values of a material come from, and which of them are guesses."""
     source = "; ".join(dict.fromkeys(values.get("sources", {}).values())) or "not given"
     guesses = values.get("guesses", ())
-    return f"{source}." + (
-        f" Guesses without a source: {', '.join(map(plain, guesses))}. Measure them."
-        if guesses
-        else ""
-    )
+    if not guesses:
+        return f"{source}."
+    return f"{source}. Guesses without a source: {', '.join(map(plain, guesses))}. Measure them."
 
 
 def friction_table(attrs: Mapping[str, Any]) -> Table | None:
@@ -291,15 +305,21 @@ def friction_table(attrs: Mapping[str, Any]) -> Table | None:
         for one in friction_records(attrs)
     ]
     heads = ["Pair", "Level", "Friction coefficient μ", "Source"]
-    return Table("friction", "Friction from the database", heads, rows) if rows else None
+    if rows:
+        return Table("friction", "Friction from the database", heads, rows)
+    return None
 
 
 def friction_source(record: Mapping[str, Any]) -> str:
     """Return where a friction coefficient of the database comes from, its note, and whether it is a
     placeholder.
     """
-    note = f"; {record['note']}" if record.get("note") else ""
-    return f"{record['source']}{' (placeholder)' * record['placeholder']}{note}"
+    source = str(record["source"])
+    if record["placeholder"]:
+        source += " (placeholder)"
+    if record.get("note"):
+        source += f"; {record['note']}"
+    return source
 
 
 def record_rows(attrs: Mapping[str, Any], skip: set[str]) -> list[Row]:
@@ -312,5 +332,6 @@ def record_rows(attrs: Mapping[str, Any], skip: set[str]) -> list[Row]:
                 text = ", ".join(f"{k} {v}" for k, v in json.loads(text).items())
             except (ValueError, AttributeError):
                 pass
-        rows += [Row(capital(plain(str(key))), text)] if text and key not in skip else []
+        if text and key not in skip:
+            rows += [Row(capital(plain(str(key))), text)]
     return rows

@@ -91,7 +91,10 @@ class Rows:
 def rows_of(answer: Answer, columns: Iterable[Column] | None = None) -> Rows:
     """Return the table of an answer; columns that are equal in all rows are said once."""
     shared = answer.shared
-    every = tuple(answer.columns) if columns is None else tuple(columns)
+    if columns is None:
+        every = tuple(answer.columns)
+    else:
+        every = tuple(columns)
     shown = [one for one in every if one.name not in shared and not _is_hidden(one)]
     records = answer.table.head(MOST_SHOWN).to_dict("records")
     heads = tuple(head_of(answer, column) for column in shown)
@@ -99,13 +102,15 @@ def rows_of(answer: Answer, columns: Iterable[Column] | None = None) -> Rows:
     cells = tuple(
         tuple(cell_of(answer, column, row, head.kind) for column, head in pairs) for row in records
     )
-    first = records[0] if records else {}
-    said = [
+    first = {}
+    if records:
+        first = records[0]
+    notes = [
         _shared_text(answer, column, first) for column in answer.columns if column.name in shared
     ]
     if any(column.units == "h" for column in shown):
-        said.append(year_words())
-    return Rows(heads, cells, tuple(text for text in said if text))
+        notes.append(year_words())
+    return Rows(heads, cells, tuple(text for text in notes if text))
 
 
 def _is_hidden(column: Column) -> bool:
@@ -139,7 +144,10 @@ def classes_of(answer: Answer, column: Column) -> str:
     if _is_number(answer, column):
         classes.append("n")
     elif column.kind == "state":
-        classes.append("v" if column is _first_state(answer) else "s")
+        css = "s"
+        if column is _first_state(answer):
+            css = "v"
+        classes.append(css)
     elif column.role == "name" and _longest(answer, column) <= WRAPPED:
         classes.append("s")
     if column.kind in NARROW_KINDS or column.name in NARROW_NAMES:
@@ -182,11 +190,15 @@ def text_of(answer: Answer, column: Column, row: Mapping[Any, Any]) -> str:
     if column.name == "units":
         return unit_text(str(value)).replace("–", "")
     if isinstance(value, str):
-        return capital(value) if column.name in WORDS else value
+        if column.name in WORDS:
+            return capital(value)
+        return value
     if column.kind in FIGURES:
         return grouped(float(value), FIGURES[column.kind])
     low = float(value)
-    high = float(row[column.until]) if column.until and not _missing(row[column.until]) else low
+    high = low
+    if column.until and not _missing(row[column.until]):
+        high = float(row[column.until])
     return _range_text(answer, column, row, (low, high))
 
 
@@ -214,20 +226,29 @@ def _bounded_text(column: Column, row: Mapping[Any, Any]) -> str:
     most = float(row[column.until])
     unit = unit_text(str(row.get("units", ""))).replace("–", "")
     if math.isnan(value):
-        return "–" if math.isnan(most) else f"at most {grouped(most, 3)} {unit}".strip()
-    bound = f" of {grouped(most, 3)}" if math.isfinite(most) else ""
+        if math.isnan(most):
+            return "–"
+        return f"at most {grouped(most, 3)} {unit}".strip()
+    bound = ""
+    if math.isfinite(most):
+        bound = f" of {grouped(most, 3)}"
     return f"{grouped(value, 3)}{bound} {unit}".strip().replace(" °", "°")
 
 
 def ratio_text(ratio: float) -> str:
     """Write a ratio: three figures near 1, where small differences count, otherwise two."""
-    return grouped(ratio, 3 if 0.1 <= ratio < 10 else 2)
+    figures = 2
+    if 0.1 <= ratio < 10:
+        figures = 3
+    return grouped(ratio, figures)
 
 
 def rows_before_fold(answer: Answer) -> int:
     """Return how many rows stand before the fold; the limits of one roller are never folded."""
     of = len(answer.table)
-    return FIRST_ROWS if of > MOST_ROWS and answer.question != "roller" else of
+    if of > MOST_ROWS and answer.question != "roller":
+        return FIRST_ROWS
+    return of
 
 
 def _missing(value: Any) -> bool:
@@ -236,7 +257,9 @@ def _missing(value: Any) -> bool:
 
 def _level_text(column: Column, value: Any) -> str:
     if isinstance(value, bool):
-        return "yes" if value else "no"
+        if value:
+            return "yes"
+        return "no"
     if isinstance(value, str) or column.name in NAMED:
         return level_text(column.name, value)
     return grouped(float(value))
@@ -252,15 +275,22 @@ def _percent(value: float) -> str:
     if math.isinf(whole):
         return grouped(whole)
     if 0 < whole < 1 or 99 < whole < 100:
-        return grouped(whole, 2 if whole < 1 else 4)
-    return grouped(float(f"{whole:.0f}"), 12) if whole >= 1 else "0"
+        figures = 4
+        if whole < 1:
+            figures = 2
+        return grouped(whole, figures)
+    if whole >= 1:
+        return grouped(float(f"{whole:.0f}"), 12)
+    return "0"
 
 
 def _error_of(row: Mapping[Any, Any], column: Column) -> float:
     """Return the told error of the numbers of a row; it belongs to the output alone."""
     error = row.get("error")
     is_output = column.role == "bar" or column.name in OF_RANGE
-    return float(error) if error is not None and is_output else math.nan
+    if error is not None and is_output:
+        return float(error)
+    return math.nan
 
 
 def _bounds(answer: Answer, column: Column) -> list[float]:
@@ -292,7 +322,8 @@ def fit_columns(answer: Answer, bars: int, width: float = PAGE) -> ColumnSplit:
     """
     shared = answer.shared
     left = width - bars * (BARS if bars == 1 else HALF_BARS)
-    shown, others = [], []
+    shown = []
+    others = []
     for column in sorted(answer.columns, key=lambda one: not one.role and one.kind != "state"):
         if column.name in shared or _is_hidden(column):
             continue
@@ -335,7 +366,10 @@ def definitions(answer: Answer) -> Iterator[tuple[str, str]]:
         if column.meaning and column.role != IN_FILES:
             unit = unit_of(column)
             title = capital(column.title)
-            yield (f"{title} [{unit}]" if unit else title), capital(column.meaning)
+            heading = title
+            if unit:
+                heading = f"{title} [{unit}]"
+            yield heading, capital(column.meaning)
 
 
 def ends_table(answer: Answer) -> tuple[list[str], list[list[str]], str]:
@@ -354,8 +388,14 @@ def ends_table(answer: Answer) -> tuple[list[str], list[list[str]], str]:
     last = ""
     for row in rows:
         factor = capital(str(row["factor"]))
-        level = row["level"] if isinstance(row["level"], str) else grouped(float(row["level"]))
+        if isinstance(row["level"], str):
+            level = row["level"]
+        else:
+            level = grouped(float(row["level"]))
         counts = [grouped(float(row[limit]), 12) for limit in ending]
-        shown.append(["" if factor == last else factor, level, *counts])
+        factor_cell = factor
+        if factor == last:
+            factor_cell = ""
+        shown.append([factor_cell, level, *counts])
         last = factor
     return ["Factor", "Level", *(capital(limit) for limit in ending)], shown, ""

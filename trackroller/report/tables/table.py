@@ -46,11 +46,9 @@ class Table:
         """Return a table, or None if it has no row; each row maps the heads of all columns to its
         cells.
         """
-        return (
-            cls(name, title, list(rows[0]), [list(row.values()) for row in rows], note)
-            if rows
-            else None
-        )
+        if rows:
+            return cls(name, title, list(rows[0]), [list(row.values()) for row in rows], note)
+        return None
 
 
 def cell(value: Any) -> str:
@@ -88,4 +86,6 @@ def goal_heading(front: xr.Dataset, name: str) -> str:
     attrs = front[name].attrs
     units = str(attrs.get("units", "")) or getattr(parameter_of(name), "unit", "")
     text = capital(str(attrs.get("long_name") or long_name(name)))
-    return with_unit(text, units) if units and units not in ("1", "-") else text
+    if units and units not in ("1", "-"):
+        return with_unit(text, units)
+    return text

@@ -17,8 +17,8 @@ from trackroller.roller.stored_inputs import friction_records
 
 ALWAYS = (
     "Dry contact: no lubricant and no dirt.",
-    "Isothermal: no value of a material and no friction changes with temperature, and "
-    "nothing expands.",
+    "Isothermal: no value of a material and no friction changes with temperature, and nothing "
+    "expands.",
     "Smooth surfaces, elastic half-spaces, steady rolling and constant loads; no shocks and "
     "no vibration.",
     "Pressure limit: R_m stands for the yield strength.",
@@ -30,7 +30,10 @@ def assumptions(ds: xr.Dataset) -> list[str]:
     """Return the assumptions of a solved case, those of the limits that were computed among
     them.
     """
-    wear = LIMITS["wear"].assumes if "run_in_distance" in ds else (NO_WEAR,)
+    if "run_in_distance" in ds:
+        wear = LIMITS["wear"].assumes
+    else:
+        wear = (NO_WEAR,)
     others = (
         sentence for name in _computed(ds) if name != "wear" for sentence in LIMITS[name].assumes
     )
@@ -42,7 +45,9 @@ def standards(ds: xr.Dataset) -> str:
     standards = [
         f"{LIMITS[name].standard} ({name})" for name in _computed(ds) if LIMITS[name].standard
     ]
-    return f"{capital('; '.join(standards))}." if standards else "No standard is followed."
+    if standards:
+        return f"{capital('; '.join(standards))}."
+    return "No standard is followed."
 
 
 def _computed(ds: xr.Dataset) -> list[str]:
@@ -50,7 +55,9 @@ def _computed(ds: xr.Dataset) -> list[str]:
     verdict too.
     """
     if "utilisation" not in ds:
-        return ["fatigue"] if "life_cycles" in ds else []
+        if "life_cycles" in ds:
+            return ["fatigue"]
+        return []
     known = ds.variables["utilisation"].notnull() | ds.variables["life_hours_by_limit"].notnull()
     return (
         ds["limit"].values[known.any([dim for dim in known.dims if dim != "limit"]).values].tolist()
@@ -63,8 +70,7 @@ def friction_sentence(ds: xr.Dataset) -> str:
     """
     sentences = [
         f"Friction coefficient {number(r['value'])}: {r['level']} value of the database for "
-        f"{r['material_pair']}, "
-        f"source: {friction_source(r)}."
+        f"{r['material_pair']}, source: {friction_source(r)}."
         for r in friction_records(ds.attrs)
     ]
     return " ".join(sentences)
@@ -79,11 +85,9 @@ def strength_sentences(materials: Mapping[str, Material]) -> list[str]:
             for name in ("yield_strength", "hardness")
             if (value := getattr(material, name)) is not None
         ]
-        yields = (
-            f"shakedown and standard rating use {listing(given)}"
-            if given
-            else "neither yield strength nor hardness"
-        )
+        yields = "neither yield strength nor hardness"
+        if given:
+            yields = f"shakedown and standard rating use {listing(given)}"
         out.append(
             f"{material.name}: {yields}; the pressure limit uses R_m = "
             f"{number(material.tensile_strength)} MPa."

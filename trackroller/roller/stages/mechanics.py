@@ -341,6 +341,8 @@ def friction_work(results: StageResults, options: Options) -> None:
     v = results.values
     model = results.scene.model
     v["friction_energy_per_distance"], pressed = dissipation(results)
+    first, second = v["friction_energy_per_distance"].T
+    v["rolling_resistance"] = first + second
     _energy_balance(results, v["friction_energy_per_distance"], pressed)
     forces = v["driving_force"].T.reshape(-1), v["spin_moment"].T.reshape(-1)
     factor = results.by_contact(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Iterable
-from functools import partial
+from functools import cache, partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -16,6 +16,7 @@ from trackroller.damage import LIMITS, computed, judged, verdict
 from trackroller.damage.histories import RollerTractions
 from trackroller.damage.limit import TRACTIONS, Limit, SolvedRollers, Verdict
 from trackroller.damage.wear import BEYOND_TABLE, KM_PER_HOUR
+from trackroller.damage.wear import TABLE as WEAR_TABLE
 from trackroller.halfspace.tractions import Tractions
 from trackroller.numerics.rows import distinct
 from trackroller.parameters import CONTACT_MODELS, MAPPING_FIELDS, PARAMETERS
@@ -59,8 +60,11 @@ def solved_of(
     """Return cases, materials and results as the limits receive them."""
     fields = [field.name for field in dataclasses.fields(table.roller)]
     names = [name for name in fields if name not in TEXTS or name == "sn_points"]
+    cases = {name: getattr(table, name) for name in (*PARAMETERS, *MAPPING_FIELDS)}
+    if options.wear_law == "energy":  # else a law of the materials would ask for wear
+        cases[WEAR_TABLE.name] = table.loss_tables
     return SolvedRollers(
-        {name: getattr(table, name) for name in (*PARAMETERS, *MAPPING_FIELDS)},
+        cases,
         {
             name: np.array([getattr(body, name) for body in (table.roller, table.guide)]).T
             for name in names
@@ -112,7 +116,11 @@ def to_compute(solved: SolvedRollers, options: Options) -> tuple[Limit, ...]:
 
 def of_patches(limits: Iterable[Limit]) -> tuple[Limit, ...]:
     """Return the limits that need the tractions of each case, not of each mechanics alone."""
-    return tuple(limit for limit in limits if TRACTIONS in limit.needs and limit.shared is None)
+    return tuple(
+        limit
+        for limit in limits
+        if TRACTIONS in limit.needs and (limit.shared is None or not limit.shared_by_mechanics)
+    )
 
 
 def _unworn_gap(table: CaseTable, case: int, contact: int, lateral: np.ndarray) -> np.ndarray:
@@ -202,10 +210,11 @@ def patch_limits(results: StageResults, options: Options, limits: tuple[Limit, .
     """
     scene = results.scene
     own = of_patches(limits)
-    shared = [limit for limit in limits if limit.shared is not None]
+    shared = [limit for limit in limits if limit.shared is not None and limit not in own]
     if not own and not shared:
         return
 
+    @cache
     def fields() -> RollerTractions:
         t = surface_tractions(results)
         names = [field.name for field in dataclasses.fields(Tractions)]
@@ -217,11 +226,14 @@ def patch_limits(results: StageResults, options: Options, limits: tuple[Limit, .
         solved_of(scene.table, results.values, options, results.regime), tractions=fields
     )
     for limit in own:
+        ready = solved
+        if limit.shared is not None:
+            ready = dataclasses.replace(solved, values=results.values | limit.shared(solved))
         if limit.moves(solved):
             for end in (0, 1):
-                at_end = limit.evaluate(solved.at_end(end))
+                at_end = limit.evaluate(ready.at_end(end))
                 results.values |= {f"_{end}_{one.name}": at_end[one.name] for one in limit.results}
-        results.values |= limit.evaluate(solved)
+        results.values |= limit.evaluate(ready)
     for limit in shared:
         assert limit.shared is not None
         results.values |= limit.shared(solved)

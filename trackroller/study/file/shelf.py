@@ -4,9 +4,9 @@ factors:
   roller: {file: rollers.csv}
 
 A row has a name, sets parameters of a case, and may have columns of the user's own, such as mass
-and price. A column is named as its parameter. A key of a bearing or of a catalogue stands behind
-its field: `catalogue_basic_life [km]`. In a shelf of bearings the keys stand alone. An empty cell
-of a parameter takes the value of `base`.
+and price. A column is named as its parameter. A key of a bearing, a catalogue or a stud stands
+behind its field: `catalogue_basic_life [km]`. In a shelf of bearings the keys stand alone. An empty
+cell of a parameter takes the value of `base`.
 """
 
 from __future__ import annotations
@@ -21,6 +21,7 @@ from typing import Any
 from trackroller.damage.bearing import FIELD as BEARING
 from trackroller.damage.catalogue import FIELD as CATALOGUE
 from trackroller.damage.mapping import MappingField
+from trackroller.damage.stud import FIELD as STUD
 from trackroller.errors import Collector, InputError, nearest, raise_all
 from trackroller.files import find_beside
 from trackroller.methods.factor import ROWS
@@ -28,11 +29,13 @@ from trackroller.numerics.numbers import finite_number
 from trackroller.numerics.table_cells import is_number, split_head
 from trackroller.numerics.units import PLAIN, split_quantity
 from trackroller.parameters import PARAMETERS
-from trackroller.roller.aliases import ALIASES, RADII
+from trackroller.roller.aliases import ALIASES, RADII, renamed, with_options
 from trackroller.roller.case import Case
+from trackroller.roller.settings import checked_case
 from trackroller.study.design.entries import (
     BEARING_DIAMETER,
     CASE_FIELDS,
+    GEOMETRY,
     SHELVES,
     SIZES,
     check_own_name,
@@ -45,7 +48,7 @@ from trackroller.tables.column_heads import is_unit
 from trackroller.tables.user_table import UserTable
 
 ROLLER = "roller"  # shelf of rollers
-FIELDS = (BEARING, CATALOGUE)  # mappings of a case whose keys are columns of a shelf
+FIELDS = (BEARING, CATALOGUE, STUD)  # mappings of a case whose keys are columns of a shelf
 PROFILES = ("roller_profile", "guide_profile")  # their cells name files of points
 OUTER_DIAMETER = "outer_diameter"  # of the bearings in a shelf of bearings
 MEASURED = ("kg", "mm", "N", "N mm", "MPa", "h", "W", "K")  # units to which those of goods convert
@@ -148,7 +151,28 @@ def without_overridden(keys: Mapping[str, Any], shelf: str) -> dict[str, Any]:
     return {**keys, "base": base}
 
 
-def base_of_case(case: Case) -> dict[str, Any]:
+def base_beside_shelf(
+    values: Mapping[str, Any],
+) -> tuple[dict[str, Any], dict[str, Any], dict[str, Any]]:
+    """Return the values of a case file as the `base` of a study of a shelf, its options, and the
+    entries beside the case.
+
+    A case may leave its roller to the shelf. Its geometry is checked with each row of it, and
+    not with the roller of the paper's example, which need not fit its rail.
+
+    Parameters
+    ----------
+    values : mapping
+        Entries of a case file by name.
+    """
+    given = renamed(with_options(values))
+    geometry = {name: given[name] for name in (*GEOMETRY, *RADII) if name in given}
+    others = {name: value for name, value in given.items() if name not in geometry}
+    case, options, beside = checked_case(others)
+    return {**_base_of_case(case), **geometry}, options, beside
+
+
+def _base_of_case(case: Case) -> dict[str, Any]:
     """Return the values of a case that were given, as the `base` of a study."""
     given = {name: value for name, value in case.as_dict().items() if name not in case.not_given}
     return {name: value for name, value in given.items() if value not in (None, "")}
@@ -263,7 +287,7 @@ def _keys_of(shelf: str) -> dict[str, tuple[MappingField, str]]:
     """Return the columns that are keys of a mapping: field and key by the name of the column."""
     keys = {}
     for own in FIELDS:
-        for key in (*own.words, *(number.name for number in own.numbers)):
+        for key in (*own.words, *own.texts, *(number.name for number in own.numbers)):
             keys[f"{own.name}_{key}"] = (own, key)
             if own.name == shelf:
                 keys[key] = (own, key)

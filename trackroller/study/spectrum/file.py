@@ -29,14 +29,14 @@ import numpy as np
 
 from trackroller.damage import groups_of, others
 from trackroller.damage.sn_curve import PROBABILITIES
-from trackroller.errors import Collector, InputError, check_names, checked_text, nearest
+from trackroller.errors import Collector, InputError, check_names, nearest, text_of
 from trackroller.files import files_beside, find_beside, read_text
 from trackroller.numerics.numbers import number_in
 from trackroller.numerics.plain import mapping_of
 from trackroller.parameters import OF_LIMITS, PARAMETERS
 from trackroller.parameters import OPTIONS as SOLVE_OPTIONS
 from trackroller.parameters.example import used_of
-from trackroller.roller.aliases import ALIASES, renamed
+from trackroller.roller.aliases import OTHER_OPTIONS, WRITTEN, renamed, with_options
 from trackroller.roller.case import FIELDS, Case
 from trackroller.roller.duty import (
     OVERROLLINGS,
@@ -191,7 +191,9 @@ class Spectrum:
         wrong = Collector()
         fields: dict[str, Any] = {}
         with wrong.part():
-            check_names("spectrum: key", values, FILE_FIELDS)
+            values = with_options(values)
+        with wrong.part():
+            check_names("spectrum: key", values, (*FILE_FIELDS, *OTHER_OPTIONS))
         with wrong.part():
             fields["blocks"], fields["by_share"] = _blocks(
                 values.get("blocks"), values.get("base") or {}
@@ -215,13 +217,13 @@ class Spectrum:
                 left_out = {"not_checked": others([*np.atleast_1d(values["limits"])])}
         with wrong.part():
             fields["options"] = left_out | {key: values[key] for key in OPTIONS if key in values}
-            Options(**fields["options"])  # checked before any case is solved
+            checked = Options(**fields["options"])  # before any case is solved
+            numbers = [key for key in fields["options"] if SOLVE_OPTIONS[key].kind == "number"]
+            fields["options"] |= {key: getattr(checked, key) for key in numbers}
         with wrong.part():
-            fields["name"] = checked_text(str(values.get("name", "spectrum")), "name")
+            fields["name"] = text_of(values.get("name"), "name", "spectrum")
         with wrong.part():
-            fields["description"] = checked_text(
-                str(values.get("description", "")), "description", lines=True
-            )
+            fields["description"] = text_of(values.get("description"), "description", lines=True)
         wrong.check()
         if is_of_strokes(fields["duty"]):
             fields |= _by_strokes(fields["duty"], fields["blocks"])
@@ -279,7 +281,7 @@ def load_spectrum(path: Path | str) -> Spectrum:
     path = Path(path)
     text = read_text(path, "load spectrum")
     values = parse_mapping(text, str(path))
-    with errors_by_line(text, aliases=ALIASES), files_beside(path):
+    with errors_by_line(text, aliases=WRITTEN), files_beside(path):
         return Spectrum.from_dict({"name": path.stem} | values)
 
 
@@ -399,7 +401,7 @@ def _block(entry: Any, base: Mapping[str, Any], number: int) -> Block:
             f"blocks[{number}]", entry, "a mapping such as {distance: 4000, radial_force: -300}"
         )
     entry = renamed(entry)
-    name = checked_text(str(entry.get("name") or f"block {number}"), "name of a block")
+    name = text_of(entry.get("name"), "name of a block", f"block {number}")
     where = f"block '{name}'"
     wrong = Collector()
     with wrong.part():

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from trackroller.errors import Collector, InputError, listing
+from trackroller.roller.doubts import USUAL
 from trackroller.roller.log_answers import LogAnswers
 from trackroller.roller.settings import LOADS
 from trackroller.study.spectrum.log_columns import COLUMNS, FIELD, LogColumns, read_columns
@@ -90,6 +91,7 @@ def read_log(path: Path, velocity: float, answers: LogAnswers | None = None) -> 
         raise InputError(
             FIELD, str(path), "a log in which the roller moves", "Check the column velocity."
         )
+    _doubt_speed(travel, hours, log, doubts)
     _doubt_forces(log, doubts)
     return Log(
         travel, hours, log.values["radial_force"], log.values["axial_force"], log.lines, doubts
@@ -252,6 +254,23 @@ def _of_lines(steps: np.ndarray, hold: str) -> np.ndarray:
     if hold == "last":
         return np.append(steps, 0.0)
     return np.asarray((np.append(steps, 0.0) + np.insert(steps, 0, 0.0)) / 2)
+
+
+def _doubt_speed(
+    travel: np.ndarray, hours: np.ndarray, log: LogColumns, doubts: list[Doubt]
+) -> None:
+    """Add a doubt if the roller moves far slower or faster than rollers do; `travel` [m] and
+    `hours` [h] of each line, (n,).
+    """
+    columns = [name for name in ("time", "distance", "velocity", "speed") if name in log.values]
+    moving = (travel > 0) & (hours > 0)
+    if len(columns) < 2 or not moving.any():  # the speed is that of the case
+        return
+    low, high = USUAL["velocity"]
+    speed = float(np.median(travel[moving] / hours[moving])) / 60  # m/min
+    if not low <= speed <= high:
+        values = {"value": speed, "low": low, "high": high, "columns": listing(columns)}
+        doubts.append(Doubt("unusual_speed", values=values))
 
 
 def _doubt_forces(log: LogColumns, doubts: list[Doubt]) -> None:

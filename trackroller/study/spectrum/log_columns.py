@@ -263,6 +263,9 @@ def _numbers(
         bad = ~np.isfinite(values[name])
         if answers.missing:
             bad &= [cell.lower() not in answers.missing_words for cell in column]
+        if bad.all() and len(bad) > 1:
+            wrong.errors.append(_without_numbers(name, column[0]).at(path, int(lines[0])))
+            continue
         for row in np.flatnonzero(bad)[:30]:
             wrong.errors.append(_refused(name, column[row], path, int(lines[row])))
         unit = _stated_unit(name, heads)
@@ -315,6 +318,18 @@ def _number_of(cell: str, unit: str, target: str, name: str) -> float:
         return in_unit(number, stated, target, name)
     except InputError:  # of a unit that is unknown or measures something else
         return math.nan
+
+
+def _without_numbers(name: str, cell: str) -> InputError:
+    """Return the error of a column in which no cell is a number, as one of dates is."""
+    remedy = f"Write numbers, or rename the column if it is no {name}."
+    if name == "time":
+        remedy = (
+            "Write the seconds since the first line, which =(A2-A$2)*86400 gives in a spreadsheet "
+            "for dates in column A."
+        )
+    wrong = "and all cells below it are no numbers"
+    return InputError(name, cell, f"finite numbers [{COLUMNS[name]}]", remedy, wrong)
 
 
 def _refused(name: str, cell: str, path: Path, line: int) -> InputError:

@@ -80,6 +80,8 @@ TOLD = {
     "case file leaves them out.",
     "speed_back": "The speed is below 0 in {share:.3g} % of the lines: travel backward counts as "
     "forward.",
+    "unusual_speed": "The roller moves at {value:.4g} m/min in the middle, and usual are {low:g} "
+    "to {high:g} m/min: check the units of {columns}.",
     "turned": "All radial forces are positive; they count as pressing the roller on the guide.",
     "other_sign": "radial_force is above 0 in {share:.3g} % of the lines: change its sign if they "
     "press.",

@@ -98,7 +98,7 @@ def fingerprints(
     texts += [
         text
         for body in (table.roller, table.guide)
-        for text in (body.temperature_dependence, body.sn_points)
+        for text in (body.temperature_dependence, body.sn_points, body.energy_wear)
     ]
     has_texts = any(np.any(column != "") for column in texts)
     data = rows.reshape(-1).view(np.uint8).data

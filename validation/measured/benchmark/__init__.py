@@ -1,0 +1,1 @@
+"""A benchmark of rolling contact: inputs and truths as tables, and the errors of any program that solves them."""
