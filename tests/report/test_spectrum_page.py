@@ -11,6 +11,7 @@ from limit_rows import limit_row, part_of
 import trackroller as tr
 from trackroller.materials import builtin_database
 from trackroller.report.figures.spectrum import damage_by_block
+from trackroller.report.headlines import headline_of
 from trackroller.results.spectrum_answer import answer_of_spectrum
 from trackroller.study.spectrum.file import Spectrum
 from trackroller.study.spectrum.solve import solve_spectrum
@@ -151,3 +152,28 @@ def test_one_unsolved_block_leaves_the_track_and_the_damage_of_the_others():
     life = part_of(answer, "lives").set_index("body").loc["roller"]
     assert life["at_most"] == pytest.approx(float(ds["duration"].sum()) / damage[:, 0].sum(), rel=1e-9)
     assert "lifted (lift-off)" in life["why"] and life["contact"] == 2
+
+
+@pytest.mark.parametrize(("share", "state"), [(0.9, "met"), (1.1, "missed")])
+def test_a_required_travel_is_judged_by_the_first_limit(share, state):
+    """One block by a made-up solver, so that the travel to the first limit follows from one life."""
+    blocks = [{"name": "b", "distance": 1000.0}]
+
+    def solve(cases, outputs, database, **options):
+        variables = {
+            "peak_stress": (("case", "contact", "body"), np.full((1, 2, 2), 500.0)),
+            "regime": ("case", np.zeros(1, dtype=np.int8)),
+        }
+        return xr.Dataset(variables, coords={"contact": [1, 2], "body": ["roller", "guide"]})
+
+    def solved(**more):
+        base = {"guide_overrollings_per_hour": 1.0, **more}
+        return solve_spectrum(Spectrum.from_dict({"blocks": blocks, "base": base}), DB, solve=solve)
+
+    free = solved()
+    assert answer_of_spectrum(free).required == () and answer_of_spectrum(free).headline["state"] == ""
+    travel = float(free["roller_life_shifts"]) * 1.0  # km: a shift is one
+    answer = answer_of_spectrum(solved(required_travel=share * travel))
+    assert answer.headline["state"] == state
+    assert answer.required[0].least == pytest.approx(share * travel)
+    assert headline_of(answer).text.endswith(f"km: {state}.")

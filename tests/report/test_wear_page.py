@@ -156,3 +156,14 @@ def test_a_required_travel_is_judged_by_fatigue_by_the_end_of_the_run_and_by_its
     ds = worn_with(guessed, (0.5, 0.5), ((0.2 * last, np.nan), (0.4 * last, last)), required_travel=0.5 * last)
     assert answer_of_wear(ds).headline["state"] == "missed"  # fatigue of the new groove alone
     assert "travel" not in answer_of_wear(guessed).not_given
+
+
+def test_json_of_a_run_is_its_record(place, whole):
+    said = call(place, "9 km", "whole.nc", "--json")
+    content = json.loads(said)
+    expected = json.loads(json.dumps(answer_of_wear(whole).to_dict()))
+    assert content["answer"] == expected
+    assert content["answer"]["question"] == "wear"
+    depths = np.array(content["groove_depth"]["value"])
+    np.testing.assert_array_equal(depths, whole["groove_depth"].values)
+    assert {flag["name"] for flag in content["flags"]} >= {"wear_of_sliding"}

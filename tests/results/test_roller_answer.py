@@ -6,6 +6,7 @@ import shlex
 import pytest
 from command_line import trackroller
 
+import trackroller as tr
 from trackroller.cli.case import solve_case
 from trackroller.report.headlines import headline_of
 from trackroller.report.pages.record import command_of
@@ -134,3 +135,23 @@ def test_friction_of_the_database_is_no_value_of_the_example(capsys):
     printed = capsys.readouterr().out
     (row,) = (line for line in printed.splitlines() if "friction coefficient mu" in line)
     assert row.split("│")[-2].strip() == "database"
+
+
+def test_a_life_without_scatter_stands_among_the_limits_as_a_range():
+    """The guide has a scatter and the roller has none: its life at 5 % is a range by the typical scatter."""
+    steel = {"like": "1.7225-quenched-tempered", "scatter_in_cycles": 5}
+    case = tr.Case(
+        motor_force=0,
+        guide_curve_radius=float("inf"),
+        guide_overrollings_per_hour=60,
+        roller_material="1.7225-quenched-tempered",
+        guide_material=steel,
+        friction_coefficient=0.2,
+    )
+    groups = ("forces", "contact", "peak_stress", "life", "limits")
+    answer = answer_of_roller(
+        tr.solve(case, groups, contact_model="sliding", accuracy="preview", failure_probability=0.05)
+    )
+    fatigue = answer.table[answer.table["limit"] == "fatigue"].set_index("body")
+    assert 0 < fatigue.loc["roller", "low"] < fatigue.loc["roller", "high"]
+    assert 0 < fatigue.loc["guide", "low"] == fatigue.loc["guide", "high"]

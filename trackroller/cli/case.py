@@ -482,12 +482,13 @@ def run_wear(
     case: Path | None,
     to: str,
     settings: list[str] | None,
+    as_json: bool,
     out: Path | None,
     report: Path | None,
     quiet: bool,
 ) -> None:
     """Follow a roller while it wears; `out` receives the states one by one, and a later run goes on
-    from there.
+    from there. `as_json` prints JSON in place of the tables.
     """
     target = None if out is None else writable_data(out)
     if report is None:
@@ -499,6 +500,7 @@ def run_wear(
     tell_doubts(new)
 
     from trackroller.report.pages.record import print_record
+    from trackroller.report.pages.sheet import as_json as json_of
     from trackroller.report.pages.wear import write_wear
     from trackroller.results.wear_answer import answer_of_wear
     from trackroller.roller.wear import wear
@@ -507,7 +509,7 @@ def run_wear(
     def tell(dataset: xr.Dataset, goal: float) -> None:
         if target is not None:
             write_result(dataset, target)
-        if not quiet:
+        if not quiet and not as_json:
             last = dataset.isel(travel=-1)
             depth = 1e3 * float(last["groove_depth"].max())
             print_line(f"{float(last['travel']):.4g} of {goal:g} km, depth {depth:.3g} um")
@@ -527,7 +529,10 @@ def run_wear(
     worn = with_beside(dataset, beside)
     if page is not None:
         write_wear(worn, page)
-    print_record(answer_of_wear(worn))
+    if as_json:
+        print(json_of(worn))
+    else:
+        print_record(answer_of_wear(worn))
 
 
 def is_failed(dataset: xr.Dataset) -> bool:

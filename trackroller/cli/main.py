@@ -396,6 +396,7 @@ def wear(
     case: Annotated[Path | None, typer.Argument(help=CASE_HELP)] = None,
     to: Annotated[str, typer.Option("--to", help="travel at which to end, such as 500km")] = "50km",
     settings: Annotated[list[str] | None, typer.Option("--set", help=SET_HELP)] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="print JSON")] = False,
     out: Annotated[
         Path | None,
         typer.Option("-o", "--out", help="netCDF (.nc); a run goes on from what it holds"),

@@ -13,6 +13,8 @@ Keys of `Answer.headline`; a key that is missing, None, NaN or empty is left out
 `names`            list of dict: name of a column of role `name` -> level of the named candidates;
                    only choices that differ between them and the rest; the first one is the leader
                    (of `none` empty)
+`goals`            list of {words, units, value}: goals that are no choices, of the leader
+`shared`           of `a_or_b`: choices that the named candidates have in common, and others lack
 `low`, `high`      of the leader's required output at its worst condition [unit of `Answer.output`]
 `worst`            levels of that condition in words (stands in the table)
 `ends`, `ends_high`  limit that ends it, in words that follow "then": "fatigue", "wear"
@@ -47,8 +49,11 @@ above.
 
 `what matters`: `factors`, a list of at most two dicts, the largest first: `title`, `units`,
 `index`, `index_low`, `index_high` [1] (NaN without indices), `height` (as a factor), `from`, `to`
-(levels at the smallest and the largest end of the curve), `at_from`, `at_to` [unit of the output];
-`asked`: the same of a factor that the study asks for.
+(levels at the smallest and the largest end of the curve), `at_from`, `at_to` [unit of the output],
+`by_ratio` (whether `height` is a factor, otherwise it is a difference [unit of the output]),
+`largest` (of a group of factors, the title of the one that the curve is of); `asked`: the same of a
+factor that the study asks for; with a requirement `meets`, `perhaps`, `of`: cases that surely meet
+it, cases that may, all cases.
 
 `which model`: `changes`: ``, `verdict`, `order` or `verdict and order`; `models`: list of dict
 `model`, `verdict`, `low`, `high`, `error`, `leader` (a dict as one of `names`); `smallest`,
@@ -140,7 +145,8 @@ def decide(answer: Answer) -> Headline:
     if head.get("not_held") and head.get("elsewhere") and answer.kind in ELSEWHERE:
         lost = f"None holds in {_part(head['not_held'], 'conditions')}"
         lead = f"{lost}; elsewhere {ELSEWHERE[answer.kind](answer)}"
-        return Headline(lead, f": {'; '.join([_value_said(answer), *_other_rules(head)])}.")
+        clauses = [_value_said(answer), *_goals_said(head), *_other_rules(head)]
+        return Headline(lead, f": {'; '.join(clauses)}.")
     shares = _known(head, "share") and bool(answer.required)
     if shares and answer.kind != "none":
         clauses = _shares(answer)
@@ -169,7 +175,8 @@ def _either(answer: Answer) -> str:
     left = len(names) - MOST_NAMES
     if left > 0:
         spoken += f" or {left} more"
-    return spoken
+    shared = answer.headline.get("shared")
+    return f"{spoken}, {_name(answer, shared)}" if shared else spoken
 
 
 def _none(answer: Answer) -> str:
@@ -257,6 +264,8 @@ def _lasts(answer: Answer) -> list[str]:
         if _one_condition(answer):
             place = ""
         clauses.append(f"{whose}{_value_said(answer)}{place}{_then(head)}")
+        if answer.kind in ELSEWHERE:
+            clauses += _goals_said(head)
     clauses += _turn(head)
     if answer.kind == "cannot_tell":
         others = []
@@ -278,6 +287,12 @@ def _has_leader(answer: Answer) -> bool:
 def _one_condition(answer: Answer) -> bool:
     conditions = answer.facts.get("conditions")
     return conditions in (1, [1, 1], (1, 1))
+
+
+def _goals_said(head: Mapping[str, Any]) -> list[str]:
+    """Return the goals that the leader follows beside the requirement."""
+    goals = head.get("goals") or ()
+    return [listing([_goal(one) for one in goals])] if goals else []
 
 
 def _tenth(answer: Answer) -> str:
@@ -392,11 +407,20 @@ def what_matters(answer: Answer) -> Headline:
     if _known(factors[0], "index") and _in_shares(answer):
         sizes = f"index {listing([_index(one) for one in factors])}"
     else:
-        sizes = listing([f"×{grouped(one['height'], 2)}" for one in factors])
+        sizes = listing([_height(answer, one) for one in factors])
     clauses = [sizes, _effect(answer, factors[0])]
     if head.get("asked"):
         clauses.append(f"{lowered(head['asked']['title'])}: {_effect(answer, head['asked'])}")
+    if answer.required and _known(head, "meets"):
+        clauses.append(f"{head['meets']:,} of {head['of']:,} {_reach(answer.required)}")
     return _joined(lead, [clause for clause in clauses if clause])
+
+
+def _height(answer: Answer, factor: Mapping[str, Any]) -> str:
+    """Return by how much a factor changes the output: '×42', or 'by 3 N' where it is no ratio."""
+    if factor.get("by_ratio", True):
+        return f"×{grouped(factor['height'], 2)}"
+    return f"by {_measured(grouped(factor['height'], 2), answer.output[2])}"
 
 
 def _in_shares(answer: Answer) -> bool:
@@ -415,8 +439,8 @@ def _index(factor: Mapping[str, Any]) -> str:
 
 
 def _effect(answer: Answer, factor: Mapping[str, Any]) -> str:
-    if not _known(factor, "at_from"):
-        return ""
+    if not _known(factor, "at_from") or factor.get("largest"):
+        return ""  # the table says which member of a group the curve is of
     units = unit_text(factor.get("units", "")).replace("–", "")
     levels = [_plain_level(factor.get(key)) for key in ("from", "to")]
     ends = [carried(factor[key]) for key in ("at_from", "at_to")]
@@ -588,9 +612,9 @@ def roller(answer: Answer) -> Headline:
         text = f"{unsure}{lasts}"
         return Headline(capital(text), "".join(f"; {clause}" for clause in clauses) + ".")
     worst = head["exceeded"][0]
-    hours = worst["hours"]
+    hours = math.inf if worst["hours"] is None else worst["hours"]
     after = ""
-    if hours is not None and math.isfinite(hours):
+    if math.isfinite(hours) and not hours > head["high"]:  # a later end says nothing
         after = f", after {grouped(hours, 2)} h by its rule"
     lead = f"{_limit_of(worst)} exceeded ({percent(worst['use'])})"
     return Headline(
@@ -662,7 +686,7 @@ def _required_states(answer: Answer) -> list[str]:
     clauses = []
     for state in ("missed", "open", "met"):
         states = zip(answer.required, answer.headline["states"], strict=True)
-        bounds = [_bound(one, answer.output[0]) for one, own in states if own == state]
+        bounds = [_bound(one, answer) for one, own in states if own == state]
         if bounds:
             clauses.append(f"required {listing(bounds)}: {state}")
     return clauses
@@ -732,6 +756,9 @@ def spectrum(answer: Answer) -> Headline:
     if answer.kind == "unknown":
         return _joined("The life is not known", [*head["why"][:2], *clauses])
     unsure = _if_model_holds(head)
+    if head["state"]:
+        required = answer.required[0]
+        clauses.append(f"required {_amount(required, required.least)}: {head['state']}")
     if answer.kind == "unlimited":
         return _joined(capital(f"{unsure}no limit ends this spectrum"), clauses)
     if head["block"]:
@@ -816,9 +843,7 @@ def _carriage_lasts(answer: Answer, margins: Sequence[str]) -> Headline:
         of = ""
         if head["of"]:
             of = f" of {listing(head['of'])}"
-        clauses.append(
-            f"required {_bound(answer.required[0], answer.output[0])}{of}: {head['state']}"
-        )
+        clauses.append(f"required {_bound(answer.required[0], answer)}{of}: {head['state']}")
         margins = ()  # its table has them
     if not head["exceeded"]:
         return _joined(capital(lasts), [*clauses, *margins])
@@ -1127,14 +1152,15 @@ def _required(answer: Answer) -> list[str]:
     """Return what is required, as one clause."""
     if answer.kind in SILENT or not answer.required:
         return []
-    return [f"required {listing([_bound(one, answer.output[0]) for one in answer.required])}"]
+    return [f"required {listing([_bound(one, answer) for one in answer.required])}"]
 
 
-def _bound(required: Required, output: str) -> str:
+def _bound(required: Required, answer: Answer) -> str:
     """Return a requirement with its unit, and with the words of its output where it is another than
-    the table's.
+    the table's; one life needs no words.
     """
-    if required.output == output or required.units == "h":
+    lives = sum(one.units == "h" for one in answer.required)
+    if required.output == answer.output[0] or (required.units == "h" and lives == 1):
         words = ""
     else:
         words = f"{lowered(required.words)} "

@@ -448,13 +448,15 @@ def long_name(name: str) -> str:
 
 
 def symbol(text: str) -> str:
-    """Write a symbol such as r_C,TR for a figure, with its index below the line; an empty text for
-    none.
+    """Write a symbol such as r_C,TR or h/G_3 for a figure, with its index below the line; an empty
+    text for none. A formula stays as it is.
     """
-    if not text:
-        return ""
+    if not text or any(sign in text for sign in " ()^"):
+        return text
+    if "/" in text:
+        return "/".join(symbol(part) for part in text.split("/"))
     letter, _, index = text.partition("_")
-    if len(letter) > 1:  # alpha, mu
+    if len(letter) > 1 and letter.islower():  # alpha, mu
         letter = f"\\{letter}"
     if index:
         return f"${letter}_\\mathrm{{{index}}}$"

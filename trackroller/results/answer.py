@@ -17,8 +17,9 @@ import pandas as pd
 
 from trackroller.study.file.questions import QUESTIONS as QUESTIONS
 
-# of the keys of `Answer.to_dict`; a key that is renamed or that changes its meaning raises it
-VERSION = 1
+# of the keys of `Answer.to_dict`; a key that is new or renamed, or that changes its meaning,
+# raises it
+VERSION = 2
 WARNINGS = {  # code -> what it means
     "not_held": "cases that skid, lift off, break, or exceed a limit",
     "not_judged": "cases that the model cannot judge",
@@ -105,11 +106,12 @@ class Curve:
         tenth and the ninetieth hundredth of the cases, shape (k,) each [unit of the output]
     logarithmic : whether the levels stand on a logarithmic axis
     ordered : whether the levels have an order
-    height : largest over smallest middle [1]; of an output that changes its sign largest less
-        smallest
+    height : largest over smallest middle [1]; of an output that is not above 0 everywhere largest
+        less smallest [unit of the output]
     shape : `rise`, `fall`, `hump`, `dip`, `cliff`, `groups` or `flat`
     rows : cases that it rests on
     left_out : valid cases that lack a partner at some level
+    by_ratio : whether `height` is a ratio; otherwise it is a difference
     """
 
     factor: str
@@ -126,6 +128,7 @@ class Curve:
     shape: str
     rows: int
     left_out: int = 0
+    by_ratio: bool = True
 
 
 @dataclass(frozen=True)

@@ -11,6 +11,7 @@ from trackroller.damage import limit_word
 from trackroller.parameters import BODIES
 from trackroller.parameters.carriage_fields import long_name_of, parameter_of
 from trackroller.results.answer import STATES, Column
+from trackroller.results.case_ranges import CaseRanges
 from trackroller.results.comparison import Comparison, wilson
 from trackroller.results.life_columns import BESIDE, OF_PAIR, lacks_a_body
 from trackroller.results.subgroups import case_text, places_of, places_text, plain
@@ -40,7 +41,30 @@ def candidate_table(own: Comparison) -> pd.DataFrame:
     table["state"] = states_of(own, table)
     table["fails"] = _fails(own, table)
     table["edge"] = _edges(own)
+    for name, other in own.others.items():
+        table[f"of_{name}"] = _worst_of(own, other)
     return table.assign(**_goods(own, table))
+
+
+def _worst_of(own: Comparison, other: CaseRanges) -> np.ndarray:
+    """Return another output of each candidate at its worst condition that is held, shape
+    (candidates,).
+    """
+    rows = own.ranges.holds & other.holds & (own.own if own.drawn else own.reachable)
+    return other.sign * _least(own, other.sign * other.worse, rows)
+
+
+def _columns_of_others(own: Comparison) -> list[Column]:
+    """Return the columns of the other outputs that the study requires or follows."""
+    meaning = "{}: at its worst condition that is held"
+    return [
+        Column(f"of_{name}", _capital(words), units, meaning.format(words))
+        for name, words, units in (other.output for other in own.others.values())
+    ]
+
+
+def _capital(words: str) -> str:
+    return words[:1].upper() + words[1:]
 
 
 def _goods(own: Comparison, table: pd.DataFrame) -> dict[str, Any]:
@@ -164,7 +188,7 @@ def candidate_columns(own: Comparison, table: pd.DataFrame) -> tuple[Column, ...
     columns += [_choice_column(choice) for choice in own.choices]
     columns += _goods_columns(own, table)
     columns += _output_columns(own)
-    columns += [*WHERE_WORST, *_ends_apart(table)]
+    columns += [*_columns_of_others(own), *WHERE_WORST, *_ends_apart(table)]
     columns += _count_columns(own)
     columns += _drawn_columns(own, own.ranges.output[2])
     if (table["second"] != "").any():
@@ -213,6 +237,9 @@ def _drawn_columns(own: Comparison, units: str) -> list[Column]:
     share = "share that is held"
     if own.required:
         share = "share of the drawn conditions that meet the requirement"
+    reach = "stay within"
+    if own.ranges.rises:
+        reach = "reach"
     return [
         Column("share", "Share", "1", share, "share"),
         Column(
@@ -226,7 +253,7 @@ def _drawn_columns(own: Comparison, units: str) -> list[Column]:
             "share",
             until="share_long",
         ),
-        Column("tenth", "Tenth part", units, "what nine of ten drawn conditions reach"),
+        Column("tenth", "Tenth part", units, f"what nine of ten drawn conditions {reach}"),
         Column(
             "tenth_low",
             "Its 95 %",
@@ -700,3 +727,13 @@ def names_of(own: Comparison, numbers: list[int]) -> list[dict[str, Any]]:
     if len(numbers) > 1:
         varying = [n for n in varying if table[n].nunique() > 1] or varying
     return [{name: plain(table[name].iloc[i]) for name in varying} for i in range(len(numbers))]
+
+
+def shared_names(own: Comparison, numbers: list[int]) -> dict[str, Any]:
+    """Return the choices that some candidates have in common, and that others of the study lack."""
+    table = own.members.iloc[numbers]
+    return {
+        name: plain(table[name].iloc[0])
+        for name in own.choices
+        if table[name].nunique() == 1 and own.members[name].nunique() > 1
+    }

@@ -31,6 +31,8 @@ from trackroller.roller.told_errors import ORDINARY_FRICTION
 from trackroller.study.design.levels import OF_MATERIALS
 from trackroller.study.outputs import flat
 
+LOADS = ("radial_force", "axial_force", "motor_force")
+UNEQUAL = 0.01  # relative difference from which on loads of candidates are unlike
 EQUAL = 1e-9  # relative difference of numbers that count as equal
 STRESSES = (
     ("peak_stress_roller", "peak stress of the roller", "MPa"),
@@ -87,14 +89,14 @@ def wilson(hits: np.ndarray, size: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 def unchanged_by(results: SolvedCases, name: str, values: Iterable[np.ndarray]) -> bool:
     """Return whether a factor changes none of some values where all other factors are equal.
 
-    A factor without two such rows counts as one that may change them.
+    A factor of which a row has no such partner counts as one that may change them.
     """
     others = [factor for factor in results.factors if factor != name]
     group = codes(results.table, others)
+    if (np.bincount(group)[group] < 2).any():
+        return False
     first = np.unique(group, return_index=True)[1]
     partner = first[np.unique(group, return_inverse=True)[1]]
-    if not (partner != np.arange(len(group))).any():
-        return False
     return all(_equal(own, own[partner]) for own in values)
 
 
@@ -149,6 +151,44 @@ class Comparison:
                 own = CaseRanges(self.results, (one.output, one.words, one.units), rises)
             judges.append((one, own))
         return tuple(judges)
+
+    @cached_property
+    def lives(self) -> CaseRanges | None:
+        """Return the life that ranks what meets a requirement which names no life; None where the
+        compared output is a life, or the study has none.
+        """
+        if not self.required or is_life(self.ranges.output[0]) or self.results.life is None:
+            return None
+        return CaseRanges(self.results, self.results.life, True)
+
+    @cached_property
+    def followed(self) -> dict[str, str]:
+        """Return the goals of numbers that the study follows beside its requirement, each `max` or
+        `min`.
+        """
+        if not self.required:
+            return {}
+        goals = self.results.config.pareto.items()
+        return {
+            name: way for name, way in goals if self.results.quantity(name)[0].dtype.kind in "fiu"
+        }
+
+    @cached_property
+    def others(self) -> dict[str, CaseRanges]:
+        """Return the outputs beside the compared one on which a decision rests: other requirements,
+        goals that are no inputs, and the life that ranks.
+        """
+        outputs = [own for _, own in self.judges if own is not self.ranges]
+        inputs = {*self.results.factors, *self.results.derived, *self.results.goods}
+        for name, way in self.followed.items():
+            if name not in inputs and name not in self.results.base:
+                _, units, words = self.results.quantity(name)
+                outputs.append(CaseRanges(self.results, (name, words, units), way == "max"))
+        if self.lives is not None:
+            outputs.append(self.lives)
+        named = {own.output[0]: own for own in outputs}
+        named.pop(self.ranges.output[0], None)
+        return named
 
     @cached_property
     def idle(self) -> dict[str, str]:
@@ -220,8 +260,43 @@ class Comparison:
 
     @cached_property
     def conditions(self) -> tuple[str, ...]:
-        """Return the names of the conditions."""
-        return tuple(n for n in self.groups.conditions if n not in self.spans)
+        """Return the names of the conditions.
+
+        Conditions that candidates do not share are paired by their names, such as that of a load
+        case, if a table has such a column and the loads of one name are equal.
+        """
+        names = tuple(n for n in self.groups.conditions if n not in self.spans)
+        if self.drawn or self.count < 2 or self._each_has(names):
+            return names
+        for name in self.results.labels:
+            if name in names and self._each_has((name,)) and self._equal_loads(name, names):
+                return (name,)
+        return names
+
+    @property
+    def unpaired(self) -> tuple[str, ...]:
+        """Return the conditions that differ between candidates in conditions of one name."""
+        if set(self.conditions) >= {*self.groups.conditions} - {*self.spans}:
+            return ()
+        others = [n for n in self.groups.conditions if n not in (*self.spans, *self.conditions)]
+        varies = self.results.table[self.own].groupby([*self.conditions], sort=False)[others]
+        return tuple(str(name) for name, most in varies.nunique().max().items() if most > 1)
+
+    def _each_has(self, names: tuple[str, ...]) -> bool:
+        """Return whether each candidate has each combination of some columns once at each place of
+        the placeholders.
+        """
+        use = codes(self.results.table, names)[self.own]
+        keys = np.stack([self.place[self.own], use, self.level[self.own]])
+        once = np.unique(keys, axis=1).shape[1] == self.own.sum()
+        return bool(once and self.own.sum() == np.prod([len(np.unique(key)) for key in keys]))
+
+    def _equal_loads(self, name: str, names: tuple[str, ...]) -> bool:
+        """Return whether all loads of one name are equal within a hundredth."""
+        loads = [load for load in LOADS if load in names]
+        own = self.results.table[self.own].groupby(name, sort=False)[loads]
+        most, least = own.max(), own.min()
+        return bool((most - least <= UNEQUAL * np.maximum(most.abs(), least.abs())).all(axis=None))
 
     @cached_property
     def drawn(self) -> bool:
@@ -463,17 +538,20 @@ class Comparison:
         return np.asarray(out, dtype=float)
 
     def tenth_part(self, number: int) -> tuple[float, float, float]:
-        """Return the life that nine of ten drawn conditions of a candidate reach, with its 95 %
-        interval.
+        """Return what nine of ten drawn conditions of a candidate reach, or of an output of which
+        less is better stay within, with its 95 % interval.
 
         The interval is NaN below the number of rows at which an order statistic reaches 95 %.
         """
         rows = self.rows[number]
-        lives = np.where(self.ranges.holds[rows], self.ranges.middle[rows], 0.0)
-        value, low, high = b10(lives, self.scatter[rows])
-        if len(rows) >= ENOUGH:
-            return value, low, high
-        return value, np.nan, np.nan
+        sign = self.ranges.sign
+        values = np.where(
+            self.ranges.holds[rows], self.ranges.middle[rows], self.ranges.worst_value
+        )
+        value, *ends = (sign * one for one in b10(sign * values, self.scatter[rows]))
+        if len(rows) < ENOUGH:
+            return value, np.nan, np.nan
+        return value, min(ends), max(ends)
 
     def middle_interval(self, number: int) -> tuple[float, float]:
         """Return the 95 % interval of the median of the drawn conditions of a candidate, by order

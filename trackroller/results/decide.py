@@ -11,18 +11,22 @@ import numpy as np
 import pandas as pd
 
 from trackroller.damage import limit_word
+from trackroller.methods.b10 import quantile
+from trackroller.methods.optimise import nondominated_ranks
 from trackroller.parameters.carriage_fields import long_name_of
 from trackroller.results.answer import Answer
 from trackroller.results.candidate_table import (
     candidate_columns,
     candidate_table,
     names_of,
+    shared_names,
     states_of,
 )
 from trackroller.results.comparison import EQUAL, Comparison
 from trackroller.results.effect_curves import Effects
 from trackroller.results.ends_by_factor import ends_by_factor
 from trackroller.results.life_columns import OF_PAIR
+from trackroller.results.search_fitness import normalised
 from trackroller.results.solved_cases import SolvedCases
 from trackroller.results.study_facts import (
     cautions,
@@ -94,39 +98,71 @@ class Decider:
         return np.where(np.isnan(values), worst, self.own.ranges.sign * values)
 
     @cached_property
-    def goal(self) -> np.ndarray:
-        """Return the one goal of the study beside its requirement, more is better, shape (m,); 0
-        without one.
+    def goals(self) -> np.ndarray:
+        """Return the goals of the study beside its requirement at the worst condition of each
+        candidate, more is better, shape (m, goals).
 
-        A candidate of which the goal is not known, such as a roller without a price, is the worst
+        A candidate of which a goal is not known, such as a roller without a price, is the worst
         one.
         """
-        goals = self.own.results.config.pareto
-        if len(goals) != 1 or not self.own.required:
-            return np.zeros(self.own.count)
-        name, way = next(iter(goals.items()))
-        values = self.own.results.quantity(name)[0]
-        if values.dtype.kind not in "fiu":
-            return np.zeros(self.own.count)
-        if way == "max":
-            sign = 1.0
-        else:
+        own = self.own
+        columns = [np.zeros((own.count, 0))]
+        for name, way in own.followed.items():
+            values = own.results.quantity(name)[0]
             sign = -1.0
-        out = np.full(self.own.count, np.inf)
-        rows = self.own.reachable & ~np.isnan(values.astype(float))
-        np.minimum.at(out, self.own.place[rows], sign * values[rows].astype(float))
-        return np.where(np.isposinf(out), -np.inf, out)
+            if way == "max":
+                sign = 1.0
+            worst = np.full(own.count, np.inf)
+            rows = own.reachable & ~np.isnan(values.astype(float))
+            np.minimum.at(worst, own.place[rows], sign * values[rows].astype(float))
+            columns.append(np.where(np.isposinf(worst), -np.inf, worst)[:, None])
+        return np.concatenate(columns, axis=1)
+
+    def by_goals(self, numbers: np.ndarray) -> np.ndarray:
+        """Return what ranks some candidates by the goals, more is better, shape (k,).
+
+        It is the goal itself. Of several goals it is the nearness to the best of all of them, each
+        normalised over the candidates that no other one beats in all goals, as in a search.
+        """
+        goals = self.goals[numbers]
+        if goals.shape[1] < 2:
+            return np.asarray(goals.sum(axis=1))
+        front = nondominated_ranks(-goals, np.zeros(len(goals))) == 0
+        shares = normalised(-goals[front])
+        key = np.full(len(goals), -np.inf)
+        key[front] = -np.round((shares**2).sum(axis=1), 9)
+        return key
+
+    @cached_property
+    def lasting(self) -> np.ndarray:
+        """Return the life that ranks candidates where a requirement names no life, more is better,
+        shape (m,) [h]; 0 where the compared output is a life, or the study has none.
+
+        It is the tenth part of drawn conditions, otherwise the middle of the range at the worst
+        condition.
+        """
+        own = self.own
+        life = own.lives
+        if life is None:
+            return np.zeros(own.count)
+        values = np.where(life.holds, life.middle, 0.0)
+        if own.drawn:
+            return np.array([float(quantile(np.sort(values[rows]), 0.1)) for rows in own.rows])
+        worst = np.full(own.count, np.inf)
+        rows = own.reachable
+        np.minimum.at(worst, own.place[rows], values[rows])
+        return np.where(np.isposinf(worst) | np.isnan(worst), 0.0, worst)
 
     def best_first(self, among: Iterable[int]) -> list[int]:
-        """Return some candidates, the best one first: by the goal, the score, the median, then the
-        number held.
+        """Return some candidates, the best one first: by the goals, the life, the score, the
+        median, then the number held.
         """
         numbers = np.array(list(among), dtype=int)
         median = self.own.ranges.sign * np.nan_to_num(
             self.table["median"].to_numpy(dtype=float), nan=-np.inf
         )
-        keys = (self.table["holds"].to_numpy(), median, self.score, self.goal)
-        order = np.lexsort(tuple(-key[numbers] for key in keys))
+        keys = (self.table["holds"].to_numpy(), median, self.score, self.lasting)
+        order = np.lexsort((*(-key[numbers] for key in keys), -self.by_goals(numbers)))
         return [int(one) for one in numbers[order]]
 
     def nearest_first(self, among: Iterable[int]) -> list[int]:
@@ -202,8 +238,9 @@ class Decider:
         every = np.arange(own.count)
         order = self.nearest_first(every)
         judged = (table["judged"] == table["of"]).to_numpy()
+        # a condition that no candidate holds, or in which the model judges none, rules none out
         counts = own.counted(np.isin(own.pairs[1], np.unique(own.use[own.reachable])))
-        pool = every[judged & (table["holds"].to_numpy() >= counts)]
+        pool = every[(table["holds"].to_numpy() >= counts) & (table["holds"].to_numpy() > 0)]
         if own.drawn:  # nine of ten drawn conditions have to be held
             pool = every[self.score > own.ranges.sign * own.ranges.worst_value]
         if not len(pool):
@@ -248,11 +285,16 @@ class Decider:
         return bool(mine > theirs + margin + EQUAL * abs(theirs))
 
     def _tied(self, one: int, other: int) -> bool:
-        """Return whether two candidates are equal within the error in every condition, and by the
-        goal.
+        """Return whether two candidates are equal within the error in every condition, by the goals
+        and by the life.
         """
-        if self.goal[one] != self.goal[other]:
+        if (self.goals[one] != self.goals[other]).any():
             return False
+        if self.own.lives is not None:
+            longer, shorter = sorted((self.lasting[one], self.lasting[other]), reverse=True)
+            error = float(np.median(self.own.lives.error[self.own.rows[one]]))
+            if longer > shorter * (1.0 + error + EQUAL):
+                return False
         ratios = self.own.ratios(one, other)
         error = self.own.error_of_ratio(one, other)
         inside = (ratios >= 1.0 / (1.0 + error) - EQUAL) & (ratios <= 1.0 + error + EQUAL)
@@ -353,6 +395,9 @@ def _headline(own: Comparison, table: pd.DataFrame, decision: Decision) -> dict[
         **leading(own, one),
         "measure": decision.measure,
     }
+    if len(decision.named) > 1:
+        head["shared"] = shared_names(own, decision.named)
+    head["goals"] = _goals_of(own, one)
     head |= not_held_by_any(own)
     if decision.kind in ("none", "cannot_tell"):
         head["nearest"] = {
@@ -360,6 +405,22 @@ def _headline(own: Comparison, table: pd.DataFrame, decision: Decision) -> dict[
             **{key: plain(one[key]) for key in ("holds", "of", "meets", "low", "fails")},
         }
     return head | _level_reached(own, table)
+
+
+def _goals_of(own: Comparison, one: pd.Series) -> list[dict[str, Any]]:
+    """Return the goals that are neither choices nor the compared output, at the worst condition of
+    a candidate.
+    """
+    goals = []
+    for name in own.followed:
+        _, units, words = own.results.quantity(name)
+        if name in own.results.goods:
+            units = str(own.results.data[name].attrs.get("units", ""))
+        for key in (f"of_{name}", f"own_{name}", name):
+            if key in one.index and name not in own.choices:
+                goals.append({"words": words, "units": units, "value": plain(one[key])})
+                break
+    return goals
 
 
 def leading(own: Comparison, one: pd.Series) -> dict[str, Any]:

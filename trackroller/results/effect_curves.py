@@ -209,6 +209,7 @@ class Effects:
             shape=shape,
             rows=rows,
             left_out=max(left, 0),
+            by_ratio=self.by_ratio,
         )
 
     def _shape(self, name: str, middle: np.ndarray, pairs: np.ndarray | None) -> str:

@@ -42,7 +42,7 @@ from trackroller.roller import stored_inputs as record
 from trackroller.roller.dataset import VARIABLES, shown, solved_by
 from trackroller.roller.duty import duty_of, strokes_of, years
 from trackroller.roller.limit_notes import given_in_vain, lacks_of, notes_of
-from trackroller.roller.output_names import PARTS
+from trackroller.roller.output_names import PARTS, body_of
 from trackroller.roller.regime_limits import Limits, limits
 from trackroller.roller.requirement import requirement_of
 from trackroller.roller.temperature import HEAD as OF_TEMPERATURE
@@ -347,7 +347,7 @@ def _use(margin: Margin) -> dict[str, Any]:
 
 def _required(ds: xr.Dataset, inputs: Mapping[str, Any]) -> tuple[Required, ...]:
     """Return what is required of the roller: the key `requirement`, and the travel that wear has to
-    allow.
+    allow. Of a required life and a travel the longer one counts, as in a study.
     """
     required = []
     for name, own in requirement_of(ds).items():
@@ -361,7 +361,11 @@ def _required(ds: xr.Dataset, inputs: Mapping[str, Any]) -> tuple[Required, ...]
     travel = inputs.get("required_travel")
     if travel is not None and not math.isnan(float(travel)):
         hours = float(travel) / (KM_PER_HOUR * float(inputs["velocity"]))
-        required.append(Required(*FIRST_LIMIT, least=hours))
+        lives = [one for one in required if one.output in OF_PAIR and math.isfinite(one.least)]
+        if all(one.least < hours for one in lives):
+            required = [one for one in required if one not in lives]
+            most = min((one.most for one in lives), default=math.inf)
+            required.append(Required(*FIRST_LIMIT, least=hours, most=most))
     return tuple(required)
 
 
@@ -461,7 +465,7 @@ def _required_row(ds: xr.Dataset, required: Required) -> dict[str, Any]:
         required.output,
         required.words,
         "requirement",
-        "pair",
+        body_of(required.output) or "pair",
         value,
         bound,
         required.units,

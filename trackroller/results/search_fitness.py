@@ -380,7 +380,7 @@ def recommended(best: Judged) -> int:
     Only the designs that miss least count. Lives count by their logarithm, because they span
     decades. Of equal designs, the first goal decides, then the longer life.
     """
-    shares = _normalised(best.costs)
+    shares = normalised(best.costs)
     return int(
         np.lexsort((-best.life, shares[:, 0], np.round((shares**2).sum(axis=1), 9), best.missed))[0]
     )
@@ -394,7 +394,7 @@ def best_in(best: Judged, goal: int) -> int:
     return int(np.lexsort((-best.life, *others, best.costs[:, goal], best.missed))[0])
 
 
-def _normalised(costs: np.ndarray) -> np.ndarray:
+def normalised(costs: np.ndarray) -> np.ndarray:
     """Return costs from 0 (best) to 1 (worst) by goal; goals that span a decade by their
     logarithm.
     """

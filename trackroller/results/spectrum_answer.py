@@ -5,7 +5,8 @@ Keys of `Answer.headline`: `low`, `high` [h], `km_low`, `km_high` [km], `ends` (
 that may come first), `body`, `extrapolated`, `guessed`, `block` (with the largest part of the
 damage of the first limit), `share` (this part [1]), `unknown` (bodies whose life is not known),
 `broken` and `exceeded` (lists of {limit, body, use [1], hours, blocks}), `open` (list of {limit,
-body}), `not_judged` and `why` (reasons).
+body}), `not_judged` and `why` (reasons), `state` (of the required travel: `met`, `open` or
+`missed`; '' without one).
 """
 
 from __future__ import annotations
@@ -22,10 +23,11 @@ import xarray as xr
 
 from trackroller.damage import LIMITS
 from trackroller.damage.verdict import STATES
+from trackroller.numerics.numbers import number_or_nan
 from trackroller.parameters import BODIES, PARAMETERS, REGIME_LABELS, REGIMES
 from trackroller.parameters.carriage_fields import long_name_of
 from trackroller.parameters.example import drive_question, is_absent
-from trackroller.results.answer import Answer, Caution, Column, Part, yes_or_blank
+from trackroller.results.answer import Answer, Caution, Column, Part, Required, yes_or_blank
 from trackroller.results.friction import friction_cautions
 from trackroller.results.life_columns import FIRST_LIMIT, past_data
 from trackroller.results.margins import First, Margin, is_guessed
@@ -36,6 +38,7 @@ from trackroller.results.roller_answer import (
     checks_left_out,
     facts_of_data,
     material_name,
+    state_of_life,
 )
 from trackroller.results.subgroups import level_text
 from trackroller.results.validity_flags import flags_of, not_judged
@@ -121,6 +124,7 @@ def answer_of_spectrum(ds: xr.Dataset) -> Answer:
         output=(FIRST_LIMIT[0], "life to the limit", "h"),
         table=_table(ds, own),
         columns=columns,
+        required=_required(ds),
         parts=tuple(_parts(ds, lives)),
         not_checked=_not_checked(ds),
         not_given=not_given_values(ds),
@@ -134,6 +138,28 @@ def answer_of_spectrum(ds: xr.Dataset) -> Answer:
             probability=float(ds.attrs.get("failure_probability", 0.5)),
         ),
     )
+
+
+def _required(ds: xr.Dataset) -> tuple[Required, ...]:
+    """Return the travel that the roller of a spectrum has to last."""
+    travel = number_or_nan(json.loads(str(ds.attrs["roller"])).get("required_travel"))
+    return (Required("travel", "travel", "km", least=travel),) if travel > 0 else ()
+
+
+def _state(first: First | None, rate: float, required: tuple[Required, ...]) -> str:
+    """Return whether the required travel is reached before the first limit; '' without one.
+
+    Parameters
+    ----------
+    first : the first limit, None if it is not known
+    rate : travel in an hour [km]
+    required : what is required
+    """
+    if not required:
+        return ""
+    if first is None:
+        return "open"
+    return state_of_life(first.low * rate, first.high * rate, required[0].least)
 
 
 def known_damage(ds: xr.Dataset, body: str) -> tuple[int, np.ndarray]:
@@ -289,6 +315,7 @@ def _headline(
         ],
         "not_judged": list(reasons),
         "why": [f"{row['body']}: {row['why']}" for row in lives.to_dict("records") if row["why"]],
+        "state": _state(first, _km_an_hour(ds), _required(ds)),
     }
     if first is None:
         return head

@@ -18,7 +18,7 @@ from trackroller.results.answer import Caution
 from trackroller.results.candidates import slip_margin
 from trackroller.results.case_columns import codes
 from trackroller.results.case_ranges import CaseRanges
-from trackroller.results.comparison import Comparison
+from trackroller.results.comparison import LOADS, UNEQUAL, Comparison
 from trackroller.results.friction import friction_cautions
 from trackroller.results.life_columns import OF_PAIR, body_lives
 from trackroller.results.solved_cases import SolvedCases
@@ -33,8 +33,6 @@ from trackroller.study.store.provenance import DATE
 CAUSES = {"lifts off": "axial_force", "skids": "motor_force"}
 # share of the cases lost by an input that was not given, from which on the input is asked for
 MANY = 0.5
-LOADS = ("radial_force", "axial_force", "motor_force")
-UNEQUAL = 0.01  # relative difference from which on loads of candidates are unlike
 NAMED_LEVELS = 4  # values that a warning lists
 
 
@@ -210,21 +208,21 @@ def cautions(own: Comparison, shown: pd.DataFrame, named: int = 1) -> tuple[Caut
             listed.append(
                 Caution("second_model", int(turned.sum()), len(shown), words, "candidates")
             )
-    edges = [edge for edge in shown["edge"].iloc[:named] if edge]
-    if edges:
-        listed.append(
-            Caution("at_end", len(edges), named, _edge_text(own, shown, edges[0]), "candidates")
-        )
+    edges = shown.iloc[:named]
+    edges = edges[edges["edge"] != ""]
+    if len(edges):
+        words = _edge_text(own, edges.iloc[0])
+        listed.append(Caution("at_end", len(edges), named, words, "candidates"))
     return (*listed, *_unlike(own, shown))
 
 
-def _edge_text(own: Comparison, shown: pd.DataFrame, edge: str) -> str:
-    """Return the choices of the leader at the ends of their levels, with these levels."""
+def _edge_text(own: Comparison, candidate: pd.Series) -> str:
+    """Return the choices of a candidate at the ends of their levels, with these levels."""
     parts = []
     for name in own.choices:
-        if long_name_of(name) in edge.split(", "):
+        if long_name_of(name) in candidate["edge"].split(", "):
             levels = own.results.levels(name)
-            value = shown[name].iloc[0]
+            value = candidate[name]
             side = "largest"
             if value == levels[0]:
                 side = "smallest"
@@ -330,6 +328,10 @@ def _unlike(own: Comparison, shown: pd.DataFrame) -> list[Caution]:
                 "candidates",
             )
         )
+    if own.unpaired:
+        words = _listed(long_name_of(name) for name in own.unpaired)
+        where = f"values that differ in conditions of one name: {words}"
+        listed.append(Caution("unlike", own.count, own.count, where, "candidates"))
     if own.count > 1 and not own.matched and not own.drawn and own.conditions:
         listed.append(
             Caution(

@@ -70,13 +70,17 @@ class Flag:
 
 
 def flags_of(ds: xr.Dataset) -> list[Flag]:
-    """Return the flags of a solved case in words.
+    """Return the flags of a solved case in words; those of a roller that wears once each, as the
+    last state says them.
 
     Parameters
     ----------
     ds : xarray.Dataset
-        Result of one case.
+        Result of one case, or of a roller that wears.
     """
+    if "travel" in ds.dims:
+        states = (ds.isel(travel=place) for place in range(ds.sizes["travel"]))
+        return list({flag.name: flag for state in states for flag in flags_of(state)}.values())
     bits = int(ds["validity"])
     flags = []
     by_body = {}

@@ -265,9 +265,7 @@ def states_part(ds: xr.Dataset) -> Part:
 
 def _warnings(ds: xr.Dataset, guesses: Part) -> Iterator[Caution]:
     """Yield the flags of all states, placeholders, and values that were not given."""
-    states = [ds.isel(travel=place) for place in range(ds.sizes["travel"])]
-    flags = {flag.name: flag for state in states for flag in flags_of(state)}
-    for flag in flags.values():
+    for flag in flags_of(ds):
         yield Caution(CODES.get(flag.name, "flagged"), 1, 1, f"{flag.sentence} {flag.remedy}", "")
     yield from guess_cautions(guesses)
     yield from friction_cautions(ds.attrs)

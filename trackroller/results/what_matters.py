@@ -12,9 +12,10 @@ from trackroller.parameters import REGIMES
 from trackroller.parameters.carriage_fields import long_name_of
 from trackroller.results.answer import Answer, Column, Curve
 from trackroller.results.case_ranges import CaseRanges
-from trackroller.results.comparison import compared_output
+from trackroller.results.comparison import Comparison, compared_output
 from trackroller.results.effect_curves import Effects
 from trackroller.results.ends_by_factor import ends_by_factor
+from trackroller.results.factor_levels import BINS, groups
 from trackroller.results.ranking import estimate, headline, index_words, order, robust_design
 from trackroller.results.requirement import required_of
 from trackroller.results.sensitivity import analysis_of
@@ -34,6 +35,7 @@ from trackroller.study.outputs import default_names
 # indices of pairs of factors, the most exact first
 PAIRED = ("S2", "interaction_share", "interaction")
 ROUNDING = 1e-12  # of the largest effect: a smaller one is 0 but for rounding
+OF_GROUPS = "group_ST"  # total index of a group of factors
 WORTH = 0.02  # of the variance: a smaller interaction is not named
 
 
@@ -70,12 +72,17 @@ def answer_what_matters(results: SolvedCases) -> Answer:
     -----
     `kind` is `indices` where the method has them for this output, otherwise `curves`. The total
     index ranks the factors of a Saltelli design; the height of their curves ranks all others.
+    Where a study asks for groups of factors (`analysis.groups`), a row is a group with its total
+    index, and the curve is that of its member with the largest effect.
     """
     ranges = shown_ranges(results)
     assert ranges is not None
-    curves = Effects.of(ranges).curves()
-    table = _table(results, ranges, curves)
+    effects = Effects.of(ranges)
+    curves = effects.curves()
     sens = _indices(results, ranges)
+    table = _table(results, ranges, curves)
+    if sens is not None and OF_GROUPS in sens:
+        table = _by_group(table, sens.sel(output=ranges.output[0]), curves)
     rows = results.of_one_model()
     kind = "indices"
     if sens is None:
@@ -83,10 +90,13 @@ def answer_what_matters(results: SolvedCases) -> Answer:
     return Answer(
         question="what matters",
         kind=kind,
-        headline={"factors": [_named(table, curves, place) for place in range(min(2, len(table)))]},
+        headline={
+            "factors": [_named(table, curves, place) for place in range(min(2, len(table)))],
+            **_met_by(results, rows),
+        },
         output=ranges.output,
         table=table,
-        columns=_columns(ranges, table, sens),
+        columns=_columns(ranges, table, sens, effects.by_ratio),
         required=required_of(results),
         curves=_in_order(curves, table),
         ends=ends_by_factor(results, ranges),
@@ -112,6 +122,43 @@ def _indices(results: SolvedCases, ranges: CaseRanges) -> xr.Dataset | None:
     return None
 
 
+def _by_group(table: pd.DataFrame, part: xr.Dataset, curves: tuple[Curve, ...]) -> pd.DataFrame:
+    """Return one row a group of factors: its indices, and the curve of the member with the largest
+    effect.
+    """
+    place = {curve.factor: number for number, curve in enumerate(curves)}  # the largest one first
+    own = table.set_index("name", drop=False)
+    value, low, high = estimate(part, OF_GROUPS).clip(0.0, 1.0)
+    rows = []
+    for number, title in enumerate(part["group_name"].values):
+        words = str(part["group_members"].values[number])
+        members = [name for name in own.index if long_name_of(name) in words.split(", ")]
+        first = min(members, key=lambda name: place.get(name, len(place)))
+        row = own.loc[first].to_dict()
+        row |= {"factor": str(title), "members": words, "largest": long_name_of(first)}
+        row |= {"index": value[number], "index_low": low[number], "index_high": high[number]}
+        row |= {"lost": int(own.loc[members, "lost"].max()), "interacts": ""}
+        if len(members) > 1:
+            roles = own.loc[members, "role"].unique()
+            row["role"] = " and ".join(roles)
+        rows.append(row)
+    return (
+        pd.DataFrame(rows)
+        .sort_values("index", ascending=False, kind="stable")
+        .reset_index(drop=True)
+    )
+
+
+def _met_by(results: SolvedCases, rows: np.ndarray) -> dict[str, Any]:
+    """Return how many cases meet the requirement, surely and perhaps; {} without one."""
+    own = Comparison.of(results)
+    if own is None or not own.required:
+        return {}
+    sure, may = own.met()
+    counts = {"meets": int(sure[rows].sum()), "perhaps": int(may[rows].sum())}
+    return counts | {"of": int(rows.sum())}
+
+
 def _table(results: SolvedCases, ranges: CaseRanges, curves: tuple[Curve, ...]) -> pd.DataFrame:
     """Return one row a factor: index with its interval, height and shape of its curve, and both of
     its ends.
@@ -119,6 +166,7 @@ def _table(results: SolvedCases, ranges: CaseRanges, curves: tuple[Curve, ...]) 
     sens = _indices(results, ranges)
     known = {curve.factor: curve for curve in curves}
     lost = _lost(results, ranges)
+    met = _met_at(results)
     rows = []
     for name in (n for n in results.factors if n not in OPTION_FACTORS):
         row: dict[str, Any] = {
@@ -131,7 +179,7 @@ def _table(results: SolvedCases, ranges: CaseRanges, curves: tuple[Curve, ...]) 
             "at_low": np.nan,
             "at_high": np.nan,
             "lost": lost[name],
-        }
+        } | met.get(name, {})
         curve = known.get(name)
         if curve is not None:
             row["height"] = curve.height
@@ -212,18 +260,34 @@ def pair_shares(sens: xr.Dataset | None, output: str) -> dict[str, Any]:
 
 def _lost(results: SolvedCases, ranges: CaseRanges) -> dict[str, int]:
     """Return how many cases are lost (skids, lift-offs and others) between the levels of a factor,
-    most less least.
+    or its classes of equally many cases: most less fewest.
     """
     rows = results.of_one_model()
-    bad = (~ranges.holds)[rows]
+    lost = ~ranges.holds[rows]
     out = {}
     for name in results.factors:
-        own = results.table[name].to_numpy()[rows]
-        if len(results.levels(name)) > 12:
-            out[name] = int(bad.sum())
-            continue
-        counts = [int(bad[own == level].sum()) for level in results.levels(name)]
-        out[name] = max(counts, default=0) - min(counts, default=0)
+        classes = groups(results.table, name, rows)
+        counts = np.bincount(classes.index, weights=lost, minlength=len(classes))
+        out[name] = int(counts.max() - counts.min())
+    return out
+
+
+def _met_at(results: SolvedCases) -> dict[str, dict[str, float]]:
+    """Return the smallest and the largest share of cases that surely meet the requirement among the
+    levels of each factor, or its classes; {} without a requirement.
+    """
+    own = Comparison.of(results)
+    if own is None or not own.required:
+        return {}
+    rows = results.of_one_model()
+    sure = own.met()[0][rows]
+    out = {}
+    for name in results.factors:
+        classes = groups(results.table, name, rows)
+        number = np.bincount(classes.index, minlength=len(classes))
+        hits = np.bincount(classes.index, weights=sure, minlength=len(classes))
+        shares = hits[number > 0] / number[number > 0]
+        out[name] = {"meets_low": float(shares.min()), "meets_high": float(shares.max())}
     return out
 
 
@@ -244,6 +308,8 @@ def _named(table: pd.DataFrame, curves: tuple[Curve, ...], place: int) -> dict[s
         "name": row["name"],
         "height": float(row["height"]),
     }
+    if row.get("largest", row["factor"]) != row["factor"]:
+        head["largest"] = row["largest"]
     head |= {key: float(row.get(key, np.nan)) for key in ("index", "index_low", "index_high")}
     if curve is not None:
         low, high = (0, len(curve.levels) - 1)
@@ -255,6 +321,7 @@ def _named(table: pd.DataFrame, curves: tuple[Curve, ...], place: int) -> dict[s
             "to": curve.levels[high],
             "at_from": float(curve.middle[low]),
             "at_to": float(curve.middle[high]),
+            "by_ratio": curve.by_ratio,
         }
     return head
 
@@ -267,6 +334,8 @@ def _in_order(curves: tuple[Curve, ...], table: pd.DataFrame) -> tuple[Curve, ..
 def _index_columns(ranges: CaseRanges, table: pd.DataFrame, sens: xr.Dataset) -> list[Column]:
     """Return the columns of the index of each factor, and of the factors it acts together with."""
     index = headline(sens)
+    if "members" in table:
+        index = OF_GROUPS
     meaning = str(sens[index].attrs.get("long_name", index))
     scale = ""
     if "scale" in sens.coords:
@@ -295,7 +364,7 @@ def _index_columns(ranges: CaseRanges, table: pd.DataFrame, sens: xr.Dataset) ->
 
 
 def _columns(
-    ranges: CaseRanges, table: pd.DataFrame, sens: xr.Dataset | None
+    ranges: CaseRanges, table: pd.DataFrame, sens: xr.Dataset | None, by_ratio: bool
 ) -> tuple[Column, ...]:
     """Return the columns of the table of factors."""
     _, words, units = ranges.output
@@ -304,14 +373,23 @@ def _columns(
         Column("role", "Role", "", "choice: the designer sets it. Condition: the use does", "text"),
         Column("range", "Range", "", "levels of the factor in this study", "text"),
     ]
+    grouped = "members" in table
+    if grouped:
+        of_largest = "member of the group with the largest effect, which range and curve are of"
+        columns = [
+            Column(
+                "factor", "Group", "", "factors that the study puts together", "text", "", "name"
+            ),
+            Column("members", "Factors", "", "factors of the group", "text"),
+            columns[1],
+            Column("largest", "Its largest", "", of_largest, "text"),
+            columns[2],
+        ]
     if sens is not None:
         columns += _index_columns(ranges, table, sens)
-    if (table["at_low"] <= 0).any():
-        meaning = "largest less smallest value of the curve"
-        height = Column("height", "Height", units, meaning, "number")
-    else:
-        meaning = "largest over smallest value of the curve"
-        height = Column("height", "Height", "", meaning, "ratio")
+    height = Column("height", "Height", units, "largest less smallest value of the curve")
+    if by_ratio:
+        height = Column("height", "Height", "", "largest over smallest value of the curve", "ratio")
     columns += [
         height,
         Column(
@@ -337,8 +415,15 @@ def _columns(
             "lost",
             "Rows lost",
             "",
-            "cases that are not held: most of a level less fewest of a level",
+            "cases that are not held: most of a level less fewest of a level; many levels stand in "
+            f"{BINS} classes of equally many cases",
             "count",
         ),
     ]
+    if "meets_low" in table:
+        meaning = (
+            "cases that surely meet the requirement: smallest and largest share of a level, or of "
+            "a class"
+        )
+        columns.append(Column("meets_low", "Meets it", "1", meaning, "share", until="meets_high"))
     return tuple(columns)

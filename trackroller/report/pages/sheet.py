@@ -35,7 +35,7 @@ from trackroller.report.words.assumptions import (
     standards,
     strength_sentences,
 )
-from trackroller.results.answer import Answer
+from trackroller.results.answer import Answer, plain_value
 from trackroller.results.answer_of_data import answer_of_data
 from trackroller.results.roller_answer import answer_of_roller, materials_of_case
 from trackroller.results.validity_flags import flags_of
@@ -228,7 +228,7 @@ def as_json(ds: xr.Dataset) -> str:
         str(name): {
             "dims": list(variable.dims),
             "units": variable.attrs.get("units", "1"),
-            "value": _plain(variable.values.tolist()),
+            "value": plain_value(variable.values.tolist()),
         }
         for name, variable in ds.variables.items()
     }
@@ -245,7 +245,7 @@ def as_json(ds: xr.Dataset) -> str:
     duty = duty_of(ds)
     if duty is not None:
         for name in (n for n, of in content.items() if of["units"] == "h" and is_life(n)):
-            content[name]["years"] = _plain(years(ds[name].values, duty).tolist())
+            content[name]["years"] = plain_value(years(ds[name].values, duty).tolist())
     content["doubts"] = doubts_of(ds)
     answer = answer_of_data(ds)
     if answer is not None:
@@ -253,23 +253,12 @@ def as_json(ds: xr.Dataset) -> str:
     if "case" in ds.attrs:
         inputs = inputs_of(ds)
         content["inputs"] = {
-            name: {"value": _plain(v), "default": is_default(name, v)} for name, v in inputs.items()
+            name: {"value": plain_value(v), "default": is_default(name, v)}
+            for name, v in inputs.items()
         }
         content["materials"] = materials_of(ds)
         content["friction"] = friction_records(ds.attrs)
         content["flags"] = [vars(flag) for flag in flags_of(ds)]
-        content["options"] = {k: _plain(v) for k, v in ds.attrs.items() if k not in _RECORDS}
+        content["options"] = {k: plain_value(v) for k, v in ds.attrs.items() if k not in _RECORDS}
         content["versions"] = versions()
     return json.dumps(content)
-
-
-def _plain(value: Any) -> Any:
-    if isinstance(value, list):
-        return [_plain(v) for v in value]
-    if isinstance(value, np.generic):
-        return _plain(value.item())
-    if isinstance(value, float) and not np.isfinite(value):
-        if np.isnan(value):
-            return None
-        return str(value)
-    return value

@@ -56,12 +56,12 @@ def effects(answer: Answer) -> list[Effect]:
 
 
 def height_words(curve: Curve) -> str:
-    """Return the height of a curve: '×42', or the difference of an output that changes its sign."""
+    """Return the height of a curve: '×42', or a difference where it is no ratio."""
     if math.isinf(curve.height):
         return "to 0"
-    if curve.middle.size and np.nanmin(curve.middle) < 0:
-        return f"Δ {grouped(curve.height, 2)}"
-    return f"×{grouped(curve.height, 2)}"
+    if curve.by_ratio:
+        return f"×{grouped(curve.height, 2)}"
+    return f"Δ {grouped(curve.height, 2)}"
 
 
 def _inside(curve: Curve) -> np.ndarray:
@@ -200,7 +200,11 @@ def caption(answer: Answer) -> str:
     )
     if any(math.isfinite(end) for one in answer.required for end in (one.least, one.most)):
         text += "; dashed: required"
-    text += ". × is the largest over the smallest middle."
+    ratios = all(curve.by_ratio for curve in answer.curves)
+    height = "Δ is the largest less"
+    if ratios:
+        height = "× is the largest over"
+    text += f". {height} the smallest middle."
     numbered = [
         curve for curve in answer.curves if not curve.ordered and len(curve.levels) > MOST_NAMES
     ]

@@ -12,7 +12,6 @@ from trackroller.report.bounds import required_of_output
 from trackroller.report.numbers import as_required, unit_text
 from trackroller.report.pictures.axis import Axis
 from trackroller.report.pictures.marks import (
-    anchor_at,
     element,
     joined,
     label,
@@ -64,8 +63,8 @@ def lower_axis(axis: Axis, title: str, width: float, lines: bool = False) -> Mar
 
 
 def lower_names(names: Sequence[str], places: Sequence[float], width: float) -> Markup:
-    """Return names below a picture; a name that is longer than its share of the width is cut, its
-    title is whole.
+    """Return names below a picture, each in the middle of its share of the width; a name that is
+    longer is cut, its title is whole.
     """
     share = width / max(1, len(names))
     parts = []
@@ -75,15 +74,8 @@ def lower_names(names: Sequence[str], places: Sequence[float], width: float) -> 
         if text != name:
             whole = element("title", name)
         content = joined([Markup.escape(text), Markup(whole)])
-        anchor = anchor_at(place)
-        text_anchor = anchor
-        if anchor == "start":
-            text_anchor = ""
-        parts.append(
-            element(
-                "text", content, x=percent_place(place), y="100%", dy=15, text_anchor=text_anchor
-            )
-        )
+        at = percent_place(place)
+        parts.append(element("text", content, x=at, y="100%", dy=15, text_anchor="middle"))
     return joined(parts)
 
 

@@ -19,7 +19,13 @@ from trackroller.report.pictures.frame import (
     upright_axis,
     with_unit,
 )
-from trackroller.report.pictures.marks import dot, joined, label, spread_labels
+from trackroller.report.pictures.marks import (
+    dot,
+    joined,
+    label,
+    spread_labels,
+    width_of,
+)
 from trackroller.report.pictures.picture import Picture, caption_of, row_names
 from trackroller.results.answer import Answer
 
@@ -55,7 +61,7 @@ def draw_front(answer: Answer, data: Mapping[str, Any]) -> Picture | None:
         for i, text in zip(data["named"], titles, strict=True)
         if known[i]
     ]
-    parts += _named_dots(named, across, up)
+    parts += _named_dots(named, across, up, values[rows][known[rows]])
     words, units = data["words"], data["units"]
     parts.append(lower_axis(across, with_unit(capital(words[1]), units[1]), WIDE))
     left = left_room(up, TALL)
@@ -93,26 +99,56 @@ def _thinned(best: np.ndarray) -> list[int]:
     return sorted([*front.tolist(), *others.tolist()])
 
 
-def _named_dots(named: Sequence[Mapping[str, Any]], across: Axis, up: Axis) -> list[Markup]:
-    """Return large dots with their titles, on the side that has room, at heights that do not
-    collide.
+def _named_dots(
+    named: Sequence[Mapping[str, Any]], across: Axis, up: Axis, drawn: np.ndarray
+) -> list[Markup]:
+    """Return large dots with their titles, on the side where they cover fewer dots, at heights that
+    do not collide.
+
+    Parameters
+    ----------
+    named : designs with `x`, `y` and `title`
+    across, up : axes of both goals
+    drawn : both goals of each dot, shape (n, 2)
     """
     places = [(across.place(float(one["x"])), 100 - up.place(float(one["y"]))) for one in named]
     heights = [y * TALL / 100 for _, y in places]
     texts = spread_labels(heights, LINE, LINE / 2, TALL - LINE / 2)
+    dots = np.array([(across.place(x), (100 - up.place(y)) * TALL / 100) for x, y in drawn])
     parts = []
     for one, (x, y), height in zip(named, places, texts, strict=True):
-        end = x > 50
+        title = str(one["title"])
+        end = _stands_left(title, x, height, dots)
         parts.append(dot("d cm", x, y, 5.5))
-        if end:
-            room = x
-        else:
-            room = 100 - x
-        text = cut(str(one["title"]), WIDE * room / 100)
+        room = 100 - x
         anchor = "start"
         shift = 12
         if end:
+            room = x
             anchor = "end"
             shift = -12
+        text = cut(title, WIDE * room / 100)
         parts.append(label(text, x, f"{height:.0f}", anchor, "strong", dx=shift, dy=4))
     return parts
+
+
+def _stands_left(title: str, x: float, height: float, dots: np.ndarray) -> bool:
+    """Return whether a title stands to the left of its dot: where its text is less cut, or covers
+    fewer dots.
+
+    Parameters
+    ----------
+    title : the text
+    x : place of its dot across the picture [%]
+    height : of the text [px]
+    dots : places of the dots, [%] and [px], shape (n, 2)
+    """
+    room = {True: WIDE * x / 100, False: WIDE * (100 - x) / 100}
+    if min(room.values()) < width_of(title):
+        return x > 50
+    beside = np.abs(dots[:, 1] - height) < LINE / 2
+    span = 100 * (width_of(title) + 12) / WIDE
+    away = dots[:, 0] - x
+    left = int((beside & (away < -1) & (away > -span)).sum())
+    right = int((beside & (away > 1) & (away < span)).sum())
+    return x > 50 if left == right else left < right
