@@ -284,6 +284,17 @@ def test_doubts_about_rollers_are_told(folder):
     assert doubts_of(tr.carriage(values, lives=False)) == told
 
 
+def test_places_in_metres_are_asked_about():
+    values = shuttle(cases=[{"name": "run", "speed": "1 m/s"}])
+    for entry in values["rollers"].values():
+        entry["at"] = [value / 1000 for value in entry["at"]]
+    (text,) = doubts_of(tr.carriage(values, lives=False))
+    assert text.startswith("largest distance of the rollers = 0.3 mm is 33.3 times below") and "'0.3 m'" in text
+    for entry in values["rollers"].values():
+        entry["at"] = [f"{value} m" for value in entry["at"]]
+    assert doubts_of(tr.carriage(values, lives=False)) == [], "the remedy works"
+
+
 def test_doubts_that_rollers_share_are_told_once():
     values = shuttle(rollers=rollers_between(roller=ROLLER | {"velocity": 0.1}), cases=[{"name": "stand"}])
     ds = tr.carriage(values, lives=False)

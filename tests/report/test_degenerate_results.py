@@ -25,8 +25,6 @@ from trackroller.report.pages.study import write_report
 from trackroller.report.printed import print_answer
 from trackroller.report.workbook import write_results, write_roller
 
-# a warning of NumPy would stand between the lines of the terminal
-pytestmark = pytest.mark.filterwarnings("error::RuntimeWarning")
 QUICK = {"contact_model": "sliding", "accuracy": "preview"}
 OUTPUTS = ["forces", "contact", "friction_work", "peak_stress", "life", "limits"]
 BASE = {"motor_force": 0, "friction_coefficient": 0.1, "guide_overrollings_per_hour": 60}
@@ -179,6 +177,7 @@ def told(page: str) -> list[str]:
     return [line for line in visible(page) if re.search(r"\bnan\b", line)]
 
 
+@pytest.mark.filterwarnings("error::RuntimeWarning")  # it would stand between the lines of the terminal
 @pytest.mark.parametrize("how", POOR)
 @pytest.mark.parametrize(
     "name", [pytest.param(name, marks=() if name in QUICKEST else pytest.mark.slow) for name in STUDIES]

@@ -48,7 +48,7 @@ from trackroller.parameters import BODIES, MATERIAL_FIELDS
 from trackroller.parameters.example import used_of
 from trackroller.roller.case import Case, to_table
 from trackroller.roller.dataset import NOTES, file_attributes, validity_bit
-from trackroller.roller.doubts import doubts, ratings
+from trackroller.roller.doubts import doubts, ratings, sentence_of_unusual
 from trackroller.roller.duty import OVERROLLINGS, overrollings_per_hour, with_duty, years
 from trackroller.roller.geometry import contact_geometry
 from trackroller.roller.requirement import LIVES_OF_PAIR
@@ -79,6 +79,7 @@ CONVENTIONS = (
     "limit (Palmgren-Miner)",
 )
 ROUNDING = 1e-14  # of the largest radial force: an axial force below it is 0
+DISTANCES = (10.0, 1e5)  # ASSUME: mm; the largest distance of the rollers of a carriage
 ENDS = {
     "one_contact": "to the first roller on one contact, without friction",
     "lift_off": "to the first lift-off",
@@ -574,7 +575,18 @@ def doubts_of_rollers(whole: Carriage, ds: xr.Dataset) -> list[str]:
             by_text.setdefault(text, []).append(roller.name)
     if len(whole.rollers) == 1:
         return list(by_text)
-    return [f"Roller {', '.join(names)}: {text}" for text, names in by_text.items()]
+    distances = _unusual_distances(whole)
+    return distances + [f"Roller {', '.join(names)}: {text}" for text, names in by_text.items()]
+
+
+def _unusual_distances(whole: Carriage) -> list[str]:
+    """Return a sentence if the rollers stand far closer or wider than those of carriages."""
+    places = np.array([roller.at for roller in whole.rollers])
+    widest = float(np.ptp(places, axis=0).max())
+    text = sentence_of_unusual("largest distance of the rollers", widest, "mm", DISTANCES, "")
+    if text and widest > 0:
+        return [text]
+    return []
 
 
 def _doubted_ratings(roller: MountedRoller, radial: np.ndarray) -> Iterator[str]:
