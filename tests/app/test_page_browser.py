@@ -301,7 +301,7 @@ def test_a_study_is_made_by_clicks_and_by_text(page):
     assert "friction_coefficient" in text and "axial_force: 45" in text
     assert "3, 0 of them solved" in page.run("document.querySelector('.plan').textContent")
     page.run("""(() => { const area = document.querySelector('textarea');
-        area.value += 'design: lhs\\nsamples: seven\\n'; area.focus(); area.dispatchEvent(new Event('input')); })()""")
+        area.value += 'method: lhs\\nsamples: seven\\n'; area.focus(); area.dispatchEvent(new Event('input')); })()""")
     page.until("document.querySelector('.study .warnings').textContent.includes('samples')")
     assert page.run("document.querySelector('button.main').disabled")
     page.run("""(() => { const area = document.querySelector('textarea');
