@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 from pathlib import Path
 
@@ -146,3 +147,44 @@ def test_requirements_that_nothing_meets_name_what_excludes_each_roller(tmp_path
     ):
         found = tr.size(case, "rollers.csv", **required)
         assert found.least == "" and found.table["excluded_by"].str.contains(words).all()
+
+
+def test_a_door_is_sized_from_an_empty_folder_by_what_the_messages_say(tmp_path, monkeypatch):
+    """400 strokes a day of 2 m at 30 m/min, 365 days a year for 3 years are 486.7 h of travel."""
+    monkeypatch.chdir(tmp_path)
+    call = CliRunner().invoke
+    with pytest.raises(InputError, match="trackroller size --example door.yaml".replace(".", r"\.")):
+        call(app, ["size", "door.yaml", "--shelf", "rollers.csv"], catch_exceptions=False)
+    assert call(app, ["size", "--example", "door.yaml"]).exit_code == 0
+    with pytest.raises(InputError, match=r"trackroller shelf --example rollers\.csv"):
+        call(app, ["size", "door.yaml", "--life", "3 years"], catch_exceptions=False)
+    assert call(app, ["shelf", "--example", "rollers.csv"]).exit_code == 0
+    words = ["size", "door.yaml", "--shelf", "rollers.csv", "--life", "3 years", "--least", "price", "-q"]
+    done = call(app, [*words, "--json"], catch_exceptions=False)
+    record = json.loads(done.stdout)
+    assert done.exit_code == 0 and record["least"] == "small"
+    for row in record["rollers"]:
+        assert row["life_hours"] / row["life_ratio"] == pytest.approx(3 * 365 * 400 * 2 / (30 * 60), rel=1e-12)
+    assert not {"radial_force", "motor_force", "friction_coefficient"} & {*record["not_given"]}
+
+
+def test_values_that_nobody_gave_are_said(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert CliRunner().invoke(app, ["shelf", "--example", "rollers.csv"]).exit_code == 0
+    Path("case.yaml").write_text("radial_force: -100\ncontact_model: sliding\naccuracy: preview\n")
+    done = CliRunner().invoke(app, ["size", "case.yaml", "--shelf", "rollers.csv", "--life", "9", "-q"])
+    assert "taken from the paper's example: " in done.output and "motor_force -30 N" in done.output
+
+
+def test_each_bearing_of_the_repository_states_its_page_and_the_ratings_of_a_row():
+    """A pair of 6000: C = 4.55 kN and C_0 = 1.96 kN each, the outer diameter 26 mm."""
+    text = run(SHELVES / "bearings.csv", "--of", "bearing")
+    assert "rows: 10" in text
+    lines = [line.split(";") for line in (SHELVES / "bearings.csv").read_text().splitlines() if line[0] != "#"]
+    rows = {line[0]: dict(zip(lines[0], line, strict=True)) for line in lines[1:]}
+    own = rows["2 x 6000"]
+    values = (own["dynamic_rating [N]"], own["static_rating [N]"], own["outer_diameter [mm]"])
+    assert values == ("4550", "1960", "26")
+    for row in rows.values():
+        assert row["page"].startswith("https://") and row["rows"] == "2"
+        assert float(row["static_rating [N]"]) < float(row["dynamic_rating [N]"])

@@ -214,3 +214,27 @@ def test_a_pressure_beyond_the_safety_excludes_a_roller(shelf):
     assert found.loc["small", "verdict"] == "not enough"
     assert "pressure of the roller" in found.loc["small", "excluded_by"]
     assert found.loc["mid", "verdict"] == "enough"
+
+
+def test_forty_rollers_equal_forty_single_sheets_bit_for_bit(tmp_path):
+    rows = [f"R{i};{16 + 0.6 * i:.1f};{-6.4 - 0.02 * (i % 7):.2f};{HARD};{i}" for i in range(40)]
+    path = tmp_path / "rollers.csv"
+    path.write_text("\n".join([HEAD, *rows]) + "\n")
+    table = tr.size(CASE | QUICK, path, life=1).table.set_index("roller")
+    for row in rows:
+        life = alone(row)["pair_life_to_first_limit_hours"].item()
+        assert table.loc[row.split(";")[0], "life_hours"] == life
+
+
+def test_the_bearing_ends_a_roller_after_its_life_by_hand(tmp_path):
+    """C = 3000 N and P = 500 N a row: (C/P)^3 million turns, times 2^-0.9; the distance drops moments."""
+    head = "name;axis_distance;roller_profile_radius;roller_material;bearing_rows;bearing_row_distance;bearing_kind"
+    head += ";bearing_dynamic_rating;bearing_static_rating;bearing_e;bearing_X;bearing_Y;bearing_X0;bearing_Y0"
+    path = tmp_path / "rollers.csv"
+    path.write_text(f"{head}\nA;30;-6.4;{HARD};2;1000000;ball;3000;1500;0.3;0.56;1.5;0.6;0.5\n")
+    case = CASE | QUICK | {"radial_force": -1000, "axial_force": 0, "motor_force": 0, "failure_probability": 0.1}
+    found = tr.size(case, path, life=100)
+    radius = 30 - 6 * (3**0.5) / 2
+    turns = (3000 / 500) ** 3 * 2**-0.9 * 1e6
+    bearing = found.results.data["life_hours_by_limit"].sel(limit="bearing", body="roller").max().item()
+    assert bearing == pytest.approx(turns * 2 * 3.141592653589793 * radius / 1e3 / (60 * 60), rel=1e-4)

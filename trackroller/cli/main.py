@@ -340,7 +340,9 @@ def size(  # noqa: PLR0913 - one argument for each option of the command
             show_default=False,
         ),
     ],
-    shelf: Annotated[Path, typer.Option("--shelf", help="table of rollers", show_default=False)],
+    shelf: Annotated[
+        Path | None, typer.Option("--shelf", help="table of rollers", show_default=False)
+    ] = None,
     life: Annotated[
         str | None, typer.Option("--life", help="required life: '3 years' beside a duty, or hours")
     ] = None,
@@ -362,6 +364,9 @@ def size(  # noqa: PLR0913 - one argument for each option of the command
     results: Results = Path("results"),
     as_json: Annotated[bool, typer.Option("--json", help="print JSON")] = False,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="no progress bar")] = False,
+    example: Annotated[
+        bool, typer.Option("--example", help="write a case file to start from")
+    ] = False,
 ) -> None:
     """Find the least roller of a shelf that is enough for a life, failures and overload; 1 if none
     is.

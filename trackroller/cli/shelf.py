@@ -25,7 +25,7 @@ from trackroller.study.design.entries import SHELVES
 from trackroller.study.design.levels import entries, in_words
 from trackroller.study.file.load import parse_study
 from trackroller.study.file.shelf import ROLLER, base_beside_shelf, with_rows, without_overridden
-from trackroller.study.file.shelf_example import EXAMPLE
+from trackroller.study.file.shelf_example import CASE, EXAMPLE
 from trackroller.study.file.study import Study
 from trackroller.study.store.crate import write_crate
 from trackroller.study.store.ledger import study_folder
@@ -70,24 +70,50 @@ def print_shelf(
 
 
 def _write_example(file: Path | None) -> None:
-    """Write or print the example of a shelf; a file that is there stays."""
+    """Write or print the example of a shelf."""
     if file is None:
         print(EXAMPLE, end="")
         return
-    if file.suffix.lower() != ".csv" or os.path.lexists(file):
-        wrong = ""
-        if os.path.lexists(file):
-            wrong = "is there already"
-        allowed = "a new file whose name ends in .csv"
-        raise InputError("shelf", str(file), allowed, "Give another name.", wrong)
-    write_text(writable(file), EXAMPLE)
+    _write_new(file, EXAMPLE, ".csv", "shelf")
     then = f"trackroller shelf {shlex.quote(str(file))}"
     print_line(f"{file} is written. Write your rollers into it, then: {then}")
 
 
+def _write_new(file: Path, text: str, end: str, what: str) -> None:
+    """Write a file to start from; a file that is there stays."""
+    if file.suffix.lower() != end or os.path.lexists(file):
+        wrong = ""
+        if os.path.lexists(file):
+            wrong = "is there already"
+        allowed = f"a new file whose name ends in {end}"
+        raise InputError(what, str(file), allowed, "Give another name.", wrong)
+    write_text(writable(file), text)
+
+
+def _write_example_case(file: Path) -> int:
+    """Write the example of a case with loads, rail and duty, and return the exit code."""
+    _write_new(file, CASE, ".yaml", "case")
+    then = f"trackroller size {shlex.quote(str(file))} --shelf rollers.csv --life '3 years'"
+    start = "trackroller shelf --example rollers.csv writes a shelf"
+    print_line(f"{file} is written. Change its values, then: {then} ({start})")
+    return 0
+
+
+def _check_given(case: Path, shelf: Path | None) -> Path:
+    """Return the path of the shelf; a user who has no files learns how to get them."""
+    if not case.exists():
+        remedy = f"Check the path, or write one to start from: trackroller size --example {case}"
+        raise InputError("case file", str(case), "the path of a file", remedy, "does not exist")
+    if shelf is None:
+        start = "trackroller shelf --example rollers.csv"
+        remedy = f"Add --shelf rollers.csv; {start} writes one to start from."
+        raise InputError("--shelf", None, "a table of rollers", remedy, "is missing")
+    return shelf
+
+
 def print_size(  # noqa: PLR0913 - one argument for each option of the command
     case: Path,
-    shelf: Path,
+    shelf: Path | None,
     life: str | None,
     failures: str | None,
     safety: str | None,
@@ -97,11 +123,16 @@ def print_size(  # noqa: PLR0913 - one argument for each option of the command
     results: Path,
     as_json: bool,
     quiet: bool,
+    example: bool,
 ) -> int:
     """Print which rollers of a shelf are enough, and return the exit code: 0 if one is.
 
-    With `each`, `out` receives the carriage file with the roller of each place.
+    With `each`, `out` receives the carriage file with the roller of each place. With `example`,
+    `case` is written as a file to start from.
     """
+    if example:
+        return _write_example_case(case)
+    shelf = _check_given(case, shelf)
     target = None
     if out is not None:
         target = _target(out, each)

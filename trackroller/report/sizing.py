@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from trackroller.numerics.units import PLAIN
 from trackroller.parameters import PARAMETERS
+from trackroller.parameters.example import with_unit
 from trackroller.study.design.entries import SIZES
 from trackroller.study.file.shelf import ROLLER
 
@@ -36,7 +37,9 @@ def lead_of(sizing: Sizing) -> str:
 
 
 def notes_of(sizing: Sizing) -> list[str]:
-    """Return a sentence on rollers that may be enough and less, and on those without a rank."""
+    """Return a sentence on rollers that may be enough and less, on those without a rank, and on
+    values that nobody gave.
+    """
     notes = []
     if sizing.open_and_less:
         names = ", ".join(sizing.open_and_less)
@@ -44,6 +47,9 @@ def notes_of(sizing: Sizing) -> list[str]:
     if sizing.unranked:
         names = ", ".join(sizing.unranked)
         notes.append(f"{names}: no {sizing.least_of}, and so not ranked by it")
+    if sizing.not_given:
+        values = ", ".join(with_unit(name, value) for name, value in sizing.not_given.items())
+        notes.append(f"not given, and taken from the paper's example: {values}. Give yours")
     return notes
 
 

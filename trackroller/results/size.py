@@ -23,7 +23,7 @@ from trackroller.errors import InputError, unknown_name
 from trackroller.files import files_beside
 from trackroller.numerics.numbers import finite_number
 from trackroller.numerics.plain import mapping_of
-from trackroller.parameters.example import EXAMPLE
+from trackroller.parameters.example import EXAMPLE, used_of
 from trackroller.results.load_ratio import EXACT, FORCES, LoadRatios, load_ratios
 from trackroller.results.mounting import Mounting, rollers_by_place
 from trackroller.results.results import Results
@@ -43,6 +43,7 @@ from trackroller.study.file.shelf import (
 )
 from trackroller.study.file.study import Study
 from trackroller.study.outputs import of_fatigue
+from trackroller.study.spectrum.file import LOAD_FIELDS
 from trackroller.yaml_file import read_mapping
 
 # keys that a study file has and a case file has not
@@ -79,6 +80,8 @@ class Sizing:
         Units of the user's own columns of the shelf, as far as they are given.
     mounting : Mounting, optional
         The roller of each place of a carriage, if each takes its own.
+    not_given : mapping of str to object
+        Parameters that nobody gave, with the values of the paper's example that were used.
     """
 
     table: pd.DataFrame
@@ -90,6 +93,7 @@ class Sizing:
     ratios: LoadRatios | None = field(default=None, repr=False)
     units: Mapping[str, str] = field(default_factory=dict, repr=False)
     mounting: Mounting | None = field(default=None, repr=False)
+    not_given: Mapping[str, Any] = field(default_factory=dict, repr=False)
 
     @property
     def open_and_less(self) -> tuple[str, ...]:
@@ -113,6 +117,7 @@ class Sizing:
             "unranked": list(self.unranked),
         }
         head["open_and_less"] = list(self.open_and_less)
+        head["not_given"] = dict(self.not_given)
         if self.ratios is not None:
             head["load_ratios"] = _as_json(self.ratios.table.reset_index())
         if self.mounting is not None:
@@ -318,7 +323,10 @@ def _sized_spectrum(
     )
     table = table[[*(name for name in table if name != "excluded_by"), "excluded_by"]]
     units = study.parsed[ROLLER].units
-    return replace(_ranked(table, least or "", None, None), ratios=ratios, units=units)
+    example = _example_values(study)
+    not_given = {name: value for name, value in example.items() if name not in LOAD_FIELDS}
+    ranked = _ranked(table, least or "", None, None)
+    return replace(ranked, ratios=ratios, units=units, not_given=not_given)
 
 
 def _keys_of(case: Path | str | Mapping[str, Any], shelf: Path | str) -> dict[str, Any]:
@@ -499,7 +507,14 @@ def sizing_of(
     if least and least not in table:
         table[least] = _by_roller(solved, solved.quantity(least)[0])
     units = solved.study.parsed[ROLLER].units
-    return replace(_ranked(table, least, at_loads, overload), ratios=ratios, units=units)
+    ranked = _ranked(table, least, at_loads, overload)
+    return replace(ranked, ratios=ratios, units=units, not_given=_example_values(solved.study))
+
+
+def _example_values(study: Study) -> dict[str, Any]:
+    """Return the parameters of a study that nobody gave, with their values."""
+    base = study.config.base
+    return used_of(base, [name for name in study.not_given if name in base])
 
 
 def _by_roller(results: Results, values: np.ndarray) -> list[Any]:

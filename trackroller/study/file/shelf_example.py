@@ -1,4 +1,22 @@
-"""The shelf with which a user starts: of `trackroller shelf --example`."""
+"""The shelf and the case with which a user starts: of `trackroller shelf --example` and of
+`trackroller size --example`.
+"""
+
+CASE = """\
+# Loads, rail and duty of one roller, for trackroller size. Change every value, or remove its line.
+radial_force: -294 N                        # presses the roller on its rail: 120 kg on four rollers
+axial_force: 20 N                           # along the axis of the roller
+motor_force: 0 N                            # of a roller that drives
+friction_coefficient: 0.15
+velocity: 30 m/min
+guide_profile_radius: 6 mm                  # half the diameter of a round rail
+guide_curve_radius: inf                     # a straight rail
+guide_material: 1.7225-quenched-tempered    # trackroller materials list shows the names
+duty: {strokes_per_day: 400, stroke: 2 m, days_per_year: 365, rollers_on_rail: 2}
+# or by hours, with the overrollings of a point of the rail:
+# duty: {hours_per_day: 8, days_per_year: 250}
+# guide_overrollings_per_hour: 60
+"""
 
 EXAMPLE = """\
 # Rollers for a round rail of 12 mm. Every value is made up: write those of your catalogue page.
