@@ -81,12 +81,7 @@ def lower_names(names: Sequence[str], places: Sequence[float], width: float) -> 
             text_anchor = ""
         parts.append(
             element(
-                "text",
-                content,
-                x=percent_place(place),
-                y="100%",
-                dy=15,
-                text_anchor=text_anchor,
+                "text", content, x=percent_place(place), y="100%", dy=15, text_anchor=text_anchor
             )
         )
     return joined(parts)
