@@ -52,17 +52,21 @@ def shears(
     # numba compiles on import, and planning needs none of it
     from trackroller.damage.deep_planes import Loads, shakedown_shears
 
-    at = t.solved_patches
+    case, contact = t.solved_patches
+    wanted = np.ones((case.size, len(BODIES)), dtype=bool)
+    if bounded is not None:
+        wanted = ~bounded[case]
+    some = wanted.any(axis=1)
+    at = case[some], contact[some]
     lateral, rolling, pressure = (
         field[at] for field in (t.shear_lateral, t.shear_rolling, t.pressure)
     )
     steps = np.stack(t.steps, axis=2)[at]
-    wanted = np.ones((len(steps), len(BODIES)), dtype=bool)
-    if bounded is not None:
-        wanted = ~bounded[at[0]]
-    own = Loads(lateral, rolling, pressure, steps, poisson_ratio[at[0]], wanted)
+    own = Loads(lateral, rolling, pressure, steps, poisson_ratio[at[0]], wanted[some])
     surface = np.sqrt(np.max(lateral**2 + rolling**2, axis=(1, 2)))
-    return t.of_all_patches(np.maximum(shakedown_shears(own), surface[:, None]))
+    out = np.full(wanted.shape, np.nan)
+    out[some] = np.maximum(shakedown_shears(own), surface[:, None])
+    return t.of_all_patches(out)
 
 
 def bound(solved: SolvedRollers) -> np.ndarray:
@@ -77,22 +81,30 @@ def of_mechanics(solved: SolvedRollers) -> Values:
 
     These are the shear yield stress that just shakes down, `_shaken`, (n, contact, body) [MPa], the
     peak stress with its error, `_elastic`, (n, contact, body) [MPa], and the largest |tau|/p of
-    each patch, `_traction`, (n, contact) [1]. Strength decides alone where `_shaken` is wanted.
+    each patch, `_traction`, (n, contact) [1]. `_shaken` is NaN where a bound stands for the number,
+    and `_traction` where no output asks for it.
     """
-    t = solved.tractions()
     v = solved.values
     elastic = v["peak_stress"] * (1.0 + v["error_estimate"])
     if solved.options.get("stress_bodies") == "published":
         elastic = np.full_like(elastic, np.nan)  # these peaks are those of a mean body
     bounded = LIMIT.kept_by_bound(replace(solved, values={"_elastic": elastic}))
+    unknown = np.full_like(elastic, np.nan)
+    out = {"_shaken": unknown, "_elastic": elastic, "_traction": unknown[:, :, 0]}
+    if not bounded.all():
+        ratio = solved.materials["poisson_ratio"]
+        out["_shaken"] = shears(solved.tractions(), ratio, bounded)
+    if LIMIT.group in solved.options.get("outputs", (LIMIT.group,)):
+        out["_traction"] = _largest_traction(solved.tractions())
+    return out
+
+
+def _largest_traction(t: RollerTractions) -> np.ndarray:
+    """Return the largest |tau|/p of each patch, (n, contact) [1]."""
     pressed = t.pressure > 0.02 * np.nanmax(t.pressure, axis=(2, 3), keepdims=True, initial=0.0)
     with np.errstate(divide="ignore", invalid="ignore"):
         local = np.hypot(t.shear_lateral, t.shear_rolling) / t.pressure
-    return {
-        "_shaken": shears(t, solved.materials["poisson_ratio"], bounded),
-        "_elastic": elastic,
-        "_traction": np.max(np.where(pressed, local, 0.0), axis=(2, 3)),
-    }
+    return np.asarray(np.max(np.where(pressed, local, 0.0), axis=(2, 3)))
 
 
 def evaluate(solved: SolvedRollers) -> Values:

@@ -5,6 +5,8 @@
 Random designs with `kalker`. The cost is processor time beyond a complete case (forces, contact, four peaks, life) at
 `standard`, over that of the complete case. An error is the relative change of a result from the elements of `standard`
 to the finest number, the largest over contacts and bodies; the order is the slope of its median over the elements.
+`verdict` has the cost of all limits with and without heat, and with the bounds that a study takes (`at_most`), beside
+a complete case of `kalker` and of `sliding`.
 """
 
 from __future__ import annotations
@@ -16,6 +18,7 @@ import numpy as np
 
 import trackroller as tr
 from trackroller.damage import LIMITS
+from trackroller.parameters import OPTIONS
 from trackroller.parameters.accuracy import PRESETS
 from validation.benchmarks.command import run
 from validation.benchmarks.samples import random_designs
@@ -50,6 +53,21 @@ def cost(cases: list[tr.Case]) -> dict[str, float]:
     return {group: spent[group] / spent["complete"] - 1.0 for group in settings}
 
 
+def cost_of_verdict(cases: list[tr.Case]) -> dict[str, dict[str, float]]:
+    """Return the cost of all limits beyond a complete case with friction work, over that case, by contact model."""
+    complete = (*COMPLETE, "friction_work")
+    cold = [dataclasses.replace(case, heat_transfer_coefficient=None, cooled_area=None) for case in cases]
+    bounded = {"at_most": tuple(OPTIONS["at_most"].values)}
+    found = {}
+    for model in ("kalker", "sliding"):
+        given = {"contact_model": model, "outputs": complete}
+        judged = given | {"outputs": (*complete, "limits")}
+        spent = costs(cold, {"complete": given, "numbers": judged, "bounds": judged | bounded})
+        spent |= {f"{name} with heat": time for name, time in costs(cases, {"bounds": judged | bounded}).items()}
+        found[model] = {name: time / spent["complete"] - 1.0 for name, time in spent.items() if name != "complete"}
+    return found
+
+
 def convergence(cases: list[tr.Case], elements: tuple[int, ...], finest: int) -> dict[str, dict[str, float]]:
     """Return the errors at `standard` and the observed order of each result that rests on the elements."""
     counts = sorted({*elements, PRESETS["standard"].elements})
@@ -77,6 +95,7 @@ def measure(
     return {
         "standard": PRESETS["standard"].elements,
         "cost": cost(designs),
+        "verdict": cost_of_verdict(designs),
         "results": {group: list(names) for group, names in RESULTS.items()},
         "convergence": convergence(designs, elements, finest),
     }
