@@ -178,7 +178,7 @@ def test_values_that_nobody_gave_are_said(tmp_path, monkeypatch):
 
 def test_each_bearing_of_the_repository_states_its_page_and_the_ratings_of_a_row():
     """A pair of 6000: C = 4.55 kN and C_0 = 1.96 kN each, the outer diameter 26 mm."""
-    text = run(SHELVES / "bearings.csv", "--of", "bearing")
+    text = run(SHELVES / "bearings.csv", "--of", "bearing", "--set", "axis_distance=40")
     assert "rows: 10" in text
     lines = [line.split(";") for line in (SHELVES / "bearings.csv").read_text().splitlines() if line[0] != "#"]
     rows = {line[0]: dict(zip(lines[0], line, strict=True)) for line in lines[1:]}
