@@ -99,7 +99,7 @@ def test_bad_input_ends_with_exit_2_and_names_it(tmp_path, words, named):
 
 def test_a_short_study_needs_no_cluster_and_a_finished_one_no_scheduler(tmp_path):
     (tmp_path / "tiny.yaml").write_text(STUDY)
-    assert re.search(r"cluster +not needed: \d+ s on two cores", trackroller("plan", "tiny.yaml", cwd=tmp_path).stdout)
+    assert re.search(r"cluster +not needed: \d+ s here", trackroller("plan", "tiny.yaml", cwd=tmp_path).stdout)
     assert "left to solve" not in trackroller("run", "tiny.yaml", "-q", cwd=tmp_path).stderr
     again = trackroller("run", "tiny.yaml", "-q", "--scheduler", "slurm", cwd=tmp_path).stderr
     assert "nothing is left to solve of 'tiny'; --scheduler slurm is not used\n" in again
