@@ -207,7 +207,7 @@ def studies() -> dict[str, dict[str, Any]]:
         "central_composite": {"factors": ranges},
     }
     common = {"contact_model": "sliding", "accuracy": "preview", "outputs": ["forces", "peak_stress", "life"]}
-    return {name: common | {"name": f"recorded-{name}", "design": name} | study for name, study in found.items()}
+    return {name: common | {"name": f"recorded-{name}", "method": name} | study for name, study in found.items()}
 
 
 def names() -> list[str]:

@@ -147,7 +147,7 @@ def _finish(ds: xr.Dataset, factors: dict, design: str) -> xr.Dataset:
         "description": "Life of a steel roller over friction & fit <five pairs>.",
         "base": BASE,
         "factors": factors,
-        "design": design,
+        "method": design,
         "seed": 1,
         "accuracy": "standard",
         "outputs": ["forces", "contact", "peak_stress", "life"],
@@ -235,5 +235,5 @@ def _results_of(ds) -> Results:
     columns = {n: flat(ds, n, dims) for n in specs if n in ds.variables}
     factors = {n: factor for n in columns if (factor := parse(n, specs[n])).varies}
     unit = [np.unique(columns[n], return_inverse=True)[1] for n in factors]
-    method, meta = told.get("design", "grid"), {"shape": tuple(ds.sizes[d] for d in dims), "rank_correlations": ()}
+    method, meta = told.get("method", "grid"), {"shape": tuple(ds.sizes[d] for d in dims), "rank_correlations": ()}
     return Results(study, Design(columns, factors, METHODS[method], np.array(unit, float).T, meta), ds)

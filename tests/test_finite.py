@@ -43,7 +43,7 @@ def of_factor(name: str, spec: dict[str, Any], **keys: Any) -> tr.Study:
 
 def of_csv(name: str, value: float) -> tr.Study:
     Path("cases.csv").write_text(f"{name}\n1\n{value}\n")
-    return tr.load_study({"name": "x", "design": "table", "table": "cases.csv"})
+    return tr.load_study({"name": "x", "method": "table", "table": "cases.csv"})
 
 
 def of_workbook(name: str, value: float) -> tr.Study:
@@ -52,7 +52,7 @@ def of_workbook(name: str, value: float) -> tr.Study:
     for cell in (name, 1.0, str(value)):
         book.active.append([cell])
     book.save("cases.xlsx")
-    return tr.load_study({"name": "x", "design": "table", "table": "cases.xlsx"})
+    return tr.load_study({"name": "x", "method": "table", "table": "cases.xlsx"})
 
 
 def of_file(name: str, value: float) -> Any:
@@ -175,7 +175,7 @@ STUDY = {
     "name": "x",
     "seed": 1,
     "samples": 16,
-    "design": "sobol",
+    "method": "sobol",
     "chunk_size": 4,
     "base": {"radial_force": -200.0},
     "factors": {
@@ -193,7 +193,7 @@ STUDY = {
 }
 SEARCH = {
     "name": "x",
-    "design": "optimise",
+    "method": "optimise",
     "factors": {"roller_profile_radius": {"uniform": [-9.0, -6.5]}, "axial_force": {"normal": [10.0, 1.0]}},
     "samples": 8,
     "goals": {"pair_life_hours": "max"},

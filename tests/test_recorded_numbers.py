@@ -56,7 +56,7 @@ def test_the_recorded_cases_cover_what_can_be_chosen():
             assert chosen >= set(option.values), name
     assert {given["contact_model"] for given in options} == set(CONTACT_MODELS)
     assert {word for given in options for word in given["outputs"]} == set(OPTIONS["outputs"].values)
-    assert {study["design"] for study in studies().values()} >= {"lhs", "sobol", "morris", "saltelli", "inner_outer"}
+    assert {study["method"] for study in studies().values()} >= {"lhs", "sobol", "morris", "saltelli", "inner_outer"}
 
 
 @pytest.mark.parametrize("change", ["value", "zero", "nan", "word", "missing"])

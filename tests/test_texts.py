@@ -136,7 +136,7 @@ def test_texts_of_files_are_checked(tmp_path, place):
 @pytest.mark.parametrize("table", ["label,velocity\nrun\x1b[2J,60\nb,70\n", "lab\x1bel,velocity\na,60\nb,70\n"])
 def test_labels_of_tables_are_checked(tmp_path, table):
     (tmp_path / "t.csv").write_text(table)
-    (tmp_path / "s.yaml").write_text("{name: s, design: table, table: t.csv, outputs: [forces]}")
+    (tmp_path / "s.yaml").write_text("{name: s, method: table, table: t.csv, outputs: [forces]}")
     done = trackroller("plan", "s.yaml", cwd=tmp_path, code=2)
     line = 1 if "lab\x1bel" in table else 2
     assert f"t.csv, line {line}" in done.stderr and "\x1b" not in done.stdout + done.stderr
@@ -193,7 +193,7 @@ def test_a_table_that_was_written_has_the_same_names_when_it_is_read(tmp_path, m
     add_material(tmp_path / "config/materials.yaml", name, like="PA6")
     table = pd.DataFrame({"label": [name, "b"], "roller_material": ["PA6", name], "velocity": [60.0, 70.0]})
     path = write_cases(table, tmp_path / f"t.{ending}")
-    study = {"name": "s", "design": "table", "table": path.name, "outputs": ["forces"], "contact_model": "sliding"}
+    study = {"name": "s", "method": "table", "table": path.name, "outputs": ["forces"], "contact_model": "sliding"}
     read = tr.load_study(study).drawn.columns
     assert read["label"].tolist() == [name, "b"] and read["roller_material"].tolist() == ["PA6", name]
 
@@ -221,7 +221,7 @@ def test_the_study_of_a_carriage_keeps_names_of_rollers_cases_and_materials(tmp_
 
 def test_a_formula_in_a_table_is_refused_and_a_name_with_an_apostrophe_is_taken(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    study = {"name": "s", "design": "table", "table": "t.csv", "outputs": ["forces"]}
+    study = {"name": "s", "method": "table", "table": "t.csv", "outputs": ["forces"]}
     (tmp_path / "t.csv").write_text("label,velocity\n=1+1,60\nb,70\n")
     with pytest.raises(InputError, match=r"this is a formula\. Write its value; if it is a name, write ' before it"):
         tr.load_study(study)

@@ -142,7 +142,7 @@ def opened(
     path: Path | str,
     what: str,
     most: float,
-    remedy: str = "Put many cases into a CSV file and use design: table.",
+    remedy: str = "Put many cases into a CSV file and use method: table.",
 ) -> Iterator[IO[bytes]]:
     """Open a user's file to read its bytes; refuse a file as `read_text` does, a large one with a
     remedy of its own.

@@ -301,7 +301,7 @@ def test_a_study_is_made_by_clicks_and_by_text(page):
     assert "friction_coefficient" in text and "axial_force: 45" in text
     assert "3, 0 of them solved" in page.run("document.querySelector('.plan').textContent")
     page.run("""(() => { const area = document.querySelector('textarea');
-        area.value += 'design: lhs\\nsamples: seven\\n'; area.focus(); area.dispatchEvent(new Event('input')); })()""")
+        area.value += 'method: lhs\\nsamples: seven\\n'; area.focus(); area.dispatchEvent(new Event('input')); })()""")
     page.until("document.querySelector('.study .warnings').textContent.includes('samples')")
     assert page.run("document.querySelector('button.main').disabled")
     page.run("""(() => { const area = document.querySelector('textarea');
@@ -354,8 +354,73 @@ def test_two_pages_disturb_each_other_not(page, browser, live):
         assert "55 N" in forces[0] and "20 N" in forces[1]
 
 
+SHELF = """name;axis_distance;roller_profile_radius;roller_material;price [EUR]
+mid;30;-6.4;1.7225-quenched-tempered;3
+large;40;-6.2;1.7225-quenched-tempered;5
+soft;19;-7;1.7225-normalised;1
+"""
+
+
+def sized(page, folder=None):
+    """Ask the tab Requirement for the least roller of a shelf in the folder of the page."""
+    steel = dict.fromkeys(("roller_material", "guide_material"), "1.7225-quenched-tempered")
+    values = steel | {"motor_force": 0, "friction_coefficient": 0.1, "contact_model": "sliding"}
+    page.run(f"trackroller.state.replace({json.dumps(values)})")
+    show(page, "requirement")
+    fill = '(label, value) => { const f = document.querySelector(`[aria-label="${label}"]`); f.value = value; '
+    fill += "f.dispatchEvent(new Event('change')); }"
+    for label, value in (
+        ("Shelf: a table of rollers", "shelf-of-a-test.csv"),
+        ("Life", "5000"),
+        ("Safety against overload", "1.5"),
+        ("Least", "price"),
+    ):
+        page.run(f"({fill})({json.dumps(label)}, {json.dumps(value)})")
+    page.run(
+        "[...document.querySelectorAll('.requirement button')].find((b) => b.textContent === 'Find the roller').click()"
+    )
+    page.until("document.querySelector('.cards')?.dataset.accuracy === 'standard'")
+
+
+@pytest.fixture(autouse=True)
+def shelf(live):
+    (live.folder / "shelf-of-a-test.csv").write_text(SHELF, encoding="utf-8")
+
+
+def test_a_requirement_finds_the_least_roller_first_in_preview(page):
+    page.run("""window.seen = []; new MutationObserver(() => { const t = document.querySelector('.cards');
+        if (t && seen.at(-1) !== t.dataset.accuracy) seen.push(t.dataset.accuracy); })
+        .observe(document.querySelector('.requirement'), {childList: true, subtree: true}); 0""")
+    sized(page)
+    assert page.run("seen") == ["preview", "standard"]
+    lead = page.run("document.querySelector('.requirement .verdict').textContent")
+    assert lead.startswith("mid is the least of 2 that are enough: price 3")
+    cells = page.run(
+        "[...document.querySelectorAll('.cards .exceeded')].map((c) => c.parentElement.cells[0].textContent)"
+    )
+    assert cells == ["soft"]
+
+
+def test_rollers_are_cards_on_a_phone(page):
+    page.resize(400, 800)
+    sized(page)
+    assert page.run("getComputedStyle(document.querySelector('.cards thead')).display") == "none"
+    assert page.run("getComputedStyle(document.querySelector('.cards tr')).display") == "block"
+    heads = page.run("[...document.querySelectorAll('.cards tbody tr:first-child td')].map((c) => c.dataset.head)")
+    assert "verdict" in heads and "price [EUR]" in heads
+    assert page.run("document.documentElement.scrollWidth") <= 400
+
+
+def test_what_a_requirement_lacks_is_said(page):
+    show(page, "requirement")
+    page.run(
+        "[...document.querySelectorAll('.requirement button')].find((b) => b.textContent === 'Find the roller').click()"
+    )
+    page.until("document.querySelector('.requirement [role=status]').textContent.includes('Choose a file')")
+
+
 @pytest.mark.skipif(not AXE.is_file(), reason="needs axe-core: npm ci in web/")
-@pytest.mark.parametrize("tab", ["roller", "whatif", "study", "results", "carriage"])
+@pytest.mark.parametrize("tab", ["roller", "whatif", "study", "results", "carriage", "requirement"])
 @pytest.mark.parametrize("width, scheme", [(1280, "light"), (1280, "dark"), (400, "light")])
 def test_axe_finds_nothing(page, tab, width, scheme):
     page.resize(width, 800)
@@ -367,6 +432,8 @@ def test_axe_finds_nothing(page, tab, width, scheme):
         page.until("document.querySelectorAll('.variants tbody tr').length > 20")
     if tab == "carriage":
         page.until("document.querySelector('.carriage .stage').dataset.stage === 'complete'")
+    if tab == "requirement":
+        sized(page)
     page.call("Page.setBypassCSP", enabled=True)
     page.run(AXE.read_text(encoding="utf-8") + "; 0")
     found = page.run("axe.run().then((r) => r.violations.map((v) => [v.id, v.nodes.map((n) => n.html.slice(0, 90))]))")
@@ -379,7 +446,7 @@ def test_no_width_scrolls_sideways(page, width):
     steel = dict.fromkeys(("roller_material", "guide_material"), "1.7225-quenched-tempered")
     page.run(f"trackroller.state.replace({json.dumps(steel | {'motor_force': 0, 'friction_coefficient': 0.1})})")
     page.until("document.querySelector('.margins').textContent.includes('kept')")
-    for tab in ("roller", "whatif", "study", "results", "carriage"):
+    for tab in ("roller", "whatif", "study", "results", "carriage", "requirement"):
         show(page, tab)
         if tab == "carriage":
             page.until("document.querySelectorAll('.views .handle').length > 0")

@@ -125,7 +125,7 @@ def test_a_million_cases_are_refused_before_they_are_drawn(live):
     assert live.ask("start", text="name: big\nfactors: {velocity: {linspace: [1, 9, 1000000]}}")[0] == 422
     until = "until: {half_width: 0.001, of: [roller_life_hours], at_most: 300000}"
     goals = "goals: {roller_life_hours: max}\nbudget: {designs: 300000}"
-    for grows in (f"design: sobol\n{until}", f"design: optimise\n{goals}"):
+    for grows in (f"method: sobol\n{until}", f"method: optimise\n{goals}"):
         _, found = live.ask(
             "checked", text=f"name: big\nfactors: {{roller_profile_radius: {{uniform: [-8, -7]}}}}\n{grows}"
         )

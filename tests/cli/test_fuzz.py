@@ -162,7 +162,7 @@ def test_tables(tmp_path_factory, rows, mark):
     folder = tmp_path_factory.mktemp("f")
     text = "\n".join(mark.join(row) for row in rows)
     (folder / "t.csv").write_text(text, encoding="utf-8", errors="replace", newline="")
-    path = written(folder / "s.yaml", {"name": "t", "design": "table", "table": "t.csv"})
+    path = written(folder / "s.yaml", {"name": "t", "method": "table", "table": "t.csv"})
     read_cleanly(lambda p: load_study(p).design(), path)
 
 

@@ -12,7 +12,7 @@ from command_line import trackroller
 
 STUDY = """
 name: bits
-design: lhs
+method: lhs
 samples: 300
 factors:
   friction_coefficient: {uniform: [0.05, 0.3]}

@@ -62,3 +62,20 @@ def test_the_v_roller_has_the_life_of_its_catalogue(monkeypatch):
     assert found["catalogue_life_km"].item() == pytest.approx(173.7 / (300 / 900 + 100 / 2181) ** 3, rel=1e-3)
     assert 6.84e6 * 0.0254e-3 == pytest.approx(173.7, rel=1e-3)
     assert 173.7 / 0.38**3 == pytest.approx(124.7e6 * 0.0254e-3, rel=1e-3)
+
+
+def test_the_example_is_written_shown_and_sized(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    run = CliRunner().invoke
+    assert run(app, ["shelf", "--example", "rollers.csv"]).exit_code == 0
+    assert run(app, ["shelf", "--example"]).stdout == Path("rollers.csv").read_text()
+    with pytest.raises(InputError, match="is there already"):
+        run(app, ["shelf", "--example", "rollers.csv"], catch_exceptions=False)
+    shown = run(app, ["shelf", "rollers.csv"])
+    assert shown.exit_code == 0 and "rows: 3" in shown.output
+    with pytest.raises(InputError, match=r"does not exist.*trackroller shelf --example"):
+        run(app, ["shelf", "other.csv"], catch_exceptions=False)
+    text = "radial_force: -100\nmotor_force: 0\ncontact_model: sliding\naccuracy: preview\n"
+    Path("case.yaml").write_text(text)
+    done = run(app, ["size", "case.yaml", "--shelf", "rollers.csv", "--life", "100", "--least", "price", "-q"])
+    assert done.exit_code == 0 and "small is the least of" in done.output

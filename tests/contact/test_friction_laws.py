@@ -443,7 +443,7 @@ def test_a_table_holds_as_measured_where_no_friction_coefficient_is_given():
 
 def test_tables_of_a_study_and_a_design_hold_as_measured():
     other = {**MEASURED, "friction": [0.2, 0.1, 0.05]}
-    data = {"name": "t", "design": "grid", "factors": {"friction_law": {"values": [MEASURED, other, None]}}}
+    data = {"name": "t", "method": "grid", "factors": {"friction_law": {"values": [MEASURED, other, None]}}}
     assert parse_study(data).design()["friction_coefficient"].values.tolist() == [0.15, 0.2, 0.3]
     given = parse_study(data | {"base": {"friction_coefficient": 0.3}}).design()
     assert given["friction_coefficient"].values.tolist() == [0.3, 0.3, 0.3]

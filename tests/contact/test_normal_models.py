@@ -245,7 +245,7 @@ name: grooves
 base: {motor_force: 0, friction_coefficient: 0.2}
 factors:
   roller_profile: {values: [{arc: -7}, {arc: -7, edge: {outer: 0.3, chamfer: 0.5}}]}
-design: grid
+method: grid
 outputs: [forces, contact, peak_stress, life]
 normal: halfspace
 contact_model: sliding

@@ -87,7 +87,7 @@ def study(**more):
         "name": "meets",
         "base": {"motor_force": 0, "axial_force": 20, "roller_material": "rig steel"},
         "factors": {"radial_force": {"uniform": [-180, -120]}, "friction_coefficient": {"uniform": [0.05, 0.2]}},
-        "design": "sobol",
+        "method": "sobol",
         "samples": 64,
         "contact_model": "sliding",
         "analysis": {"material_scatter": "fitted", "target": {"roller_life_hours": {"min": 15}}},
@@ -139,9 +139,9 @@ def test_a_study_keeps_the_fits_of_its_materials(rig, tmp_path, monkeypatch):
     assert tr.open_study(moved.data).by_tests is None, "a data set alone has no fits"
 
 
-@pytest.mark.parametrize("design", [{"design": "grid"}, {"design": "morris"}])
+@pytest.mark.parametrize("design", [{"method": "grid"}, {"method": "morris"}])
 def test_a_design_without_random_rows_takes_no_scatter_of_a_fit(rig, design):
-    given = {"values": [-180, -120]} if design["design"] == "grid" else {"uniform": [-180, -120]}
+    given = {"values": [-180, -120]} if design["method"] == "grid" else {"uniform": [-180, -120]}
     with pytest.raises(tr.InputError, match=r"analysis\.material_scatter = 'fitted'.*a random sample"):
         parse_study(study(factors={"radial_force": given}, **design))
 

@@ -21,7 +21,7 @@ from trackroller.results.sample_growth import grow_study
 RECIPE = Path(__file__).parents[2] / "CONTRIBUTING.md"
 STUDY = {
     "name": "numbers",
-    "design": "halton",
+    "method": "halton",
     "samples": 64,
     "factors": {
         "axial_force": {"uniform": [20, 50]},
@@ -115,7 +115,7 @@ def own_index():
 
 
 def test_a_method_declares_an_index_of_its_own(own_index, tmp_path):
-    asked = {"design": "ratio", "samples": 32, "question": "what matters", "analysis": {"outputs": ["normal_force_1"]}}
+    asked = {"method": "ratio", "samples": 32, "question": "what matters", "analysis": {"outputs": ["normal_force_1"]}}
     solved = tr.run(STUDY | asked, progress=False)
     pull = solved.indices()["pull"]
     assert pull.attrs["long_name"] == "pull of the factor" and pull.attrs["units"] == ""
@@ -134,4 +134,4 @@ def test_a_method_declares_an_index_of_its_own(own_index, tmp_path):
 
 def test_an_index_that_a_method_does_not_declare_is_refused(own_index):
     with pytest.raises(tr.InputError, match=r"index of design undeclared = 'pull' is not declared.*drag"):
-        tr.run(STUDY | {"design": "undeclared", "samples": 32}, progress=False).indices()
+        tr.run(STUDY | {"method": "undeclared", "samples": 32}, progress=False).indices()

@@ -24,7 +24,7 @@ STUDY = {
         "radial_force": {"uniform": [-300, -100]},
         "friction_coefficient": {"uniform": [0.1, 0.2]},
     },
-    "design": "lhs",
+    "method": "lhs",
     "samples": 20,
 }
 
@@ -104,8 +104,8 @@ def test_wrong_correlations_are_refused_when_the_study_is_read(entries, says):
 @pytest.mark.parametrize("method", ["saltelli", "morris", "central_composite", "plackett_burman"])
 def test_designs_that_need_independent_factors_refuse_and_say_what_to_take(method):
     entries = [["axial_force", "radial_force", 0.5]]
-    with pytest.raises(InputError, match=rf"not {method}.*Take design lhs"):
-        parse_study(STUDY | {"design": method, "rank_correlations": entries})
+    with pytest.raises(InputError, match=rf"not {method}.*Take method: lhs"):
+        parse_study(STUDY | {"method": method, "rank_correlations": entries})
 
 
 def test_a_studied_correlation_is_drawn_and_takes_part_in_the_growth():
@@ -134,7 +134,7 @@ def test_equal_weights_draw_what_no_weights_draw():
 @pytest.mark.parametrize(
     ("spec", "method", "says"),
     [
-        ({"values": [1, 2], "weights": [1, 2]}, "grid", "equally often.*choose design lhs"),
+        ({"values": [1, 2], "weights": [1, 2]}, "grid", "equally often.*choose method: lhs"),
         ({"values": [1, 2], "weights": [1, 2]}, "morris", "equally often"),
         ({"values": [1, 2], "weights": [1, 2]}, "inner_outer", "scatter: true"),
         ({"values": [1, 2], "weights": [1]}, "lhs", "2 finite numbers"),

@@ -161,10 +161,10 @@ def test_a_study_takes_units():
     assert design["axis_distance"].values[0] == 22.0
     assert tr.load_study(study.as_dict()).merged() == study.merged()
     normal = {"ambient_temperature": {"truncnormal": ["20 °C", "5 K", "10 °C", "303.15 K"]}}
-    drawn = tr.load_study({"name": "n", "factors": normal, "design": "lhs", "samples": 4, "outputs": ["heat"]})
+    drawn = tr.load_study({"name": "n", "factors": normal, "method": "lhs", "samples": 4, "outputs": ["heat"]})
     assert drawn.parsed["ambient_temperature"].numbers == pytest.approx((20.0, 5.0, 10.0, 30.0))
     with pytest.raises(InputError, match=r"factors\.velocity\.uniform = 'N'"):
-        tr.load_study({"name": "w", "factors": {"velocity": {"uniform": ["5 N", "6 N"]}}, "design": "lhs"})
+        tr.load_study({"name": "w", "factors": {"velocity": {"uniform": ["5 N", "6 N"]}}, "method": "lhs"})
 
 
 @pytest.mark.parametrize(
@@ -177,7 +177,7 @@ def test_a_study_takes_units():
 )
 def test_a_table_takes_units_and_decimal_commas(tmp_path, text):
     (tmp_path / "cases.csv").write_text(text)
-    (tmp_path / "t.yaml").write_text("{name: t, design: table, table: cases.csv, outputs: [forces]}")
+    (tmp_path / "t.yaml").write_text("{name: t, method: table, table: cases.csv, outputs: [forces]}")
     design = tr.load_study(tmp_path / "t.yaml").design()
     assert design["axial_force"].values.tolist() == [12.0, 20.0]
     assert design["velocity"].values.tolist() == [90.0, 60.0]

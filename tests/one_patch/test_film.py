@@ -169,3 +169,50 @@ def test_friction_that_falls_too_steeply_for_a_film_is_flagged():
     ds = tr.solve(cases, outputs=("forces", "contact"), accuracy="preview")
     bit = 1 << list(VALIDITY).index("steep_friction")
     assert [(int(bits) & bit) > 0 for bits in ds["validity"].values] == [False, True]
+
+
+FILMS = (
+    ("base: {layer_flexibility: 1e-5}\nfactors: {friction_coefficient: {values: [0.1, 0.3]}}\n", "base"),
+    ("factors: {layer_flexibility: {values: [0, 1e-5]}}\n", "factors"),
+    ("factors: {layer_flexibility: {uniform: [1e-6, 1e-5]}}\ndesign: lhs\nsamples: 8\n", "factors"),
+    (
+        "factors:\n  friction_coefficient: {values: [0.1, 0.3]}\n"
+        "  layer_flexibility: {expression: friction_coefficient * 1e-5}\n",
+        "factors",
+    ),
+)
+
+
+@pytest.mark.parametrize("model", ["sliding", "[kalker, kalker_table]"])
+@pytest.mark.parametrize(("text", "where"), FILMS, ids=["base", "list", "range", "expression"])
+def test_a_study_with_a_film_is_refused_when_it_is_read(tmp_path, text, where, model):
+    path = tmp_path / "film.yaml"
+    path.write_text(f"name: film\ncontact_model: {model}\n{text}", encoding="utf-8")
+    with pytest.raises(tr.InputError) as error:
+        tr.load_study(path)
+    told = str(error.value)
+    assert f"{where}.layer_flexibility = " in told and told.endswith(
+        "Take contact_model: kalker, or leave layer_flexibility out."
+    )
+    path.write_text(f"name: film\ncontact_model: kalker\n{text}", encoding="utf-8")
+    tr.load_study(path)
+
+
+def test_a_table_with_a_film_is_refused_by_its_line(tmp_path):
+    (tmp_path / "cases.csv").write_text("friction_coefficient,layer_flexibility [mm3/N]\n0.1,0\n0.2,1e-5\n")
+    path = tmp_path / "film.yaml"
+    text = "name: film\ndesign: table\ntable: cases.csv\n"
+    path.write_text(text + "contact_model: sliding\n", encoding="utf-8")
+    with pytest.raises(tr.InputError, match=r"cases\.csv, line 3: layer_flexibility = 1e-05"):
+        tr.load_study(path)
+    path.write_text(text + "contact_model: kalker\n", encoding="utf-8")
+    tr.load_study(path)
+
+
+def test_a_study_with_a_friction_law_that_its_model_has_not_is_refused_when_it_is_read():
+    study = {"name": "law", "base": {"friction_law": {"kind": "exponential", "speed": 100, "lowest": 0.4}}}
+    study |= {"factors": {"friction_coefficient": {"values": [0.1, 0.3]}}, "contact_model": "kalker_table"}
+    with pytest.raises(
+        tr.InputError, match=r"base\.friction_law = .* constant friction with contact_model: kalker_table"
+    ):
+        tr.load_study(study)

@@ -50,7 +50,7 @@ def random_file(seed):
         told["base"]["guide_overrollings_per_hour"] = float(rng.choice([60, 600, 2e5]))
     told["life_rule"] = str(rng.choice(["elementary", "haibach", "unlimited"]))
     if seed % 5 == 3:
-        told |= {"design": "inner_outer", "samples": 32, "seed": int(seed)}
+        told |= {"method": "inner_outer", "samples": 32, "seed": int(seed)}
         factors |= {"friction_coefficient": {"uniform": [0.05, 0.3]}, "axial_force": {"uniform": [0.0, 60.0]}}
         for name in ("motor_force", "radial_force", "guide_curve_radius"):
             factors.pop(name, None)
@@ -118,6 +118,6 @@ def test_the_random_studies_hold_what_they_must():
     files = [random_file(seed) for seed in range(40)]
     pairs = list(itertools.chain(*(f["factors"].get("material_pair", {}).get("values", []) for f in files)))
     assert any("PA6" in pair for pair in pairs) and any("POM" in pair for pair in pairs)
-    for key in ("constraints", "analysis", "design"):
+    for key in ("constraints", "analysis", "method"):
         assert 0 < sum(key in f for f in files) < len(files)
     assert 0 < sum("guide_overrollings_per_hour" in f["base"] for f in files) < len(files)

@@ -41,7 +41,7 @@ def search():
     base |= {"guide_material": "C45", "permissible_wear_depth": 0.1, "roller_material": "PA66-moist"}
     factors = {"axis_distance": {"uniform": [12, 24]}, "roller_profile_radius": {"uniform": [-7, -6.3]}}
     factors |= {"radial_force": {"values": [-30, -15]}, "friction_coefficient": {"values": [0.15, 0.3]}}
-    keys = {"design": "optimise", "goals": {"axis_distance": "min"}, "budget": {"designs": 48}}
+    keys = {"method": "optimise", "goals": {"axis_distance": "min"}, "budget": {"designs": 48}}
     return run(base=base, factors=factors, constraints=["pair_life_hours > 200"], **keys)
 
 

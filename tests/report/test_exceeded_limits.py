@@ -35,7 +35,7 @@ def test_probabilities_and_b10_count_what_the_verdict_counts():
     """Of a sample, too: the share of the target, and the life of nine of ten conditions."""
     factors = {"roller_profile_radius": {"values": [-6.4, -7]}, "radial_force": {"uniform": [-260, -80]}}
     factors |= {"friction_coefficient": {"uniform": [0.1, 0.4]}}
-    keys = {"factors": factors, "design": "inner_outer", "samples": 64, "analysis": {"target": {"min": 1}}}
+    keys = {"factors": factors, "method": "inner_outer", "samples": 64, "analysis": {"target": {"min": 1}}}
     results = tr.run(STUDY | keys, progress=False)
     held, rolls = held_rows(results.data)
     lives = results.column("pair_life_to_first_limit_hours")
@@ -50,7 +50,7 @@ def test_probabilities_and_b10_count_what_the_verdict_counts():
 
 
 def test_a_search_does_not_recommend_what_exceeds_a_limit():
-    keys = {"factors": {"roller_profile_radius": {"values": [-6.2, -6.4, -6.7, -7, -7.4]}}, "design": "optimise"}
+    keys = {"factors": {"roller_profile_radius": {"values": [-6.2, -6.4, -6.7, -7, -7.4]}}, "method": "optimise"}
     keys["factors"] |= {"radial_force": {"values": [-80, -200]}, "friction_coefficient": {"values": [0.1, 0.3]}}
     keys |= {"goals": {"max_pressure": "max"}, "budget": {"designs": 5}}
     results = tr.run(STUDY | keys, progress=False)

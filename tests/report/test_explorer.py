@@ -43,7 +43,7 @@ def study():
 
 def as_table(ds, **keys):
     """Return the results as those of a table of cases, from which `pareto` can restore the design."""
-    told = yaml.safe_load(ds.attrs["study"]) | {"design": "table", "factors": {}} | keys
+    told = yaml.safe_load(ds.attrs["study"]) | {"method": "table", "factors": {}} | keys
     return ds.assign_attrs(study=yaml.safe_dump(told))
 
 
@@ -184,7 +184,7 @@ def test_a_uniform_factor_does_not_stand_on_a_logarithmic_axis():
     """A uniform draw from 0.001 to 1 spans more than two decades; only a logarithmic distribution has such an axis."""
     for kind, log in (("uniform", False), ("loguniform", True)):
         factors = {"friction_coefficient": {kind: [0.001, 1.0]}, "axial_force": {"uniform": [0, 50]}}
-        data = {"name": "axes", "design": "lhs", "samples": 400, "factors": factors, "outputs": ["forces"]}
+        data = {"name": "axes", "method": "lhs", "samples": 400, "factors": factors, "outputs": ["forces"]}
         study = parse_study(data)
         ds = study.design().assign(regime=("case", np.zeros(400, np.int8))).assign_attrs(study=study.merged())
         column = collect(results_of(ds))[0]

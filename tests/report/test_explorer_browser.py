@@ -42,7 +42,7 @@ TWELVE = {
 
 def as_table(ds):
     """Return the results as those of a table of cases, from which `pareto` can restore the design."""
-    told = yaml.safe_load(ds.attrs["study"]) | {"design": "table", "factors": {}}
+    told = yaml.safe_load(ds.attrs["study"]) | {"method": "table", "factors": {}}
     return ds.assign_attrs(study=yaml.safe_dump(told))
 
 
@@ -195,7 +195,7 @@ def robust_study():
     study = parse_study(
         {
             "name": "robust",
-            "design": "inner_outer",
+            "method": "inner_outer",
             "samples": 50,
             "outputs": ["forces", "friction_work", "life"],
             "factors": {

@@ -186,7 +186,7 @@ EFFECTS = {
     "name": "effects",
     "contact_model": "sliding",
     "outputs": ["forces"],
-    "design": "morris",
+    "method": "morris",
     "factors": {"friction_coefficient": {"uniform": [0.05, 0.3]}, "axial_force": {"uniform": [0, 40]}},
     "analysis": {"outputs": ["normal_force_1"]},
 }

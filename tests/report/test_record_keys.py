@@ -18,7 +18,7 @@ from trackroller.report.headlines import TEMPLATES, WARNING_HEADS
 from trackroller.report.pages.sheet import as_json, render
 from trackroller.report.workbook import write_roller
 from trackroller.results.answer import VERSION, WARNINGS, Caution, Column, Required
-from trackroller.results.answers import answer_of
+from trackroller.results.answer_of_data import answer_of_data
 from trackroller.study.file.config import QUESTIONS
 
 DOCS = Path(__file__).parents[2] / "docs" / "report.md"
@@ -41,7 +41,7 @@ def solved():
 
 
 def test_each_key_of_the_record_is_documented_and_each_documented_key_is_there(solved):
-    record = answer_of(solved).to_dict()
+    record = answer_of_data(solved).to_dict()
     rows = documented("key")
     assert set(rows) == set(record) and record["version"] == VERSION
     assert f"it is {VERSION}." in DOCS.read_text(encoding="utf-8")
@@ -57,7 +57,7 @@ def test_each_question_has_a_template_and_each_warning_a_head_and_a_line_of_docu
 
 
 def test_json_workbook_live_page_and_page_hold_one_record(solved, tmp_path):
-    answer = answer_of(solved)
+    answer = answer_of_data(solved)
     record = json.loads(json.dumps(answer.to_dict()))
     assert json.loads(as_json(solved))["answer"] == record
     shown = picture({key: str(value) for key, value in CASE.items()}, "standard", complete=True)
@@ -79,7 +79,7 @@ def test_json_workbook_live_page_and_page_hold_one_record(solved, tmp_path):
 def test_ranges_of_uses_and_lives_stand_in_the_record_with_both_ends(solved):
     """Wear with a required travel: the use is the travel over the life, at both ends of the wear coefficient."""
     case = {key: value for key, value in CASE.items() if key != "contact_model"} | {"required_travel": 40}
-    answer = answer_of(tr.solve(tr.Case(**case), contact_model="sliding"))
+    answer = answer_of_data(tr.solve(tr.Case(**case), contact_model="sliding"))
     row = limit_row(answer, "wear", "roller")
     hours = 40 / 3.6  # at 60 m/min
     assert row["used_low"] == pytest.approx(hours / row["high"]) and row["used_high"] == pytest.approx(

@@ -40,7 +40,7 @@ def test_a_load_that_only_some_proposals_were_tried_under_counts_for_the_target(
     """The row at 240 N is known: a design that is too weak there misses the target, and one without it is open."""
     monkeypatch.chdir(tmp_path)
     (tmp_path / "cases.csv").write_text(PROPOSALS, encoding="utf-8")
-    keys = {"name": "proposals", "design": "table", "table": "cases.csv", "contact_model": "sliding"}
+    keys = {"name": "proposals", "method": "table", "table": "cases.csv", "contact_model": "sliding"}
     keys |= {"base": {"motor_force": 0, "friction_coefficient": 0.15}}
 
     def judged(least):
@@ -66,7 +66,7 @@ def test_one_shared_load_is_too_little_to_compare_proposals(tmp_path, monkeypatc
     monkeypatch.chdir(tmp_path)
     rows = [line for line in PROPOSALS.splitlines() if line != "-7,-180,12"]
     (tmp_path / "cases.csv").write_text("\n".join(rows) + "\n", encoding="utf-8")
-    keys = {"name": "proposals", "design": "table", "table": "cases.csv", "contact_model": "sliding"}
+    keys = {"name": "proposals", "method": "table", "table": "cases.csv", "contact_model": "sliding"}
     results = tr.run(_file(tmp_path, keys | {"base": {"motor_force": 0}}), progress=False)
     assert results.answer.kind == "cannot_tell" and not results.candidates().untried.any()
 

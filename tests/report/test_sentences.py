@@ -51,7 +51,7 @@ def test_plus_minus_is_half_the_interval_in_sentence_and_table():
 def with_error(middle):
     """Return a sample whose friction energy misses the work put in by about `middle`."""
     factors = {"roller_profile_radius": {"uniform": [-9, -7]}, "contact_angle": {"uniform": [30, 40]}}
-    asked = parse_study({"name": "e", "design": "lhs", "samples": 60, "factors": factors})
+    asked = parse_study({"name": "e", "method": "lhs", "samples": 60, "factors": factors})
     ds = asked.design()
     power = np.random.default_rng(3).uniform(1, 5, 60)
     ds["roller_life_hours"], ds["energy_residual"] = ("case", 1e3 * power), ("case", np.full(60, middle))

@@ -212,7 +212,7 @@ def test_one_roller_under_drawn_conditions_has_a_share(tmp_path_factory):
         (
             {
                 "factors": {"radial_force": {"uniform": [-90, -60]}, "roller_profile_radius": {"uniform": [-8, -6.6]}},
-                "design": "saltelli",
+                "method": "saltelli",
                 "samples": 8,
             },
             "what matters",

@@ -53,7 +53,7 @@ def rows_of(results):
 def without_scatter(request, tmp_path_factory):
     """A study that asks for the life that one roller in ten does not reach, of materials without scatter."""
     factors = {"radial_force": {"uniform": [-90, -60]}, "friction_coefficient": {"uniform": [0.1, 0.3]}}
-    keys = {"design": "lhs", "samples": 6}
+    keys = {"method": "lhs", "samples": 6}
     if request.param == "decide":
         factors = {"radial_force": {"values": [-60, -90]}, "contact_angle": {"values": [30, 40]}}
         keys = {}
@@ -171,7 +171,7 @@ def test_a_load_is_asked_for_where_the_other_drawn_conditions_meet_the_requireme
         "roller_profile_radius": {"values": [-6.3, -7]},
         "radial_force": {"uniform": [-105, -20], "scatter": True},
     }
-    keys = {"factors": factors, "design": "inner_outer", "samples": 12}
+    keys = {"factors": factors, "method": "inner_outer", "samples": 12}
     wanted = {"pair_life_hours": {"min": 200, "probability": 0.9}}
     results = solve(tmp_path, {"axial_force": None}, requirement=wanted, **keys)
     lost = lifting(results)
@@ -243,7 +243,7 @@ def test_single_unlike_cases_make_no_curve(tmp_path):
     loads.to_csv(tmp_path / "loads.csv", index=False)
     file = tmp_path / "study.yaml"
     base = {key: value for key, value in BASE.items() if key not in loads} | {"guide_curve_radius": "inf"}
-    study = {"name": "loads", "design": "table", "table": "loads.csv", "base": base, "contact_model": "sliding"}
+    study = {"name": "loads", "method": "table", "table": "loads.csv", "base": base, "contact_model": "sliding"}
     study |= {"accuracy": "preview", "requirement": {"pair_life_hours": {"min": 100}}}
     file.write_text(yaml.safe_dump(study))
     answer = tr.run(file, results=tmp_path / "results", progress=False).answer

@@ -17,7 +17,7 @@ from trackroller.study.file.load import parse_study
 
 GRID = {
     "name": "choose",
-    "design": "grid",
+    "method": "grid",
     "outputs": ["forces", "contact", "peak_stress", "life"],
     "contact_model": "sliding",
     "base": {"guide_overrollings_per_hour": 600},
@@ -32,7 +32,7 @@ GRID = {
     },
 }
 SAMPLE = {
-    "design": "inner_outer",
+    "method": "inner_outer",
     "samples": 32,
     "base": {"guide_overrollings_per_hour": 600, "motor_force": 0},
     "factors": {

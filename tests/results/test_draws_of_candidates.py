@@ -21,7 +21,7 @@ def run(design, samples, **keys):
         "name": "drawn",
         "base": {"motor_force": 0, "axial_force": 10, "guide_overrollings_per_hour": 200, **STEEL},
     }
-    study |= {"factors": FACTORS, "design": design, "samples": samples, "contact_model": "sliding"}
+    study |= {"factors": FACTORS, "method": design, "samples": samples, "contact_model": "sliding"}
     return tr.run(study | {"accuracy": "preview"} | keys, progress=False)
 
 

@@ -122,7 +122,7 @@ def test_robust_designs_have_the_b10_and_the_worst_condition_of_the_first_limit(
     factors = {"roller_profile_radius": {"values": [-6.3, -7]}, "friction_coefficient": {"uniform": [0.05, 0.4]}}
     goals = {"b10(pair_life_to_first_limit_hours)": "max", "mean(utilisation_roller_rating)": "min"}
     study = tr.run(
-        parse_study(STUDY | {"factors": factors, "design": "inner_outer", "samples": 16, "pareto": goals}),
+        parse_study(STUDY | {"factors": factors, "method": "inner_outer", "samples": 16, "pareto": goals}),
         progress=False,
     )
     hours = study.column("pair_life_to_first_limit_hours").reshape(2, 16)

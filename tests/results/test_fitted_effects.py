@@ -15,7 +15,7 @@ LIFE = "roller_life_hours"
 def effects(life, **columns):
     """Return the effects of columns on a life, all of whose cases count."""
     ds = xr.Dataset({LIFE: ("case", life)}, {name: ("case", own) for name, own in columns.items()})
-    ds.attrs["study"] = yaml.safe_dump({"design": "table", "name": "t", "factors": {name: {} for name in columns}})
+    ds.attrs["study"] = yaml.safe_dump({"method": "table", "name": "t", "factors": {name: {} for name in columns}})
     results = results_of(ds.assign_coords(case=np.arange(len(life))))
     return Effects.of(CaseRanges(results, (LIFE, "life of the roller", "h"), True))
 

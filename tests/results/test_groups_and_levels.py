@@ -163,7 +163,7 @@ FILE = {
         "friction_coefficient": {"uniform": [0.1, 0.2]},
         "roller_material": {"values": ["PA6", "POM"]},
     },
-    "design": "saltelli",
+    "method": "saltelli",
     "samples": 64,
 }
 
@@ -183,7 +183,7 @@ def test_a_table_has_indices_within_the_levels_of_its_columns(tmp_path):
     rng = np.random.default_rng(1)
     lines = [f"{rng.uniform(0, 9)},{rng.uniform(-300, -100)},{('PA6', 'POM')[i % 2]}" for i in range(80)]
     (tmp_path / "cases.csv").write_text("\n".join(["axial_force,radial_force,roller_material", *lines]))
-    data = {"name": "n", "design": "table", "table": str(tmp_path / "cases.csv")}
+    data = {"name": "n", "method": "table", "table": str(tmp_path / "cases.csv")}
     study = parse_study(data | {"analysis": {"conditional_on": "roller_material"}})
     ds = study.design()
     ds["roller_life_hours"] = ("case", np.exp(ds["axial_force"].values), {"units": "h"})
@@ -197,12 +197,12 @@ def test_a_table_has_indices_within_the_levels_of_its_columns(tmp_path):
 @pytest.mark.parametrize(
     ("more", "says"),
     [
-        ({"design": "lhs", "analysis": {"groups": {"g": ["axial_force"]}}}, "grid or saltelli, not lhs"),
+        ({"method": "lhs", "analysis": {"groups": {"g": ["axial_force"]}}}, "grid or saltelli, not lhs"),
         ({"analysis": {"groups": {"axial_force": ["axial_force"]}}}, "no factor.*Rename"),
         ({"analysis": {"groups": {"g": []}}}, "at least one"),
         ({"analysis": {"groups": {"g": ["axal_force"]}}}, "Did you mean 'axial_force'"),
         ({"analysis": {"groups": {"g": ["axial_force"], "h": ["axial_force"]}}}, "in one group"),
-        ({"design": "morris", "analysis": {"conditional_on": "roller_material"}}, "not morris"),
+        ({"method": "morris", "analysis": {"conditional_on": "roller_material"}}, "not morris"),
         ({"analysis": {"conditional_on": "axial_force"}}, "list of at most 12"),
         ({"analysis": {"conditional_on": "material_roller"}}, "Did you mean 'roller_material'|roller_material"),
         (

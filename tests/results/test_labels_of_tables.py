@@ -23,7 +23,7 @@ def table_study(folder, rows, **changes):
     rows.to_csv(folder / "rows.csv", index=False)
     base = {"motor_force": 0, "friction_coefficient": 0.15, "guide_overrollings_per_hour": 150, "axial_force": 5}
     base |= dict.fromkeys(("roller_material", "guide_material"), "1.7225-quenched-tempered")
-    study = {"name": "rows", "base": base, "design": "table", "table": str(folder / "rows.csv")}
+    study = {"name": "rows", "base": base, "method": "table", "table": str(folder / "rows.csv")}
     return tr.run(study | {"contact_model": "sliding", "accuracy": "preview"} | changes, progress=False)
 
 

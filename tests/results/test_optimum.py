@@ -28,7 +28,7 @@ STUDY = {
         "contact_angle": {"values": [25, 30, 35, 40]},
         "friction_coefficient": {"values": [0.1, 0.2]},
     },
-    "design": "optimise",
+    "method": "optimise",
     "goals": {"pair_life_hours": "max", "mean(friction_power)": "min"},
     "budget": {"designs": 16, "population": 4},
     "outputs": ["forces", "contact", "friction_work", "peak_stress", "life"],
@@ -107,7 +107,7 @@ def test_the_hypervolume_of_an_eighth_of_a_sphere():
 def test_a_search_finds_the_front_of_all_designs(tmp_path):
     plan = search_designs(changed(budget={"designs": 24, "population": 8}), tmp_path)
     solved = tr.open_study(plan.folder.root)
-    grid = {**STUDY, "design": "grid", "name": "grid"}
+    grid = {**STUDY, "method": "grid", "name": "grid"}
     data = tr.run({k: v for k, v in grid.items() if k not in ("goals", "budget")}, progress=False).data
     life = data["pair_life_hours"].min("friction_coefficient").values.ravel()
     power = data["friction_power"].sum("contact").mean("friction_coefficient").values.ravel()
@@ -160,7 +160,7 @@ def test_the_table_prunes_and_elements_decide():
 
 @pytest.mark.slow
 def test_best_names_the_designs_of_a_grid_too(tmp_path, capsys):
-    grid = {k: v for k, v in STUDY.items() if k not in ("goals", "budget")} | {"design": "grid", "name": "grid"}
+    grid = {k: v for k, v in STUDY.items() if k not in ("goals", "budget")} | {"method": "grid", "name": "grid"}
     best = tr.run(grid, progress=False, results=tmp_path).best(1)
     print_best("grid", tmp_path, tmp_path / "best.html")
     assert f"contact angle {best['contact_angle'].iloc[0]:g}°" in capsys.readouterr().out
@@ -189,7 +189,7 @@ def test_a_search_with_one_goal_has_a_report(goal, way, tmp_path):
         ({"goals": {"pair_life_hours": "up"}}, "Allowed: max, min"),
         ({"goals": {"pair_life_hours": "max", "worst(pair_life_hours)": "min"}}, "each result once"),
         ({"pareto": {"pair_life_hours": "max", "max_pressure": "min"}}, "Rename the key to goals"),
-        ({"design": "grid"}, "design: optimise"),
+        ({"method": "grid"}, "method: optimise"),
         ({"contact_model": ["kalker", "sliding"]}, "one model"),
         (
             {"factors": {"contact_angle": {"values": [30]}, "motor_force": {"values": [0, -5]}}, "base": {}},

@@ -10,7 +10,7 @@ from trackroller.study.file.load import parse_study
 
 LHS = {
     "name": "p",
-    "design": "lhs",
+    "method": "lhs",
     "samples": 400,
     "factors": {"velocity": {"uniform": [1.0, 2.0]}, "axial_force": {"uniform": [0.0, 1.0]}},
 }
@@ -105,7 +105,7 @@ def test_figures_of_the_set_are_drawn_in_words():
     ],
 )
 def test_wrong_statistics_are_refused(design, name, says):
-    data = LHS | {"design": design, "pareto": {name: "max", "velocity": "min"}}
+    data = LHS | {"method": design, "pareto": {name: "max", "velocity": "min"}}
     data["factors"] = LHS["factors"] | {"velocity": {"values": [1.0, 2.0]}}
     with pytest.raises(InputError, match=says):
         parse_study(data)

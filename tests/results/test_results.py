@@ -75,7 +75,7 @@ def test_solve_takes_the_contact_model_of_each_case_and_refuses_another_one():
 
 
 def test_rows_that_are_not_those_of_the_design_are_refused():
-    ds = tr.solve(parse_study(SMALL | {"design": "lhs", "samples": 8, "factors": LOADS}).design(), accuracy="preview")
+    ds = tr.solve(parse_study(SMALL | {"method": "lhs", "samples": 8, "factors": LOADS}).design(), accuracy="preview")
     tr.open_study(ds)
     with pytest.raises(tr.InputError, match="the 8 rows of its design lhs"):
         tr.open_study(ds.isel(case=slice(0, 4)))
@@ -143,8 +143,8 @@ def test_a_run_with_a_folder_goes_on_where_it_stopped(tmp_path):
 def test_best_refuses_a_sample_in_which_no_design_repeats():
     """A Latin hypercube has each design once, at one condition: the error names the design that can answer."""
     factors = {"roller_profile_radius": {"uniform": [-8, -6.5]}, "friction_coefficient": {"uniform": [0.1, 0.3]}}
-    data = {"name": "sample", "design": "lhs", "samples": 8, "factors": factors, "contact_model": "sliding"}
-    with pytest.raises(tr.InputError, match="design: inner_outer"):
+    data = {"name": "sample", "method": "lhs", "samples": 8, "factors": factors, "contact_model": "sliding"}
+    with pytest.raises(tr.InputError, match="method: inner_outer"):
         tr.run(data, progress=False).best()
 
 

@@ -14,7 +14,7 @@ from trackroller.study.file.load import parse_study
 
 INNER_OUTER = {
     "name": "robust",
-    "design": "inner_outer",
+    "method": "inner_outer",
     "samples": 2000,
     "factors": {
         "velocity": {"values": [30.0, 60.0]},
@@ -106,7 +106,7 @@ def test_b10_interval_covers_the_truth():
 
 def test_robustness_refuses_another_design():
     """Another design is refused by name."""
-    data = {"name": "flat", "design": "lhs", "samples": 50, "factors": INNER_OUTER["factors"]}
+    data = {"name": "flat", "method": "lhs", "samples": 50, "factors": INNER_OUTER["factors"]}
     ds = solved(lognormal, data=data)
     with pytest.raises(InputError, match="inner_outer"):
         robustness(results_of(ds), {})
@@ -151,7 +151,7 @@ def test_the_median_of_a_design_point_is_that_of_its_candidate():
             "roller_profile_radius": {"values": [-6.5, -7]},
             "radial_force": {"uniform": [-200, -60]},
         },
-        "design": "inner_outer",
+        "method": "inner_outer",
         "samples": 20,
         "contact_model": "sliding",
     }
@@ -172,7 +172,7 @@ def test_the_scatter_of_a_material_is_not_that_of_a_life_by_wear():
             "roller_profile_radius": {"values": [-6.3, -8]},
             "radial_force": {"uniform": [-200, -100]},
         },
-        "design": "inner_outer",
+        "method": "inner_outer",
         "samples": 20,
         "contact_model": "sliding",
         "analysis": {"material_scatter": 5, "target": {"min": 100}},

@@ -40,7 +40,7 @@ def carried(design):
 
 def test_ishigami_indices_come_right_through_the_whole_chain(tmp_path):
     """Study file to design, netCDF, Saltelli analysis, netCDF: indices within their intervals and within 0.03."""
-    solved({"name": "ishigami", "design": "saltelli", "samples": 1024, "factors": CARRIERS}, carried, tmp_path / "s.nc")
+    solved({"name": "ishigami", "method": "saltelli", "samples": 1024, "factors": CARRIERS}, carried, tmp_path / "s.nc")
     result = analyse(results_of(tmp_path / "s.nc"))
     first, total, pair = ishigami_indices()
     for output in ("friction_power", "life"):  # log10 of the life is the function itself
@@ -83,7 +83,7 @@ def test_ishigami_through_the_study_runner_with_a_case_that_raises(tmp_path):
             raise RuntimeError("this case cannot be solved")
         return carried(design)["friction_power"]
 
-    data = {"name": "chain", "design": "saltelli", "samples": 256, "factors": CARRIERS, "outputs": ["forces"]}
+    data = {"name": "chain", "method": "saltelli", "samples": 256, "factors": CARRIERS, "outputs": ["forces"]}
     worst = float(parse_study(data).design()["velocity"].values[8 * 7 + 3])  # a mixture row: B's velocity, twice more
     result = run_chain(data, tmp_path, function).sel(output="friction_power")
     first, total, _ = ishigami_indices()
@@ -127,7 +127,7 @@ def test_table_of_own_cases_is_analysed_from_given_data(tmp_path):
     table.write_text("velocity,axial_force,material_pair\n" + "\n".join(rows) + "\n", encoding="utf-8")
     data = {
         "name": "own",
-        "design": "table",
+        "method": "table",
         "table": str(table),
         "outputs": ["forces"],
         "factors": {"motor_force": {"expression": "-axial_force / 2"}},
@@ -166,7 +166,7 @@ def test_unstacked_grid_file_gives_the_same_shares(tmp_path):
 
 def test_one_failed_row_costs_a_block_and_no_index_goes_to_zero():
     """Where a NaN would make S1 = ST = 0 in silence, its block goes and the note says so."""
-    ds = solved({"name": "i", "design": "saltelli", "samples": 256, "factors": CARRIERS}, carried)
+    ds = solved({"name": "i", "method": "saltelli", "samples": 256, "factors": CARRIERS}, carried)
     whole = analyse(results_of(ds))
     regime = np.zeros(ds.sizes["case"], dtype=np.int8)
     regime[[5, 100]] = 3
@@ -187,7 +187,7 @@ def test_full_slip_rows_are_left_out_counted_and_analysed_on_their_own():
         slip = mu > 6.5
         return {"friction_power": np.where(slip, 1e6, x), "regime": slip.astype(np.int8)}
 
-    data = {"name": "i", "design": "lhs", "samples": 600, "factors": CARRIERS}
+    data = {"name": "i", "method": "lhs", "samples": 600, "factors": CARRIERS}
     result = analyse(results_of(solved(data, fake)))
     assert float(result["first"].sel(output="friction_power", factor="axial_force")) > 0.97
     assert float(result["first"].sel(output="full_slip", factor="velocity")) > 0.8  # binned: the step is smeared
@@ -204,7 +204,7 @@ def test_mostly_unusable_saltelli_design_is_marked_and_given_data_still_stand():
         y = design["axial_force"].values + 0.1 * design["velocity"].values
         return {"friction_power": np.where(rng.random(y.size) < 0.3, np.nan, y)}
 
-    result = analyse(results_of(solved({"name": "i", "design": "saltelli", "samples": 512, "factors": CARRIERS}, fake)))
+    result = analyse(results_of(solved({"name": "i", "method": "saltelli", "samples": 512, "factors": CARRIERS}, fake)))
     part = result.sel(output="friction_power")
     assert int(part["reliable"]) == 0 and "whole range" in str(part["note"].item())
     assert float(part["first"].sel(factor="axial_force")) == pytest.approx(0.99, abs=0.03)
@@ -225,7 +225,7 @@ def test_note_of_a_grid_counts_the_cells_left_out_because_one_failed():
 
 def test_rows_of_another_study_are_refused():
     """Rows and study file that do not belong together give no indices."""
-    ds = solved({"name": "i", "design": "lhs", "samples": 100, "factors": CARRIERS}, carried)
+    ds = solved({"name": "i", "method": "lhs", "samples": 100, "factors": CARRIERS}, carried)
     with pytest.raises(InputError, match="rows"):
         analyse(results_of(ds.isel(case=slice(0, 50))))
     with pytest.raises(InputError, match="belong together"):

@@ -13,7 +13,7 @@ from trackroller.study.file.load import parse_study
 
 POINTS = {
     "name": "t",
-    "design": "inner_outer",
+    "method": "inner_outer",
     "samples": 1000,
     "outputs": ["forces", "friction_work", "life"],
     "factors": {
@@ -74,7 +74,7 @@ def test_levels_of_other_designs_have_a_probability(design):
     listed = {"friction_coefficient": {"values": [0.2, 0.22, 0.24, 0.26]}, "axial_force": {"linspace": [-2, 2, 5]}}
     spread = {"friction_coefficient": {"uniform": [0.1, 0.3]}, "axial_force": {"normal": [0.0, 1.0]}}
     factors = {"contact_angle": {"values": [30.0, 40.0]}, **(listed if design == "grid" else spread)}
-    data = POINTS | {"design": design, "samples": 256, "factors": factors, "base": {"velocity": 30.0}}
+    data = POINTS | {"method": design, "samples": 256, "factors": factors, "base": {"velocity": 30.0}}
     data |= {"analysis": {"target": {"friction_power": {"max": 8}}, "conditional_on": "contact_angle"}}
     out = analyse(results_of(solved(data)))
     assert out.sizes["level"] == 2 < out.sizes["target_level"], "the levels of both keys stand side by side"
@@ -135,7 +135,7 @@ def test_bounds_are_sound_at_the_ends():
         ({"analysis": {"target": {"slip": {"min": 2, "max": 1}}}}, ["min below max"]),
         ({"analysis": {"target": {"roller_life_hours": {"min": 0}}}}, ["life above 0"]),
         (
-            {"design": "morris", "analysis": {"target": {"slip": {"max": 1, "probability": 0.9}}}},
+            {"method": "morris", "analysis": {"target": {"slip": {"max": 1, "probability": 0.9}}}},
             ["morris", "Remove probability", "inner_outer"],
         ),
     ],
@@ -150,6 +150,6 @@ def test_wrong_targets_are_refused_with_field_and_remedy(change, parts):
 def test_a_design_without_weights_takes_a_requirement_without_a_probability():
     """As the message says: without the probability morris draws the requirement beside its effects."""
     factors = {"axial_force": {"normal": [0.0, 1.0]}, "friction_coefficient": {"uniform": [0.1, 0.3]}}
-    change = {"factors": factors, "design": "morris", "requirement": {"slip": {"max": 1}}}
+    change = {"factors": factors, "method": "morris", "requirement": {"slip": {"max": 1}}}
     study = parse_study({key: own for key, own in POINTS.items() if key != "analysis"} | change)
     assert study.config.requirement["slip"].most == 1

@@ -34,7 +34,7 @@ STUDY = {
         "friction_coefficient": {"uniform": [0.1, 0.3]},
         "motor_force": {"values": [0, -5, -10]},
     },
-    "design": "sobol",
+    "method": "sobol",
     "outputs": ["forces"],
     "contact_model": "sliding",
     "until": {"half_width": 0.05, "of": ["normal_force_1"], "at_most": 4096},
@@ -51,7 +51,7 @@ UNEQUAL = {  # friction 1.5 lifts the force above 0 for sure, friction 0.2 in ha
         "motor_force": {"values": [0, -9]},
         "axial_force": {"normal": [30, 3]},
     },
-    "design": "inner_outer",
+    "method": "inner_outer",
     "analysis": {"target": {"normal_force_1": {"min": 0.0}}},
     "until": {"half_width": 0.02, "of": ["probability(normal_force_1)"]},
 }
@@ -59,7 +59,7 @@ DESIGNS = ["sobol", "saltelli", "morris", "inner_outer"]
 
 
 def study_of(design="sobol", **until):
-    data = {**STUDY, "design": design, "until": {**STUDY["until"], **until}}
+    data = {**STUDY, "method": design, "until": {**STUDY["until"], **until}}
     if design == "inner_outer":
         data |= {"factors": NORMAL, "until": {**data["until"], "of": ["probability(normal_force_1)"]}}
         data["analysis"] = {"target": {"normal_force_1": {"min": 0.0}}}
@@ -155,7 +155,7 @@ def test_a_sample_without_a_valid_case_does_not_grow(tmp_path):
         return valid.assign(validity=valid["converged"].astype("u4").assign_attrs(flag_meanings=OUTSIDE[0]))
 
     for study, solver in itertools.product((study_of(), load_study(UNEQUAL)), (outside, flagged)):
-        found = looks_of(grow(study, tmp_path / solver.__name__ / study.config.design, solver=solver))
+        found = looks_of(grow(study, tmp_path / solver.__name__ / study.config.method_name, solver=solver))
         assert len(found["looks"]) == 1 and found["stopped"].endswith("to decide")
         assert set(found["looks"][0]["half_width"].values()) == {None}
 
@@ -229,13 +229,13 @@ def test_a_study_in_memory_grows_too_and_its_report_shows_each_look(tmp_path):
         ({"until": {"half_width": 0.1, "of": ["normal_force_1"], "replicates": 4}}, "until.replicates = 4"),
         ({"until": {"half_width": 0.1, "of": ["normal_force_1"], "hours": -1}}, "until.hours = -1"),
         ({"until": {"half_width": 0.1, "of": ["normal_force_1"], "at_most": 100}}, "at least the 128 cases"),
-        ({"design": "lhs"}, "design = 'lhs'.*sobol.*Write design: sobol, or remove until"),
+        ({"method": "lhs"}, "method = 'lhs'.*sobol.*Write method: sobol, or remove until"),
         ({**UNEQUAL, "inner": "lhs"}, "inner = 'lhs'.*Write inner: sobol, or remove until"),
-        ({"until": {"half_width": 0.1, "of": ["b10(normal_force_1)"]}}, "with design sobol: results"),
+        ({"until": {"half_width": 0.1, "of": ["b10(normal_force_1)"]}}, "with method sobol: results"),
         ({**UNEQUAL, "until": {"half_width": 0.1, "of": ["median(normal_force_1)"]}}, "b10 or probability of one"),
         ({"samples": 100}, "samples = 100 .*16 replicates times a power of two.*Write samples: 128"),
-        ({"design": "grid", "factors": {"axial_force": {"values": [1, 2]}}}, "design = 'grid'.*remove until"),
-        ({"design": "inner_outer", "factors": NORMAL}, "a life, whose log10 B10 counts"),
+        ({"method": "grid", "factors": {"axial_force": {"values": [1, 2]}}}, "method = 'grid'.*remove until"),
+        ({"method": "inner_outer", "factors": NORMAL}, "a life, whose log10 B10 counts"),
     ],
 )
 def test_wrong_input_is_one_clear_sentence(keys, named):

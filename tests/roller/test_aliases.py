@@ -94,7 +94,7 @@ def test_files_and_set_take_the_names(tmp_path):
     ).stdout
     assert '"friction_coefficient": {"value": 0.07' in told and '"default": false' in told
     (tmp_path / "cases.csv").write_text("mu,outer_radius\n0.1,20\n0.2,21\n")
-    (tmp_path / "t.yaml").write_text("{name: t, design: table, table: cases.csv, outputs: [forces]}")
+    (tmp_path / "t.yaml").write_text("{name: t, method: table, table: cases.csv, outputs: [forces]}")
     with pytest.raises(tr.InputError, match="outer_radius"):
         tr.load_study(tmp_path / "t.yaml").design()
     (tmp_path / "cases.csv").write_text("mu\n0.1\n0.2\n")

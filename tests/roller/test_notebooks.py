@@ -130,7 +130,7 @@ def test_lists_of_a_study_may_be_arrays(take):
         tr.load_study(study | {"factors": {"axial_force": {"values": take([0, 10])}}}).merged()
         == tr.load_study(listed).merged()
     )
-    drawn = study | {"design": "lhs", "samples": np.int32(8), "base": pd.Series({"motor_force": 0.0})}
+    drawn = study | {"method": "lhs", "samples": np.int32(8), "base": pd.Series({"motor_force": 0.0})}
     drawn["factors"] = {"axial_force": {"uniform": take([0, 10])}}
     assert tr.load_study(drawn).design().sizes["case"] == 8
 
@@ -142,14 +142,14 @@ def test_lists_of_a_study_may_be_arrays(take):
         ({"factors": {"axial_force": {"values": iter([0, 10])}}}, "Write list"),
         ({"factors": {"axial_force": np.array([0, 10])}}, r"Write \{values: \[0, 10\]\}"),
         ({"base": {"motor_force": np.array([0, 10])}}, r"motor_force: \{values: \[0, 10\]\}"),
-        ({"design": "table", "table": pd.DataFrame({"axial_force": [0, 10]})}, "to_csv"),
+        ({"method": "table", "table": pd.DataFrame({"axial_force": [0, 10]})}, "to_csv"),
         (
             {"factors": {"load": {"values": ["0.2 kN", "0.3 kN"]}, "radial_force": {"expression": "-load"}}},
             "'0.2 kN'.*Only parameters take units",
         ),
         (
             {
-                "design": "lhs",
+                "method": "lhs",
                 "factors": {"load": {"uniform": ["1 N", "2 N"]}, "radial_force": {"expression": "-load"}},
             },
             "Only parameters take units",
@@ -190,7 +190,7 @@ def test_a_spectrum_of_a_notebook():
 
 def test_paths_and_options_of_a_notebook(tmp_path):
     (tmp_path / "cases.csv").write_text("axial_force\n0\n10\n")
-    study = {"name": "table", "design": "table", "table": Path(tmp_path / "cases.csv"), "outputs": ["forces"]}
+    study = {"name": "table", "method": "table", "table": Path(tmp_path / "cases.csv"), "outputs": ["forces"]}
     assert tr.load_study(study).design().sizes["case"] == 2
     given = {
         "outputs": np.array(["forces", "life"]),

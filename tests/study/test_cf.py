@@ -14,8 +14,8 @@ from trackroller.cli.main import app
 
 pytest.importorskip("compliance_checker", reason="needs compliance-checker")
 STUDIES = {
-    "grid": "design: grid\nfactors: {friction_coefficient: {values: [0.1, 0.2]}, axial_force: {values: [0, 15, 30]}}\n",
-    "sample": "design: lhs\nsamples: 12\nfactors: {friction_coefficient: {uniform: [0.1, 0.3]}}\n",
+    "grid": "method: grid\nfactors: {friction_coefficient: {values: [0.1, 0.2]}, axial_force: {values: [0, 15, 30]}}\n",
+    "sample": "method: lhs\nsamples: 12\nfactors: {friction_coefficient: {uniform: [0.1, 0.3]}}\n",
 }
 SPECTRUM = """
 contact_model: sliding

@@ -29,7 +29,7 @@ STUDY = """
 name: crated
 description: A study that travels.
 base: {roller_material: hard steel}
-design: table
+method: table
 table: tables/cases.csv
 outputs: [forces, life]
 contact_model: sliding

@@ -26,7 +26,7 @@ from trackroller.study.run import run_study
 EDITS, SEED = (int(os.environ.get(name, given)) for name, given in (("EDITS", "100"), ("EDITS_SEED", "2")))
 STUDY = """
 name: edited
-design: lhs
+method: lhs
 samples: 12
 factors: {axial_force: {uniform: [20, 50]}, friction_coefficient: {uniform: [0.1, 0.3]}}
 outputs: [forces]

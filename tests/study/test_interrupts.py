@@ -35,7 +35,7 @@ chunk_size: 400
 """
 LARGE = """
 name: large
-design: lhs
+method: lhs
 samples: 100000
 factors: {axial_force: {uniform: [20, 50]}, friction_coefficient: {uniform: [0.1, 0.3]}}
 outputs: [forces]

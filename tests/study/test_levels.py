@@ -86,7 +86,7 @@ def test_status_tells_failed_profiles_in_words(tmp_path):
             "contact_model": "sliding",
             "normal": "halfspace",
             "accuracy": "preview",
-            "design": "grid",
+            "method": "grid",
             "factors": {"roller_profile": {"values": flat}},
         }
     )

@@ -289,7 +289,7 @@ def test_sampled_study_has_the_dimension_case(tmp_path):
     _, ds, _ = run(
         {
             "name": "l",
-            "design": "lhs",
+            "method": "lhs",
             "samples": 50,
             "outputs": ["forces"],
             "contact_model": "sliding",
@@ -303,7 +303,7 @@ def test_sampled_study_has_the_dimension_case(tmp_path):
 def test_table_of_cases(tmp_path):
     (tmp_path / "cases.csv").write_text("axial_force,roller_material\n20,PA6\n30,POM\n")
     study = parse_study(
-        {"name": "t", "design": "table", "table": "cases.csv", "outputs": ["forces"], "contact_model": "sliding"},
+        {"name": "t", "method": "table", "table": "cases.csv", "outputs": ["forces"], "contact_model": "sliding"},
         tmp_path / "t.yaml",
     )
     plan = run_study(study, tmp_path, solver=fake_solver.solve)
@@ -433,7 +433,7 @@ SAMPLED = {
     ],
 )
 def test_more_samples_leave_the_cases_of_the_smaller_sample_solved(tmp_path, solved, design, small, large):
-    data = {"name": "g", "design": design, "outputs": ["forces"], "contact_model": "sliding"} | {
+    data = {"name": "g", "method": design, "outputs": ["forces"], "contact_model": "sliding"} | {
         "factors": SAMPLED,
         "chunk_size": 20,
     }
@@ -449,7 +449,7 @@ def test_more_samples_leave_the_cases_of_the_smaller_sample_solved(tmp_path, sol
 
 
 def test_a_larger_latin_hypercube_is_drawn_anew_and_the_plan_says_so(tmp_path, solved):
-    data = {"name": "g", "outputs": ["forces"], "contact_model": "sliding", "factors": SAMPLED, "design": "lhs"}
+    data = {"name": "g", "outputs": ["forces"], "contact_model": "sliding", "factors": SAMPLED, "method": "lhs"}
     run(data | {"samples": 10}, tmp_path)
     told = status_of(parse_study(data | {"samples": 20}), study_folder("g", tmp_path)).unused
     assert told.startswith("10 solved cases") and "lhs draws each number of samples anew" in told

@@ -16,7 +16,7 @@ LISTS = {
 
 def roles(data):
     study = parse_study({"name": "r", **data})
-    return roles_of(study.parsed, study.parsed, study.config.roles, study.config.design)
+    return roles_of(study.parsed, study.parsed, study.config.roles, study.config.method_name)
 
 
 def test_the_program_knows_who_sets_each_parameter():
@@ -51,7 +51,7 @@ def test_own_factors_have_the_role_of_the_parameter_that_they_give():
 
 def test_the_inner_array_holds_the_conditions():
     factors = {"friction_coefficient": {"values": [0.1, 0.2]}, "contact_angle": {"uniform": [28, 32]}}
-    found = roles({"factors": factors, "design": "inner_outer", "samples": 8})
+    found = roles({"factors": factors, "method": "inner_outer", "samples": 8})
     assert found == {"friction_coefficient": "choice", "contact_angle": "condition"}
 
 
@@ -63,7 +63,7 @@ def test_the_inner_array_holds_the_conditions():
         ({"contact_angle": "choice"}, {}, ("roles.contact_angle", "roller_profile_radius")),
         ({"contact_model": "choice"}, {}, ("roles.contact_model", "option of the calculation", "Remove")),
         (["friction_coefficient"], {}, ("roles", "For example")),
-        ({"roller_profile_radius": "condition"}, {"design": "inner_outer"}, ("design points", "scatter: true")),
+        ({"roller_profile_radius": "condition"}, {"method": "inner_outer"}, ("design points", "scatter: true")),
     ],
 )
 def test_wrong_roles_are_refused(given, more, words):

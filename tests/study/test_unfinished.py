@@ -42,7 +42,7 @@ class Stopped(BaseException):
 def stopped_study(design, chunks=2):
     """Solve some chunks of a study in the working folder; return the study and the cases that are solved."""
     more, factors = DESIGNS[design]
-    basis = {"name": "stopped", "design": design, "chunk_size": 5, "contact_model": "sliding", "accuracy": "preview"}
+    basis = {"name": "stopped", "method": design, "chunk_size": 5, "contact_model": "sliding", "accuracy": "preview"}
     study = parse_study(basis | {"outputs": ["forces", "friction_work", "life"], "factors": factors} | more)
     done = []
 
@@ -148,7 +148,7 @@ def test_chunks_name_their_levels(tmp_path, monkeypatch):
 @pytest.mark.parametrize(("design", "said"), [("lhs", "lhs design with another factor is drawn anew"), ("grid", None)])
 def test_plan_and_run_say_before_solving_what_a_new_factor_costs(tmp_path, monkeypatch, design, said):
     monkeypatch.chdir(tmp_path)
-    base = {"name": "grown", "contact_model": "sliding", "accuracy": "preview", "outputs": ["forces"], "design": design}
+    base = {"name": "grown", "contact_model": "sliding", "accuracy": "preview", "outputs": ["forces"], "method": design}
     more, factors = {"samples": 6} if design == "lhs" else {}, NUMBERS if design == "lhs" else LISTS
     run_study(parse_study(base | more | {"factors": factors}))
     lines: list[str] = []

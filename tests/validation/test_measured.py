@@ -49,6 +49,22 @@ def test_the_flash_of_the_twin_disc_is_that_of_one_dimensional_conduction():
     assert mean == pytest.approx(rise.mean(), rel=0.05)
 
 
+def test_the_flash_of_the_twin_disc_is_near_that_of_its_authors():
+    """Their calculation has other thermal values, which are not stated, and an even heat density."""
+    for name in ("flash_mean", "flash_largest"):
+        ratio = np.array(OWN["twin_disc"][name]) / column(read("twin_disc"), name)
+        assert (ratio > 1.0).all() and (ratio < 1.25).all()
+
+
+def test_a_range_of_wear_that_was_taken_from_the_twin_disc_holds_it():
+    """Without such a range the page says that the database lies outside."""
+    own = page.wear_value(page.WHEEL_STEEL)
+    coefficients = [page.measured_wear(regime, regime["work_to"]) for regime in read("twin_disc_wear")]
+    holds = own.range[0] * 0.98 <= min(coefficients) and max(coefficients) <= own.range[1] * 1.02
+    assert holds == (page.WEAR_SOURCE in own.source)
+    assert holds or page.wear_of_twin_discs().outside
+
+
 def test_wear_of_the_twin_disc_is_a_coefficient():
     """5.3 ug/(m mm2) for each N/mm2 at 7850 kg/m3 is 6.75e-4 mm3/J, and 3.1e-4 mm3/(N m) at mu 0.46."""
     mild, severe, _ = read("twin_disc_wear")

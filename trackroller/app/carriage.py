@@ -35,6 +35,7 @@ from trackroller.yaml_file import change_yaml, errors_by_line, parse_mapping, wr
 LONGEST = 200_000  # bytes of a file that the list looks into
 HEADS = tuple(re.compile(rf"^{key}\s*:", re.M) for key in ("mass", "rollers", "cases"))
 WHAT = "carriage file"
+TABLES = (".csv", ".xlsx")  # ends of the names of shelves
 # of others
 RESERVED = ("materials.yaml", "materials.yml", "config.yaml", "mkdocs.yml", "workflow", "profiles")
 
@@ -47,17 +48,36 @@ class Change(pydantic.BaseModel):
 
 
 def carriage_files() -> dict[str, Any]:
-    """Return the carriage files of the folder, and the example with which the page begins."""
+    """Return the carriage files and the tables of the folder, and the example with which the page
+    begins.
+    """
     paths = sorted(
         path.as_posix() for pattern in ("*.y*ml", "*/*.y*ml") for path in Path().glob(pattern)
     )
-    return {"files": [name for name in paths if _is_carriage(Path(name))], "example": EXAMPLE}
+    files = [name for name in paths if is_carriage(Path(name))]
+    return {"files": files, "tables": _tables(), "example": EXAMPLE}
 
 
-def _is_carriage(path: Path) -> bool:
+def _tables() -> list[str]:
+    """Return the tables of the folder, each of which may be a shelf of rollers."""
+    ends = [pattern + end for pattern in ("*", "*/*") for end in TABLES]
+    names = sorted(path.as_posix() for pattern in ends for path in Path().glob(pattern))
+    return [name for name in names if _is_allowed(name)]
+
+
+def _is_allowed(name: str) -> bool:
+    """Return whether the page may read a table."""
+    try:
+        place_of(name, "shelf", TABLES, "rollers.csv")
+    except InputError:
+        return False
+    return True
+
+
+def is_carriage(path: Path) -> bool:
     """Return whether a file of this folder has the keys of a carriage file."""
     try:
-        text = read_text(_place(path.as_posix(), "file"), WHAT, LONGEST)
+        text = read_text(place_of(path.as_posix(), "file"), WHAT, LONGEST)
     except InputError:
         return False
     return _has_heads(text)
@@ -85,7 +105,7 @@ def open_carriage(file: str) -> dict[str, Any]:
     """Return the text of a carriage file of the folder, which the page may save under this name
     again.
     """
-    path = _place(file, "file")
+    path = place_of(file, "file")
     text = read_text(path, WHAT)
     _check_kind(text, path)
     WRITTEN.note({path.as_posix(): sha256(path)})
@@ -139,7 +159,7 @@ def _errors(exc: InputError) -> list[dict[str, Any]]:
 def _carriage(text: str, file: str) -> Carriage:
     """Return the checked carriage of a text."""
     if file:
-        path = _place(file, "file")
+        path = place_of(file, "file")
     else:
         path = Path("carriage.yaml")
     values = parse_mapping(text, WHAT)
@@ -240,7 +260,7 @@ def save_carriage(text: str, file: str, opened: str = "") -> dict[str, str]:
         If the file is there and the text comes from another one, or if somebody has changed it in
         the meantime.
     """
-    path = _place(file, "file")
+    path = place_of(file, "file")
     _check_kind(text, path)
     if os.path.lexists(path) and Path(opened) != path:
         remedy = "Give it another name, or open the file first."
@@ -263,25 +283,27 @@ def carriage_spectrum(text: str, roller: str, file: str = "") -> dict[str, str]:
     name = name_of_study(f"{whole.name}-{roller}")
     return {
         "file": _write(
-            _place((Path(file).parent / f"{name}.yaml").as_posix(), "file"), write_yaml(values)
+            place_of((Path(file).parent / f"{name}.yaml").as_posix(), "file"), write_yaml(values)
         )
     }
 
 
-def _place(file: str, field: str) -> Path:
-    """Return the path of a YAML file in this folder, or in a folder of it that is not the page's
+def place_of(
+    file: str, field: str, ends: tuple[str, ...] = (".yaml", ".yml"), example: str = "shuttle.yaml"
+) -> Path:
+    """Return the path of a file in this folder, or in a folder of it that is not the page's
     own.
     """
     path = Path(file.strip())
-    allowed = "a name such as shuttle.yaml, in this folder or in a folder of it"
-    whole = (
-        path.suffix.lower() in (".yaml", ".yml") and file.isprintable() and not path.is_absolute()
-    )
+    allowed = f"a name such as {example}, in this folder or in a folder of it"
+    whole = path.suffix.lower() in ends and file.isprintable() and not path.is_absolute()
     hidden = any(part.startswith(".") for part in path.parts)
     if not whole or hidden or len(path.parts) > 2 or path.parts[0] in (RESULTS.name, TEXTS.name):
-        raise InputError(field, file[:200], allowed, "Give the file a name that ends in .yaml.")
+        raise InputError(
+            field, file[:200], allowed, f"Give the file a name that ends in {ends[0]}."
+        )
     if path.name.lower() in RESERVED or path.parts[0].lower() in RESERVED:
-        remedy = "Give the file another name, such as shuttle.yaml."
+        remedy = f"Give the file another name, such as {example}."
         raise InputError(field, file, allowed, remedy, "is a name of another kind of file")
     if is_link(path) or is_link(path.parent):
         raise InputError(field, file, allowed, "Copy the file here.", "is a link")

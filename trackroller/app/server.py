@@ -80,7 +80,7 @@ class Refused(tornado.web.HTTPError):
 SOLVING = dict.fromkeys(
     ("picture", "curve", "find_range", "texts", "sheet", "file_of_roller"), "picture"
 )
-SOLVING |= {"carriage_lives": "carriage", "spectrum": "spectrum"}
+SOLVING |= {"carriage_lives": "carriage", "spectrum": "spectrum", "sized": "requirement"}
 STUDIES = (
     *("checked", "listing", "text_of", "start", "resume", "pause", "delete", "headlines"),
     *("page_of", "file_of_study"),

@@ -132,7 +132,7 @@ def _study(text: str) -> Study:
     if cases > MOST_CASES:
         allowed = f"at most {MOST_CASES:,} cases on this page"
         raise InputError(
-            "design", f"{cases:,} cases", allowed, "Start larger studies with `trackroller run`."
+            "method", f"{cases:,} cases", allowed, "Start larger studies with `trackroller run`."
         )
     return study
 

@@ -155,7 +155,7 @@ def study_of(whole: Carriage, ds: xr.Dataset, table: str) -> tuple[dict[str, Any
         "name": name_of_study(f"{whole.name}-loads"),
         "description": text,
         "base": base,
-        "design": "table",
+        "method": "table",
         "table": table,
     }
     columns = zip(heads, zip(*rows[1:], strict=True), strict=True)

@@ -310,11 +310,11 @@ def carriage(
 @command("trackroller.cli.shelf", "print_shelf")
 def shelf(
     file: Annotated[
-        Path,
+        Path | None,
         typer.Argument(
             help="table of rollers, bearings or guides (CSV, .xlsx)", show_default=False
         ),
-    ],
+    ] = None,
     of: Annotated[
         str, typer.Option("--of", help="what a row is: roller, bearing or guide")
     ] = "roller",
@@ -322,6 +322,9 @@ def shelf(
         Path | None, typer.Option("--case", help="case whose rail and values the rows are put to")
     ] = None,
     settings: Annotated[list[str] | None, typer.Option("--set", help=SET_HELP)] = None,
+    example: Annotated[
+        bool, typer.Option("--example", help="print a table to start from, or write it to FILE")
+    ] = False,
 ) -> None:
     """Show the rows of a shelf and check them: names, units, values, and whether they fit the
     rail.

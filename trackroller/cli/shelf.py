@@ -6,24 +6,26 @@ from __future__ import annotations
 
 import json
 import math
+import os
+import shlex
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from trackroller.cli.case import YAML, read_case, writable, write_yaml_file
-from trackroller.cli.usage import print_doubts
+from trackroller.cli.usage import print_doubts, print_line
 from trackroller.damage import limit_word
 from trackroller.damage.bearing import FIELD as BEARING
 from trackroller.damage.catalogue import FIELD as CATALOGUE
 from trackroller.damage.stud import FIELD as STUD
 from trackroller.errors import InputError
-from trackroller.files import files_beside
-from trackroller.numerics.units import PLAIN
-from trackroller.parameters import PARAMETERS
+from trackroller.files import files_beside, write_text
+from trackroller.report.sizing import head_of, lead_of, notes_of, shown
 from trackroller.report.terminal import print_table, print_text
-from trackroller.study.design.entries import SHELVES, SIZES
+from trackroller.study.design.entries import SHELVES
 from trackroller.study.design.levels import entries, in_words
 from trackroller.study.file.load import parse_study
 from trackroller.study.file.shelf import ROLLER, base_beside_shelf, with_rows, without_overridden
+from trackroller.study.file.shelf_example import EXAMPLE
 from trackroller.study.file.study import Study
 from trackroller.study.store.crate import write_crate
 from trackroller.study.store.ledger import study_folder
@@ -34,15 +36,30 @@ if TYPE_CHECKING:
     from trackroller.results.size import Sizing
 
 
-def print_shelf(file: Path, of: str, case: Path | None, settings: list[str] | None) -> None:
+def print_shelf(
+    file: Path | None,
+    of: str,
+    case: Path | None,
+    settings: list[str] | None,
+    example: bool = False,
+) -> None:
     """Print the rows of a shelf after all checks of a study: `of` says of what, a case gives rail
-    and empty cells.
+    and empty cells. With `example`, print a shelf to start from, or write it to `file`.
     """
+    if example:
+        _write_example(file)
+        return
+    if file is None or not file.exists():
+        remedy = (
+            "Check the path, or write one to start from: trackroller shelf --example rollers.csv"
+        )
+        wrong = "is not given" if file is None else "does not exist"
+        raise InputError("shelf", str(file or ""), "the path of a table of rollers", remedy, wrong)
     if of not in SHELVES:
         raise InputError("--of", of, ", ".join(SHELVES), "Choose one of them.")
     study = shelf_study(file, of, case, settings)
     factor = study.parsed[of]
-    heads = ["name", *(_head(name, factor.units) for name in factor.beside)]
+    heads = ["name", *(head_of(name, factor.units) for name in factor.beside)]
     rows = []
     for i, level in enumerate(factor.levels):
         values = [_cell(name, column[i]) for name, column in factor.beside.items()]
@@ -50,6 +67,22 @@ def print_shelf(file: Path, of: str, case: Path | None, settings: list[str] | No
     print_table(heads, rows)
     print_text(f"rows: {len(rows)}. A study takes them as factors: {{{of}: {{file: {file.name}}}}}")
     print_doubts(study.doubts())
+
+
+def _write_example(file: Path | None) -> None:
+    """Write or print the example of a shelf; a file that is there stays."""
+    if file is None:
+        print(EXAMPLE, end="")
+        return
+    if file.suffix.lower() != ".csv" or os.path.lexists(file):
+        wrong = ""
+        if os.path.lexists(file):
+            wrong = "is there already"
+        allowed = "a new file whose name ends in .csv"
+        raise InputError("shelf", str(file), allowed, "Give another name.", wrong)
+    write_text(writable(file), EXAMPLE)
+    then = f"trackroller shelf {shlex.quote(str(file))}"
+    print_line(f"{file} is written. Write your rollers into it, then: {then}")
 
 
 def print_size(  # noqa: PLR0913 - one argument for each option of the command
@@ -103,19 +136,11 @@ def _print_sizing(sizing: Sizing, target: Path | None) -> None:
     """Print the least roller, the table of rollers, their load ratios, and the places of a
     carriage.
     """
-    print_text(_first_sentence(sizing))
-    if sizing.open_and_less:
-        print_text(
-            f"open, and less: {', '.join(sizing.open_and_less)}. A finer accuracy or better values "
-            "decide"
-        )
-    if sizing.unranked:
-        print_text(f"{', '.join(sizing.unranked)}: no {sizing.least_of}, and so not ranked by it")
-    units = {**sizing.units, "life_hours": "h"}
-    heads = [_head(str(name), units) for name in sizing.table]
-    print_table(
-        heads, [[_shown(value) for value in row] for row in sizing.table.itertuples(index=False)]
-    )
+    print_text(lead_of(sizing))
+    for sentence in notes_of(sizing):
+        print_text(sentence)
+    rows = [[shown(value) for value in row] for row in sizing.table.itertuples(index=False)]
+    print_table([head_of(str(name), sizing.units) for name in sizing.table], rows)
     if sizing.ratios is not None:
         _print_ratios(sizing)
     if sizing.mounting is not None:
@@ -144,8 +169,8 @@ def _print_mounting(mounting: Mounting, target: Path | None) -> None:
         print_text("each place with its own roller, solved together:")
     else:
         print_text("No rollers are enough together; these are at their place alone:")
-    heads = [_head(str(name), {"life_hours": "h"}) for name in mounting.table]
-    rows = [[_shown(value) for value in row] for row in mounting.table.itertuples(index=False)]
+    heads = [head_of(str(name), {}) for name in mounting.table]
+    rows = [[shown(value) for value in row] for row in mounting.table.itertuples(index=False)]
     print_table(heads, rows)
     if target is not None and mounting.enough:
         print_text(f"{target}: the carriage with these rollers")
@@ -156,35 +181,8 @@ def _print_ratios(sizing: Sizing) -> None:
     assert sizing.ratios is not None
     table = sizing.ratios.table.reindex(sizing.table[ROLLER])
     print_text("all forces may be multiplied by, until a limit is at 100 %:")
-    rows = [[name, *map(_shown, row)] for name, *row in table.itertuples()]
+    rows = [[name, *map(shown, row)] for name, *row in table.itertuples()]
     print_table([ROLLER, *(limit_word(str(name)) for name in table)], rows)
-
-
-def _first_sentence(sizing: Sizing) -> str:
-    """Return which roller to take, in one sentence."""
-    if not sizing.least:
-        return "No roller of the shelf is surely enough."
-    row = sizing.table.set_index(ROLLER).loc[sizing.least]
-    parts = []
-    if sizing.least_of:
-        parts.append(f"{sizing.least_of} {row[sizing.least_of]:g}")
-    if "life_ratio" in row:
-        parts.append(f"{row['life_ratio']:.3g} times the required life")
-    if "overload" in row:
-        parts.append("within all limits at the forces times the safety")
-    number = int((sizing.table["verdict"] == "enough").sum())
-    return f"{sizing.least} is the least of {number} that are enough: {', '.join(parts)}."
-
-
-def _shown(value: Any) -> str:
-    """Return a value of the table of rollers as text."""
-    if isinstance(value, float):
-        if math.isnan(value):
-            return "–"
-        if math.isinf(value):
-            return "any"
-        return f"{value:.4g}"
-    return str(value) or "–"
 
 
 def shelf_study(file: Path, of: str, case: Path | None, settings: list[str] | None) -> Study:
@@ -200,18 +198,6 @@ def shelf_study(file: Path, of: str, case: Path | None, settings: list[str] | No
         )
     with places.in_files():
         return parse_study(without_overridden(keys, of))
-
-
-def _head(name: str, units: Any) -> str:
-    """Return the head of a column with its unit."""
-    unit = units.get(name, "")
-    if name in PARAMETERS:
-        unit = PARAMETERS[name].unit
-    elif name in SIZES:
-        unit = "mm"
-    if unit in PLAIN:
-        return name
-    return f"{name} [{unit}]"
 
 
 def _cell(name: str, value: Any) -> str:

@@ -185,7 +185,7 @@ def central_composite(count: int) -> np.ndarray:
         )
     if not 1 <= count <= 8:
         name = f"central_composite with {count} numeric factors"
-        raise InputError("design", name, "1 to 8 numeric factors", remedy)
+        raise InputError("method", name, "1 to 8 numeric factors", remedy)
     if count == 1:  # pyDOE needs two factors
         return np.array([[-1.0], [1.0], [-1.0], [1.0], [0.0]])
     from pydoe import ccdesign  # heavy, and other designs do not need it
@@ -217,7 +217,7 @@ def box_behnken(count: int) -> np.ndarray:
         remedy = "Use central_composite (up to 8 factors), or lhs."
     if not 3 <= count <= 7:
         raise InputError(
-            "design", f"box_behnken with {count} numeric factors", "3 to 7 numeric factors", remedy
+            "method", f"box_behnken with {count} numeric factors", "3 to 7 numeric factors", remedy
         )
     if count not in _BLOCKS:
         from pydoe import bbdesign  # heavy, as above
@@ -253,7 +253,7 @@ def plackett_burman(count: int) -> np.ndarray:
     """
     if not 1 <= count <= 47:
         raise InputError(
-            "design", f"plackett_burman with {count} factors", "1 to 47 factors", "Use morris."
+            "method", f"plackett_burman with {count} factors", "1 to 47 factors", "Use morris."
         )
     from scipy.linalg import hadamard  # heavy, as above
 

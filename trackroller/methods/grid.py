@@ -53,7 +53,7 @@ class Grid(Method):
                 raise InputError(
                     f"factors.{name}",
                     factor.kind,
-                    "values, linspace or logspace, with design grid",
+                    "values, linspace or logspace, with method grid",
                     remedy,
                 )
 
@@ -64,7 +64,7 @@ class Grid(Method):
         if np.prod([float(s) for s in shape]) > MAX_ROWS:
             size = f"grid of {' x '.join(map(str, shape))}"
             raise InputError(
-                "design", size, f"at most {MAX_ROWS} rows", "Take fewer levels or a sampled design."
+                "method", size, f"at most {MAX_ROWS} rows", "Take fewer levels or a sampled design."
             )
         return cells(shape), {"shape": shape}
 

@@ -48,7 +48,7 @@ class InnerOuter(Method):
         outer = {name: f for name, f in free.items() if not f.scatter}
         inner = {name: f for name, f in free.items() if f.scatter}
         if not inner:
-            allowed = "at least one factor that scatters (a distribution), with design inner_outer"
+            allowed = "at least one factor that scatters (a distribution), with method inner_outer"
             remedy = "Give one factor a distribution such as {normal: [0.1, 0.02]}."
             raise InputError("factors", list(free), allowed, remedy)
         if settings["replicates"] > 1 and not METHODS[settings["inner"]].grows:

@@ -197,7 +197,7 @@ class Method:
     needs = ""
     unit = samples_unit = "rows"
     whole = ""
-    uncorrelated = "This design has fixed combinations of values. Take design lhs."
+    uncorrelated = "This design has fixed combinations of values. Take method: lhs."
     reference: tuple[str, str] | None = None
 
     def draw(self, free: Factors, n: int, seed: int, settings: Settings) -> Drawn:
@@ -383,7 +383,7 @@ def register(method: M) -> M:
     InputError : another design has the name
     """
     if method.name in METHODS:
-        raise InputError("design", method.name, "a name that no other design of experiments has")
+        raise InputError("method", method.name, "a name that no other design of experiments has")
     METHODS[method.name] = method()
     return method
 

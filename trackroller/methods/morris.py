@@ -46,7 +46,7 @@ class Morris(Method):
     unit = "elementary effects"
     samples_unit = "trajectories"
     uncorrelated = (
-        "Elementary effects change one factor at a time. Take design lhs: first and "
+        "Elementary effects change one factor at a time. Take method: lhs: first and "
         "delta allow correlation."
     )
     reference = (

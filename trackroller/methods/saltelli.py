@@ -76,7 +76,7 @@ class Saltelli(Method):
     unit = "blocks"
     samples_unit = "base samples"
     uncorrelated = (
-        "Sobol indices need independent factors. Take design lhs: first and delta "
+        "Sobol indices need independent factors. Take method: lhs: first and delta "
         "allow correlation."
     )
     reference = (

@@ -358,11 +358,7 @@ def _word(words: Sequence[str]) -> Callable[[int], str]:
 
 _WORDS: dict[str, Callable[[int], str]] = {
     name: _word(words) for name, (_, words) in FLAGS.items()
-} | {
-    "regime": _word(REGIME_LABELS),
-    "validity": _flags_set,
-    "at_surface": _word(("no", "yes")),
-}
+} | {"regime": _word(REGIME_LABELS), "validity": _flags_set, "at_surface": _word(("no", "yes"))}
 
 
 def _save(path: Path, tables: Sequence[Table], heads: int = 1) -> None:

@@ -111,138 +111,122 @@ def _choice_column(name: str) -> Column:
     return Column(name, words, unit, known.meaning, "level", role="name")
 
 
+STATE = Column(
+    "state",
+    "Verdict",
+    meaning="met: the low end over (1 + error) reaches the requirement. Missed: the high end times "
+    "(1 + error) does not. Otherwise open; none: no condition is held",
+    kind="state",
+)
+WHERE_WORST = (
+    Column("worst", "Worst condition", "", "the levels of the condition at the low end", "text"),
+    Column(
+        "ends",
+        "Ended by",
+        "",
+        "what ends the candidate at the low end of its worst condition",
+        "text",
+    ),
+)
+SECOND_MODEL = (
+    Column(
+        "second",
+        "Second model",
+        "",
+        "the second model of the same end with the shortest life",
+        "text",
+    ),
+    Column(
+        "second_low", "By second model", "h", "its life at its worst condition", until="second_high"
+    ),
+)
+SECOND_STATE = Column(
+    "second_state", "Its verdict", "", "the requirement by the second model", "state"
+)
+EXCEEDED = Column(
+    "exceeded", "Above 100 %", "", "limits that are exceeded somewhere, the worst one", "text"
+)
+TO_THE_LEADER = (
+    Column(
+        "ratio_low",
+        "To the leader",
+        "1",
+        "ratio to the leader in the same condition",
+        "ratio",
+        "ratio_high",
+    ),
+    Column(
+        "longer",
+        "Better in",
+        "",
+        "conditions in which the candidate is better than the leader",
+        "count",
+    ),
+)
+ERROR = Column(
+    "error", "Error", "1", "told 95 % error of the solution at the worst condition", "error"
+)
+EXTRAPOLATED = Column(
+    "extrapolated",
+    "Extrapolated",
+    "",
+    "conditions whose life lies beyond the data of its rule",
+    "count",
+)
+EDGE = Column(
+    "edge", "At the end of", "", "choices at the smallest or largest of their levels", "text"
+)
+
+
 def candidate_columns(own: Comparison, table: pd.DataFrame) -> tuple[Column, ...]:
     """Return the columns of the table of candidates that a reader is shown, as far as the study has
     them.
     """
-    name, words, units = own.ranges.output
-    chance = 0.5
-    if of_first_limit(name):
-        chance = float(own.results.data.attrs.get("failure_probability", 0.5))
-    life = words
-    if is_life(name):
-        life = f"{words}, at {100 * chance:g} % failure probability"
     columns = []
     if own.required:
-        meaning = (
-            "met: the low end over (1 + error) reaches the requirement. Missed: the high end times "
-            "(1 + error) does not. Otherwise open; none: no condition is held"
-        )
-        columns.append(Column("state", "Verdict", meaning=meaning, kind="state"))
+        columns.append(STATE)
     columns += [_choice_column(choice) for choice in own.choices]
     columns += _goods_columns(own, table)
-    columns += [
-        Column(
-            "low",
-            "Worst",
-            units,
-            f"{life}: worst condition, low to high end of its range",
-            until="high",
-            role="bar",
-        ),
-        Column(
-            "median",
-            "Median",
-            units,
-            f"{words}: median of the conditions that are held",
-            role="bar",
-        ),
-        Column("best", "Best", units, f"{words}: best condition that is held", role="bar"),
-        *_columns_of_others(own),
-        Column(
-            "worst", "Worst condition", "", "the levels of the condition at the low end", "text"
-        ),
-        Column(
-            "ends",
-            "Ended by",
-            "",
-            "what ends the candidate at the low end of its worst condition",
-            "text",
-        ),
-        *_ends_apart(table),
-    ]
+    columns += _output_columns(own)
+    columns += _columns_of_others(own)
+    columns += [*WHERE_WORST, *_ends_apart(table)]
     columns += _count_columns(own)
-    columns += _drawn_columns(own, units)
+    columns += _drawn_columns(own, own.ranges.output[2])
     if (table["second"] != "").any():
-        columns += [
-            Column(
-                "second",
-                "Second model",
-                "",
-                "the second model of the same end with the shortest life",
-                "text",
-            ),
-            Column(
-                "second_low",
-                "By second model",
-                "h",
-                "its life at its worst condition",
-                until="second_high",
-            ),
-        ]
+        columns += SECOND_MODEL
         if any(one.output in OF_PAIR for one in own.required):
-            columns.append(
-                Column(
-                    "second_state",
-                    "Its verdict",
-                    "",
-                    "the requirement by the second model",
-                    "state",
-                )
-            )
+            columns.append(SECOND_STATE)
     if (table["exceeded"] != "").any():
-        columns.append(
-            Column(
-                "exceeded",
-                "Above 100 %",
-                "",
-                "limits that are exceeded somewhere, the worst one",
-                "text",
-            )
-        )
+        columns.append(EXCEEDED)
     if own.count > 1:
-        better = "conditions in which the candidate is better than the leader"
-        columns += [
-            Column(
-                "ratio_low",
-                "To the leader",
-                "1",
-                "ratio to the leader in the same condition",
-                "ratio",
-                "ratio_high",
-            ),
-            Column("longer", "Better in", "", better, "count"),
-        ]
+        columns += TO_THE_LEADER
     if table["error"].notna().any():
-        columns.append(
-            Column(
-                "error",
-                "Error",
-                "1",
-                "told 95 % error of the solution at the worst condition",
-                "error",
-            )
-        )
-    columns.append(
-        Column(
-            "extrapolated",
-            "Extrapolated",
-            "",
-            "conditions whose life lies beyond the data of its rule",
-            "count",
-        )
-    )
+        columns.append(ERROR)
+    columns.append(EXTRAPOLATED)
     if (table["edge"] != "").any():
-        columns.append(
-            Column(
-                "edge",
-                "At the end of",
-                "",
-                "choices at the smallest or largest of their levels",
-                "text",
-            )
-        )
+        columns.append(EDGE)
     return tuple(columns)
+
+
+def _output_columns(own: Comparison) -> list[Column]:
+    """Return the columns of the compared output: its range at the worst condition, its median and
+    its best value.
+    """
+    name, words, units = own.ranges.output
+    life = words
+    if is_life(name):
+        chance = 0.5
+        if of_first_limit(name):
+            chance = float(own.results.data.attrs.get("failure_probability", 0.5))
+        life = f"{words}, at {100 * chance:g} % failure probability"
+    worst = f"{life}: worst condition, low to high end of its range"
+    median = f"{words}: median of the conditions that are held"
+    best = f"{words}: best condition that is held"
+    return [
+        Column("low", "Worst", units, worst, until="high", role="bar"),
+        Column("median", "Median", units, median, role="bar"),
+        Column("best", "Best", units, best, role="bar"),
+    ]
 
 
 def _drawn_columns(own: Comparison, units: str) -> list[Column]:

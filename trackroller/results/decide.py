@@ -211,11 +211,7 @@ class Decider:
             kind = "build"
             if tied:
                 kind = "a_or_b"
-            return Decision(
-                kind,
-                [*named, *(n for n in order if n not in named)],
-                named,
-            )
+            return Decision(kind, [*named, *(n for n in order if n not in named)], named)
         if groups[1]:
             return self._open(order, groups[1])
         return Decision("none", order, [])

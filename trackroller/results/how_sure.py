@@ -46,10 +46,7 @@ def answer_how_sure(results: SolvedCases) -> Answer:
     names = []
     if own.count > 1:
         names = names_of(own, order[:1])
-    head: dict[str, Any] = {
-        "names": names,
-        **leading(own, one),
-    }
+    head: dict[str, Any] = {"names": names, **leading(own, one)}
     if not own.drawn:
         head |= {"meets": int(one["meets"]), "of": int(one["of"])}
     kind = "count"

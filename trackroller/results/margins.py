@@ -8,7 +8,7 @@ contact off, makes the roller skid or locks it.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -457,7 +457,11 @@ def _with_use(margin: Margin, used: float) -> Margin:
 
 def _of_loads(ranges: Limits, inputs: Mapping[str, Any]) -> list[Margin]:
     """Return the margins of the pair to lift-off, full slip and self-locking."""
-    out = []
+    return [*_of_forces(ranges, inputs), *_of_friction(ranges, inputs)]
+
+
+def _of_forces(ranges: Limits, inputs: Mapping[str, Any]) -> Iterator[Margin]:
+    """Yield the margins of the axial and the motor force to the forces at which a contact ends."""
     for name, word, title, field, (low, high) in (
         (
             "lift_off",
@@ -485,10 +489,13 @@ def _of_loads(ranges: Limits, inputs: Mapping[str, Any]) -> list[Margin]:
             used = value / bound
         words = f"{PARAMETERS[field].long_name} between {low:.4g} and {high:.4g} N"
         margin = Margin(name, word, title, "pair", value, bound, "N", words, least=min(low, high))
-        known_use = math.nan
-        if math.isfinite(bound):
-            known_use = used
-        out.append(_with_use(margin, known_use))
+        if math.isinf(bound):
+            used = math.nan
+        yield _with_use(margin, used)
+
+
+def _of_friction(ranges: Limits, inputs: Mapping[str, Any]) -> Iterator[Margin]:
+    """Yield the margins of the friction to that of self-locking and that of a lift-off."""
     now = float(inputs["friction_coefficient"])
     for name, word, title, bound in (
         ("self_locking", "self-locking", "self-locking by friction", ranges.self_locking_friction),
@@ -510,8 +517,7 @@ def _of_loads(ranges: Limits, inputs: Mapping[str, Any]) -> list[Margin]:
             margin = _with_use(margin, used)
         else:
             margin = replace(margin, state="kept", bound=f"{words}: none up to 2")
-        out.append(margin)
-    return out
+        yield margin
 
 
 @dataclass(frozen=True)

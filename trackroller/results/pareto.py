@@ -143,9 +143,7 @@ def pareto_mask(objectives: np.ndarray, directions: Iterable[str]) -> np.ndarray
 
 
 def pareto(
-    results: SolvedCases,
-    objectives: Mapping[str, str],
-    constraints: Iterable[str] = (),
+    results: SolvedCases, objectives: Mapping[str, str], constraints: Iterable[str] = ()
 ) -> xr.Dataset:
     """Find the Pareto set of a solved study.
 

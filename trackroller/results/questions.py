@@ -83,7 +83,7 @@ def _ranks(name: str) -> bool:
 
 
 @made_once
-def answer_of(results: SolvedCases) -> Answer | None:
+def answer_of_study(results: SolvedCases) -> Answer | None:
     """Return the answer to a study; None for a search that did not come to its end.
 
     Parameters

@@ -17,7 +17,7 @@ from trackroller.results.candidates import Candidates, candidates_of
 from trackroller.results.how_it_behaves import answer_how_it_behaves
 from trackroller.results.lives_by_tests import ByTests, by_tests_of
 from trackroller.results.pareto import pareto, study_pareto
-from trackroller.results.questions import answer_of
+from trackroller.results.questions import answer_of_study
 from trackroller.results.sensitivity import analysis_of, indices_of
 from trackroller.results.solved_cases import SolvedCases
 from trackroller.results.summary import summary_of
@@ -91,11 +91,11 @@ class Results(SolvedCases):
             If the study has another design.
         """
         if not self.design.method.points:
-            remedy = "Take indices() for this study, or give the study design: inner_outer."
+            remedy = "Take indices() for this study, or give the study method: inner_outer."
             raise InputError(
-                "design",
+                "method",
                 self.design.method.name,
-                "design inner_outer, which has design points",
+                "method inner_outer, which has design points",
                 remedy,
             )
         return self.indices()
@@ -151,7 +151,7 @@ class Results(SolvedCases):
         Answer or None
             See `trackroller.results.answer.Answer`; None for a search that did not come to its end.
         """
-        return answer_of(self)
+        return answer_of_study(self)
 
     @property
     def by_tests(self) -> ByTests | None:
@@ -190,11 +190,11 @@ class Results(SolvedCases):
             return pd.DataFrame()
         if not candidates.comparable:
             remedy = (
-                "Give the choices as lists and the conditions as distributions with design: "
+                "Give the choices as lists and the conditions as distributions with method: "
                 "inner_outer."
             )
             raise InputError(
-                "design", self.design.method.name, "designs that share their conditions", remedy
+                "method", self.design.method.name, "designs that share their conditions", remedy
             )
         if not candidates.ranks:
             remedy = "Add life to outputs, and run the study again."

@@ -33,10 +33,7 @@ from trackroller.study.outputs import Output, default_names, flat, of_first_limi
 PERCENTILES = (1.0, 5.0, 10.0, 50.0, 90.0, 95.0, 99.0)
 
 
-def robustness(
-    results: SolvedCases,
-    log_life_scatter: Mapping[str, np.ndarray],
-) -> xr.Dataset:
+def robustness(results: SolvedCases, log_life_scatter: Mapping[str, np.ndarray]) -> xr.Dataset:
     """Summarise every output and the probability of each regime at every design point.
 
     Parameters
@@ -68,8 +65,8 @@ def robustness(
     design = results.design
     config = results.config
     if not design.method.points:
-        allowed = "design inner_outer: lists as outer array, distributions as inner array"
-        raise InputError("design", design.method.name, allowed)
+        allowed = "method inner_outer: lists as outer array, distributions as inner array"
+        raise InputError("method", design.method.name, allowed)
     regime = regimes(ds, results.dims)
     names = list(config.analysis.outputs or default_names(ds, design.factors, results.dims))
     goals = [statistic(goal) for goal in config.pareto]

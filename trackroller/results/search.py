@@ -1,4 +1,4 @@
-"""Search for the best designs of a study, `design: optimise`.
+"""Search for the best designs of a study, `method: optimise`.
 
 The search draws a generation of designs, solves each of them at all its conditions, judges it by
 the goals and draws the next generation. Every generation is a design of the study whose cases go
@@ -111,7 +111,7 @@ def search_designs(study: Study, results: Path | str = "results", **how: Any) ->
     Parameters
     ----------
     study : Study
-        The checked study, with `design: optimise`.
+        The checked study, with `method: optimise`.
     results : path
         Parent of the study's folder.
     **how
@@ -227,24 +227,6 @@ def _reported(search: _Search, decided: Judged, facts: dict[str, Any], tell: Tel
         tell(beside)
     else:
         tell("no design is valid, so there is no optimum to check")
-    final = search.of(study, designs.genes)
-    optima = [
-        {
-            "design": int(front[row]),
-            "values": best.values[row].tolist(),
-            "reference": checked.values[i].tolist(),
-            "violation": [float(best.violation[row]), float(checked.violation[i])],
-            "short": [float(best.short[row]), float(checked.short[i])],
-            "share": [float(best.share[row]), float(checked.share[i])],
-            "required": [best.required[row].tolist(), checked.required[i].tolist()],
-        }
-        for i, row in enumerate(shown)
-    ]
-    neighbours = [
-        {"choice": name, "step": step, "values": moved.values[i].tolist()}
-        | {name: float(getattr(moved, name)[i]) for name in ("violation", "short", "life")}
-        for i, (name, step, _) in enumerate(around)
-    ]
     result = facts | {
         "goals": dict(designs.goals),
         "front": len(front),
@@ -254,12 +236,42 @@ def _reported(search: _Search, decided: Judged, facts: dict[str, Any], tell: Tel
             {"goal": name, "design": int(front[row]), "solved": reached.get(name, False)}
             for name, row in zip(designs.goals, corners, strict=True)
         ],
-        "optima": optima,
-        "neighbours": neighbours,
+        "optima": [
+            {"design": int(front[row])}
+            | _optimum(best.take(np.array([row])), checked.take(np.array([i])))
+            for i, row in enumerate(shown)
+        ],
+        "neighbours": [
+            {"choice": name, "step": step} | _neighbour(moved.take(np.array([i])))
+            for i, (name, step, _) in enumerate(around)
+        ],
     }
-    with search.runner.solved(final) as ledger:
+    with search.runner.solved(search.of(study, designs.genes)) as ledger:
         gather(ledger, tell, {OPTIMUM: json.dumps(result)})
     return ledger
+
+
+def _optimum(of_search: Judged, checked: Judged) -> dict[str, Any]:
+    """Return the record of one design as the search solved it, and at `reference`."""
+    ends = (of_search, checked)
+    return {
+        "values": of_search.values[0].tolist(),
+        "reference": checked.values[0].tolist(),
+        "violation": [float(one.violation[0]) for one in ends],
+        "short": [float(one.short[0]) for one in ends],
+        "share": [float(one.share[0]) for one in ends],
+        "required": [one.required[0].tolist() for one in ends],
+    }
+
+
+def _neighbour(design: Judged) -> dict[str, Any]:
+    """Return the record of one design beside the recommended one."""
+    return {
+        "values": design.values[0].tolist(),
+        "violation": float(design.violation[0]),
+        "short": float(design.short[0]),
+        "life": float(design.life[0]),
+    }
 
 
 def _with_corners(

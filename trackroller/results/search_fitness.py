@@ -106,7 +106,7 @@ def judge(results: SolvedCases, genes: np.ndarray | None = None) -> Judged:
     Parameters
     ----------
     results : SolvedCases
-        A solved study with `design: optimise`.
+        A solved study with `method: optimise`.
     genes : numpy.ndarray, shape (n, choices), optional
         Genes of the designs; by default those of the design.
     """

@@ -115,18 +115,10 @@ def analyse(results: SolvedCases) -> xr.Dataset:
     given = results.config.analysis
     if design.method.proposes:
         allowed = "a design that draws its rows evenly: a search prefers good designs"
-        raise InputError(
-            "design", design.method.name, allowed, "Take design saltelli, sobol or lhs for indices."
-        )
+        remedy = "Take method: saltelli, sobol or lhs for indices."
+        raise InputError("method", design.method.name, allowed, remedy)
     own = material_deviations(results)
-    judged = results.judged_targets
-    scatter = {n: np.where(results.ended_by_fatigue(), own.get("roller", 0.0), 0.0) for n in judged}
-    aims = xr.Dataset()
-    requirement = results.config.requirement
-    if requirement and design.method.weighted:
-        aims = targets(ds, design, requirement, own | scatter, results.holds, judged)
-    if given.material_scatter == "fitted":
-        aims = aims.merge(bands(results, own), join="left", combine_attrs="override")
+    aims = _aims(results, own)
     if design.method.points:
         return robustness(results, own).merge(aims, combine_attrs="override")
     columns = outputs(
@@ -146,14 +138,7 @@ def analyse(results: SolvedCases) -> xr.Dataset:
     result = labelled(design, columns, [one.estimates for one in by_output], by_output[0].sizes)
     result = result.merge(_of_groups_and_levels(design, columns, given))
     result = result.assign(_quality(result, design, columns, by_output))
-    tied = {name for pair in correlated_pairs(design) for name in pair[:2]}
-    if tied:
-        words = {"long_name": "1 for a factor that is correlated with another factor", "units": "1"}
-        result["correlated"] = (
-            "factor",
-            np.array([name in tied for name in design.factors], np.int8),
-            words,
-        )
+    result = result.assign(_correlated(design))
     result = result.assign(first_order_sums(result, not design.method.observed))
     result.attrs = {
         **file_attributes("Sensitivity analysis of a study of track rollers", "analysed"),
@@ -217,6 +202,33 @@ def _of_groups_and_levels(
     return xr.Dataset(
         variables, coords | {"output": np.array([c.name for c in columns], dtype=object)}
     )
+
+
+def _aims(results: SolvedCases, deviations: dict[str, np.ndarray]) -> xr.Dataset:
+    """Return the probabilities of meeting the requirement, and the bands by the tests of a fit; an
+    empty data set where a study asks for neither.
+    """
+    judged = results.judged_targets
+    of_roller = np.where(results.ended_by_fatigue(), deviations.get("roller", 0.0), 0.0)
+    scatter = deviations | dict.fromkeys(judged, of_roller)
+    aims = xr.Dataset()
+    design = results.design
+    requirement = results.config.requirement
+    if requirement and design.method.weighted:
+        aims = targets(results.data, design, requirement, scatter, results.holds, judged)
+    if results.config.analysis.material_scatter == "fitted":
+        aims = aims.merge(bands(results, deviations), join="left", combine_attrs="override")
+    return aims
+
+
+def _correlated(design: Design) -> dict[str, Any]:
+    """Return the variable that marks correlated factors; nothing if all are independent."""
+    tied = {name for pair in correlated_pairs(design) for name in pair[:2]}
+    if not tied:
+        return {}
+    marks = np.array([name in tied for name in design.factors], np.int8)
+    words = {"long_name": "1 for a factor that is correlated with another factor", "units": "1"}
+    return {"correlated": ("factor", marks, words)}
 
 
 def within_levels(y: np.ndarray, design: Design, category: str) -> Estimates:

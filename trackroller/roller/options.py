@@ -178,6 +178,34 @@ def check_pairs(hertz: str, normal: str, slip_terms: Collection[str], contact_mo
         declared.check("slip_terms", term)
 
 
+def check_surface(contact_model: str, friction_law: object, film: float) -> None:
+    """Refuse a friction law or a film that the contact model does not serve.
+
+    Parameters
+    ----------
+    contact_model : str
+        Value of this option.
+    friction_law : object
+        The friction law of a case; "" or None stands for constant friction.
+    film : float
+        Flexibility of the film of a case [mm^3/N]; 0 is no film.
+
+    Raises
+    ------
+    InputError
+        If the declaration of the contact model does not say that it serves them.
+    """
+    declared = DECLARED[contact_model]
+    if friction_law and not declared.friction_laws:
+        remedy = "Take contact_model: kalker, or leave friction_law out."
+        allowed = f"constant friction with contact_model: {contact_model}"
+        raise InputError("friction_law", friction_law, allowed, remedy)
+    if film > 0.0 and not declared.films:
+        remedy = "Take contact_model: kalker, or leave layer_flexibility out."
+        allowed = f"0 (no film) with contact_model: {contact_model}"
+        raise InputError("layer_flexibility", film, allowed, remedy)
+
+
 def check_spin_model(spin_models: Sequence[str], contact_models: Sequence[str]) -> None:
     """Refuse a position of the spin pole that no contact model uses.
 

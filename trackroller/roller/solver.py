@@ -15,7 +15,6 @@ from trackroller.errors import InputError
 from trackroller.materials import load_database
 from trackroller.parameters import CONTACT_MODELS, MECHANICAL_MAPPINGS, OPTIONS
 from trackroller.parameters.accuracy import RUNGS, Accuracy
-from trackroller.parameters.contact_models import DECLARED
 from trackroller.roller import distinct_contacts, temperature
 from trackroller.roller.block_results import Block, join
 from trackroller.roller.case import Case, CaseTable, is_single, to_table
@@ -23,7 +22,7 @@ from trackroller.roller.dataset import NOTES, VARIABLES, build, file_attributes,
 from trackroller.roller.expected_errors import tell_errors
 from trackroller.roller.failures import with_reasons
 from trackroller.roller.limit_notes import notes_on_limits
-from trackroller.roller.options import Options, model_in_use, options_of_cases
+from trackroller.roller.options import Options, check_surface, model_in_use, options_of_cases
 from trackroller.roller.reflection import handed, reflect
 from trackroller.roller.stages import mechanics as stages
 from trackroller.roller.stages import outcome as stages_outcome
@@ -226,16 +225,10 @@ def _solve_table(table: CaseTable, options: Options, single: bool) -> xr.Dataset
 
 def _check_cases(table: CaseTable, options: Options) -> None:
     """Refuse profiles, friction laws and films that the options cannot serve."""
-    laws = table.friction_law[table.friction_law != ""]
-    if laws.size and not DECLARED[options.contact_model].friction_laws:
-        remedy = "Take contact_model: kalker, or leave friction_law out."
-        allowed = f"constant friction with contact_model: {options.contact_model}"
-        raise InputError("friction_law", laws[0], allowed, remedy)
-    film = table.layer_flexibility[table.layer_flexibility > 0.0]
-    if film.size and not DECLARED[options.contact_model].films:
-        remedy = "Take contact_model: kalker, or leave layer_flexibility out."
-        allowed = f"0 (no film) with contact_model: {options.contact_model}"
-        raise InputError("layer_flexibility", float(film[0]), allowed, remedy)
+    for law in dict.fromkeys(table.friction_law.tolist()):
+        check_surface(options.contact_model, law, 0.0)
+    for film in table.layer_flexibility[table.layer_flexibility > 0.0][:1].tolist():
+        check_surface(options.contact_model, "", film)
     for name in ("guide_profile", "roller_profile"):
         if options.normal != "halfspace" and np.any(getattr(table, name) != ""):
             remedy = f"Set normal to halfspace, or remove {name}."

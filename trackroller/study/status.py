@@ -204,11 +204,11 @@ def plan_rows(study: Study, status: Status) -> list[tuple[str, str]]:
     seconds = status.seconds_left + START
     source = "measured" if status.measured else "estimated"
     times = f"{duration(seconds)} on one core, {duration(seconds / 2)} on two"
-    pages = seconds_of_report(study.config.design, status.total)
+    pages = seconds_of_report(study.config.method_name, status.total)
     grows = study.config.until is not None or study.config.method.proposes
     small = bool(parts) and not grows and seconds / 2 < SHORT
     rows = [
-        ("study", f"{study.name} ({study.config.design})"),
+        ("study", f"{study.name} ({study.config.method_name})"),
         ("cases", f"{status.total}, {status.done} of them solved already"),
         *_growth_rows(study),
     ]

@@ -45,7 +45,7 @@ STUDY = {
         "drive_share": {"uniform": [0, 0.5]},
         "motor_force": {"expression": "-drive_share * friction_coefficient * abs(radial_force)"},
     },
-    "design": "saltelli",
+    "method": "saltelli",
     "second_order": False,
     "seed": 1,
     "outputs": ["forces", "contact", "life"],

@@ -11,7 +11,7 @@ from command_line import trackroller
 import trackroller as tr
 from trackroller.errors import MOST_SHOWN, Collector, InputErrors, likeliest, nearest
 from trackroller.roller.fields import FIELDS
-from trackroller.study.file.config import StudyFile
+from trackroller.study.file.load import KEYS
 from trackroller.yaml_file import lines_of
 
 CASE = """\
@@ -32,7 +32,7 @@ factors:
   friction_coefficient: {values: [0.1, 3.5]}
   velocity:
     uniform: [5 N, 6 N]
-design: lsh
+method: lsh
 outputs: [forces, lief]
 """
 
@@ -96,7 +96,7 @@ def test_a_case_file_names_all_its_errors_in_order(tmp_path):
 def test_a_study_file_names_all_its_errors_in_order(tmp_path):
     told = planned(tmp_path, STUDY)
     starts = ["line 1: study key = 'nmae'", "line 5: base = 'groove_width'", "line 7: factors.friction_coefficient"]
-    starts += ["line 9: factors.velocity.uniform", "line 10: design = 'lsh'", "line 11: outputs = 'lief'"]
+    starts += ["line 9: factors.velocity.uniform", "line 10: method = 'lsh'", "line 11: outputs = 'lief'"]
     assert [line[: len(start)] for line, start in zip(told, starts, strict=True)] == starts
 
 
@@ -285,11 +285,12 @@ def test_a_name_is_suggested_only_where_it_is_close(name, close, meant):
         ("parameters", None, "factors"),
         ("tolerance", None, "accuracy"),
         ("desgin", "design", "design"),
+        ("methd", "method", "method"),
     ],
 )
 def test_a_key_of_a_study_is_suggested_by_its_meaning(name, close, meant):
-    assert nearest(name, StudyFile.model_fields) == close
-    assert likeliest(name, StudyFile.model_fields)[0] == meant
+    assert nearest(name, KEYS) == close
+    assert likeliest(name, KEYS)[0] == meant
 
 
 def test_reliability_means_the_failure_probability(tmp_path):

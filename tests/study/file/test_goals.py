@@ -26,7 +26,7 @@ from trackroller.study.file.load import parse_study
 
 LHS = {
     "name": "a",
-    "design": "lhs",
+    "method": "lhs",
     "samples": 400,
     "outputs": ["forces", "contact", "friction_work", "life"],
     "factors": {
@@ -91,7 +91,7 @@ def test_wrong_goals_of_a_study_are_refused_with_field_and_remedy(data, parts):
 
 
 def test_material_scatter_needs_materials_that_have_some():
-    data = {"name": "n", "design": "inner_outer", "factors": {"axial_force": {"uniform": [0.0, 1.0]}}}
+    data = {"name": "n", "method": "inner_outer", "factors": {"axial_force": {"uniform": [0.0, 1.0]}}}
     with pytest.raises(
         InputError, match=r"materials with scatter; the database has none for 1\.7225-normalised \(roller\)"
     ):
@@ -117,7 +117,7 @@ def test_material_scatter_is_refused_only_for_a_body_whose_life_is_asked_for(tmp
     database = load_database(tmp_path / "own.yaml")
     data = {
         "name": "n",
-        "design": "inner_outer",
+        "method": "inner_outer",
         "base": {"roller_material": "tested"},
         "factors": {"axial_force": {"uniform": [0.0, 1.0]}},
         "analysis": {"material_scatter": True, "outputs": outputs},
@@ -131,8 +131,8 @@ def test_material_scatter_is_refused_only_for_a_body_whose_life_is_asked_for(tmp
 
 def test_material_scatter_is_refused_for_a_table_too(tmp_path):
     (tmp_path / "cases.csv").write_text("axial_force\n1\n2\n")
-    data = {"name": "n", "design": "table", "table": str(tmp_path / "cases.csv")}
-    with pytest.raises(InputError, match="design: inner_outer"):
+    data = {"name": "n", "method": "table", "table": str(tmp_path / "cases.csv")}
+    with pytest.raises(InputError, match="method: inner_outer"):
         parse_study(data | {"analysis": {"material_scatter": True}})
 
 
@@ -263,7 +263,7 @@ def test_correlated_columns_of_a_table_are_told(tmp_path):
     rows = [f"{-50 - i},{0.1 + 0.002 * i},{(i * 37) % 101}" for i in range(60)]
     (tmp_path / "t.csv").write_text("radial_force,friction_coefficient,axial_force\n" + "\n".join(rows))
     study = parse_study(
-        {"name": "t", "design": "table", "table": "t.csv"} | {"analysis": LIVES["analysis"]}, Path(tmp_path / "s.yaml")
+        {"name": "t", "method": "table", "table": "t.csv"} | {"analysis": LIVES["analysis"]}, Path(tmp_path / "s.yaml")
     )
     ds = study.design()
     ds["roller_life_hours"] = ("case", ds["friction_coefficient"].values)
@@ -282,6 +282,6 @@ def test_the_life_of_the_pair_counts_to_its_first_limit_in_constraints_and_goals
     assert list(config.pareto) == [fatigue, "max_pressure"]
     config = parse_study(study | asked | {"constraints": [f"{first} < {fatigue}"]}).config
     assert list(config.pareto) == [fatigue, "max_pressure"] and config.constraints == (f"{first} < {fatigue}",)
-    search = {"design": "optimise", "goals": {f"mean({fatigue})": "max", f"probability({fatigue})": "max"}}
+    search = {"method": "optimise", "goals": {f"mean({fatigue})": "max", f"probability({fatigue})": "max"}}
     config = parse_study(study | search | {"analysis": {"target": {"min": 9}}, "pareto": {}}).config
     assert list(config.goals) == [f"mean({first})", f"probability({fatigue})"]

@@ -18,7 +18,7 @@ factors:
   friction_coefficient: {uniform: [0.08, 0.21]}
   ratio: {uniform: [1.1, 1.3]}
   roller_profile_radius: {expression: "-ratio * guide_profile_radius"}
-design: lhs
+method: lhs
 samples: 7
 outputs: [forces]
 """
@@ -53,7 +53,7 @@ def test_results_remember_the_defaults_of_their_time(study, monkeypatch):
 
 def test_columns_of_a_table_count_as_named(tmp_path):
     (tmp_path / "cases.csv").write_text("\nmotor_force,friction_coefficient\n-5,0.1\n-6,0.2\n")
-    text = "{name: t, design: table, table: cases.csv, outputs: [forces]}"
+    text = "{name: t, method: table, table: cases.csv, outputs: [forces]}"
     (tmp_path / "t.yaml").write_text(text)
     found = tr.load_study(tmp_path / "t.yaml").not_given
     assert set(found) == set(EXAMPLE) - {"motor_force", "friction_coefficient"}

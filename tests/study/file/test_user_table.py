@@ -340,7 +340,7 @@ def test_a_constraint_names_a_further_column(tmp_path, monkeypatch, cells, const
     monkeypatch.chdir(tmp_path)
     rows = [f"{cell},{force}" for cell, force in zip(cells, (0, 10, 20), strict=True)]
     Path("t.csv").write_text("\n".join(["load_case,axial_force", *rows]) + "\n")
-    keys = {"name": "x", "design": "table", "table": "t.csv", "outputs": ["forces"], "contact_model": "sliding"}
+    keys = {"name": "x", "method": "table", "table": "t.csv", "outputs": ["forces"], "contact_model": "sliding"}
     study = {**keys, "accuracy": "preview", "constraints": [constraint]}
     assert tr.run(tr.load_study(study)).allowed.tolist() == allowed
     text = "'1'" if cells == "124" else "1"

@@ -30,7 +30,7 @@ SMALL = {
     "outputs": ["forces"],
     "contact_model": "sliding",
     "chunk_size": 4,
-    "design": "lhs",
+    "method": "lhs",
     "samples": 4,
     "factors": {"axial_force": {"uniform": [20, 50]}, "friction_coefficient": {"values": [0.1, 0.2]}},
 }
@@ -101,7 +101,7 @@ def test_growing_study_with_failed_cases_killed_before_each_flush_rename_or_remo
         ds = fake_solver.solve(design)
         return ds.assign(regime=ds["regime"].copy(data=(design["axial_force"] > 35).astype("i1") * 3))
 
-    small = SMALL | {"design": "sobol"}
+    small = SMALL | {"method": "sobol"}
     grown = small | {"samples": 8}
     run_study(parse_study(small), tmp_path / "start", solver=failing)
     failed = int((xr.load_dataset(tmp_path / "start" / "s" / "study.nc")["regime"] == 3).sum())

@@ -31,7 +31,7 @@ TABLE = "axial_force,friction_coefficient\n" + "".join(f"{20 + i},0.1\n" for i i
 POINTS = "x,z\n" + "".join(f"{x},{x * x / 13}\n" for x in np.linspace(-4, 4, 41))
 STUDY = """
 name: sealed
-design: table
+method: table
 table: cases.csv
 outputs: [forces]
 contact_model: sliding
@@ -95,7 +95,7 @@ def test_an_input_that_is_edited_between_load_and_plan_is_refused(home, name):
 
 GROWN = """
 name: grown
-design: sobol
+method: sobol
 samples: {samples}
 outputs: [forces]
 contact_model: sliding

@@ -266,15 +266,7 @@ def _states(ds: xr.Dataset, dims: tuple[str, ...], results: Results) -> list[Col
             of_body = ""
             if body:
                 of_body = f" of the {body}"
-            columns.append(
-                coded(
-                    name,
-                    f"Flags{of_body}",
-                    "state",
-                    masks,
-                    texts_of_masks,
-                )
-            )
+            columns.append(coded(name, f"Flags{of_body}", "state", masks, texts_of_masks))
     columns += _first_limits(results)
     if results.allowed is not None:
         met = ("met", "not met")

@@ -60,11 +60,7 @@ def views(ds: xr.Dataset) -> style.Drawn:
         direction = "y, left"
         if up == 2:
             direction = "z, up"
-        axes.set(
-            xlabel="x, forward [mm]",
-            ylabel=f"{direction} [mm]",
-            title=words,
-        )
+        axes.set(xlabel="x, forward [mm]", ylabel=f"{direction} [mm]", title=words)
         axes.set_aspect("equal", adjustable="datalim")
         axes.margins(0.2)
         axes.update_datalim([(float(at[:, 0].max()) + ROOM * size, float(at[:, up].mean()))])

@@ -206,10 +206,7 @@ def _surface(
     aspect = "auto"
     if drawn[1]:
         aspect = "equal"
-    axes.set(
-        title=f"{str(part['body'].item()).capitalize()}, surface",
-        aspect=aspect,
-    )
+    axes.set(title=f"{str(part['body'].item()).capitalize()}, surface", aspect=aspect)
     axes.set_ylabel("$y_\\mathrm{C}$ (rolling) [mm]", labelpad=1)
     _labels(axes, "$x_\\mathrm{C}$ (lateral) [mm]")
     _mark_peak(axes, part, ("x", "y"))
@@ -225,11 +222,7 @@ def _mark_peak(axes: Axes, part: xr.Dataset, plane: tuple[str, str]) -> None:
     marker = "x"
     if below:
         marker = "o"
-    look: dict[str, Any] = {
-        "marker": marker,
-        "markerfacecolor": "none",
-        "clip_on": False,
-    }
+    look: dict[str, Any] = {"marker": marker, "markerfacecolor": "none", "clip_on": False}
     axes.plot(x, y, color="white", markersize=7, markeredgewidth=2.6, zorder=5, **look)
     axes.plot(x, y, color="black", markersize=6, markeredgewidth=1.3, zorder=6, **look)
     if below:

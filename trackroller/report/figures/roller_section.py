@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -140,12 +141,7 @@ def content_of(ds: xr.Dataset) -> dict[str, Any]:
         * np.array([[math.sin(alpha), math.cos(alpha)], [-math.sin(alpha), math.cos(alpha)]])
     )
     lines = [*arrows, *((line[0], line[1]) for line, *_ in sizes)]
-    edges = [
-        edge
-        for points in outlines
-        for edge in zip(points, np.roll(points, -1, axis=0), strict=True)
-    ]
-    labels = Labels([*lines, *edges, *((axis[0], axis[1]) for axis in axes)])
+    labels = Labels([*lines, *_edges(outlines), *((axis[0], axis[1]) for axis in axes)])
     middle = place([(0.0, 0.0)])[0]
     named = [
         labels.place(str(i), "", at + 0.25 * (middle - at), np.array([0.0, 1.0]))
@@ -174,6 +170,12 @@ def content_of(ds: xr.Dataset) -> dict[str, Any]:
         "lines": lines,
         "boxes": labels.boxes,
     }
+
+
+def _edges(outlines: list[np.ndarray]) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+    """Yield both ends of each edge of closed outlines."""
+    for points in outlines:
+        yield from zip(points, np.roll(points, -1, axis=0), strict=True)
 
 
 def _dimensions(
@@ -218,14 +220,7 @@ def _flank(values: dict[str, Any], body: str, side: int) -> np.ndarray:
         drawn = ""
         if values.get(body):
             drawn = json.dumps(values.get(body))
-        shape = cross_section(
-            drawn,
-            body,
-            radius,
-            alpha,
-            r_guide,
-            side,
-        )
+        shape = cross_section(drawn, body, radius, alpha, r_guide, side)
     except ShapeError:
         # the case has failed, and its verdict names the shape; the nominal circle is drawn
         shape = cross_section("", body, radius, alpha, r_guide, side)

@@ -36,7 +36,7 @@ from trackroller.report.words.assumptions import (
     strength_sentences,
 )
 from trackroller.results.answer import Answer, plain_value
-from trackroller.results.answers import answer_of
+from trackroller.results.answer_of_data import answer_of_data
 from trackroller.results.roller_answer import answer_of_roller, materials_of_case
 from trackroller.results.validity_flags import flags_of
 from trackroller.roller import stored_inputs as record
@@ -247,7 +247,7 @@ def as_json(ds: xr.Dataset) -> str:
         for name in (n for n, of in content.items() if of["units"] == "h" and is_life(n)):
             content[name]["years"] = plain_value(years(ds[name].values, duty).tolist())
     content["doubts"] = doubts_of(ds)
-    answer = answer_of(ds)
+    answer = answer_of_data(ds)
     if answer is not None:
         content["answer"] = answer.to_dict()
     if "case" in ds.attrs:

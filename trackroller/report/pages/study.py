@@ -110,7 +110,7 @@ def proof_of(results: Results) -> dict[str, Any]:
         "solution": solution,
         "tables": [t for t in (validity_table(results), reason_table(results.data)) if t],
         "used": defaultdict(str, merged),
-        "design_reference": METHODS[results.config.design].reference,
+        "design_reference": METHODS[results.config.method_name].reference,
         "results": set(map(str, results.data.data_vars)),
         "record": inputs.record_rows(attrs, _NO_RECORD),
         "study_text": str(attrs.get("study", "")),

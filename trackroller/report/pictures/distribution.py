@@ -129,15 +129,5 @@ def _names_of_lines(shown: Mapping[str, np.ndarray], across: Axis) -> list[Marku
         if end:
             anchor = "end"
             shift = -10
-        parts.append(
-            label(
-                cut(name, WIDE / 2),
-                x,
-                y,
-                anchor,
-                kind,
-                dx=shift,
-                dy=-2,
-            )
-        )
+        parts.append(label(cut(name, WIDE / 2), x, y, anchor, kind, dx=shift, dy=-2))
     return parts

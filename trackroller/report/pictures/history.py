@@ -19,12 +19,7 @@ from trackroller.report.pictures.frame import (
     upright_axis,
     with_unit,
 )
-from trackroller.report.pictures.marks import (
-    element,
-    joined,
-    label,
-    stretched,
-)
+from trackroller.report.pictures.marks import element, joined, label, stretched
 from trackroller.report.pictures.picture import Picture, caption_of
 from trackroller.results.answer import Answer
 

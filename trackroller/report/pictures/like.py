@@ -9,20 +9,8 @@ import numpy as np
 
 from trackroller.report.numbers import grouped
 from trackroller.report.pictures.axis import Axis
-from trackroller.report.pictures.frame import (
-    WIDE,
-    cut,
-    framed,
-    lower_axis,
-)
-from trackroller.report.pictures.marks import (
-    dot,
-    joined,
-    label,
-    percent_place,
-    upright,
-    width_of,
-)
+from trackroller.report.pictures.frame import WIDE, cut, framed, lower_axis
+from trackroller.report.pictures.marks import dot, joined, label, percent_place, upright, width_of
 from trackroller.report.pictures.picture import Picture, caption_of
 from trackroller.results.answer import Answer
 
@@ -66,14 +54,7 @@ def draw_like(answer: Answer, data: Mapping[str, Any]) -> Picture:
             style = "d faint co"
             if place % 2 == 0:
                 style = "d faint cm"
-            parts.append(
-                dot(
-                    style,
-                    across.place(float(value)),
-                    moved,
-                    3,
-                )
-            )
+            parts.append(dot(style, across.place(float(value)), moved, 3))
     words = "; ".join(
         f"{name}: {grouped(float(np.nanmin(one)), 3)} to {grouped(float(np.nanmax(one)), 3)}"
         for name, one in ratios.items()

@@ -8,17 +8,8 @@ import numpy as np
 from markupsafe import Markup
 
 from trackroller.report.numbers import capital
-from trackroller.report.pictures.frame import (
-    cut,
-    framed,
-)
-from trackroller.report.pictures.marks import (
-    element,
-    joined,
-    label,
-    percent_place,
-    width_of,
-)
+from trackroller.report.pictures.frame import cut, framed
+from trackroller.report.pictures.marks import element, joined, label, percent_place, width_of
 from trackroller.results.answer import Answer
 
 MAP_ROW = 26.0  # height of a row of a map [px]

@@ -9,9 +9,7 @@ from typing import Any
 from markupsafe import Markup
 
 from trackroller.report.numbers import grouped, level_text, unit_text
-from trackroller.report.pictures.frame import (
-    left_out_words,
-)
+from trackroller.report.pictures.frame import left_out_words
 from trackroller.results.answer import Answer, Column
 from trackroller.study.design.levels import NAMED
 

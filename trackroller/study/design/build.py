@@ -81,7 +81,7 @@ def draw(
         options["replicates"] = config.until.replicates
     if len(set(grown)) > 1:
         options["point_samples"] = grown
-    method = METHODS[config.design]
+    method = METHODS[config.method_name]
     if config.table is not None:
         options["table"] = str(table)
     if "groups" in method.takes and config.analysis.groups:
@@ -94,9 +94,10 @@ def draw(
     base = {k: v for k, v in config.base.items() if isinstance(v, float)}
     samples = max(grown, default=config.samples)
     used = {name for text in config.constraints for name in expressions.names(text, "constraints")}
-    design = sample(factors, config.design, samples, config.seed, base=base, used=used, **options)
+    name = config.method_name
+    design = sample(factors, name, samples, config.seed, base=base, used=used, **options)
     if design.size > MAX_CASES:
-        raise InputError("design", f"{design.size} cases", f"at most {MAX_CASES} cases")
+        raise InputError("method", f"{design.size} cases", f"at most {MAX_CASES} cases")
     return design
 
 

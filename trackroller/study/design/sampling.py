@@ -100,7 +100,7 @@ def sample(
         columns = {name: drawn_by.values(f, unit[:, j]) for j, (name, f) in enumerate(free.items())}
     rows = len(unit)
     if rows > MAX_ROWS:
-        raise InputError("design", method, f"at most {MAX_ROWS} rows")
+        raise InputError("method", method, f"at most {MAX_ROWS} rows")
     for name, factor in parsed.items():
         if len(factor.levels) == 1:
             columns[name] = factor.take(np.zeros(rows, dtype=int))
@@ -132,7 +132,7 @@ def columns_of_rows(
 
 
 def _settings(method: str, options: Mapping[str, Any]) -> dict[str, Any]:
-    check_names("design", [method], METHODS)
+    check_names("method", [method], METHODS)
     settings = METHODS[method].defaults
     for key in options.keys() - settings.keys():
         having = those_that_take(key)
@@ -151,7 +151,7 @@ def _check_weights(free: Mapping[str, Factor], method: str) -> None:
     for name, factor in free.items():
         if factor.weights and not METHODS[method].random(factor):
             where = f"design {method}"
-            remedy = f"Remove the weights, or choose design {drawing[0]}."
+            remedy = f"Remove the weights, or choose method: {drawing[0]}."
             if outer:
                 where = f"the outer array of {method}"
                 remedy = "Remove the weights, or add scatter: true."

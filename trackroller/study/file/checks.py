@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -18,7 +19,7 @@ from trackroller.numerics.numbers import number_or_nan
 from trackroller.parameters import BODIES, MATERIAL_FIELDS, PARAMETERS
 from trackroller.roller.fields import FIELDS, other_than_default
 from trackroller.roller.geometry import contact_geometry, geometry_problem, geometry_problems
-from trackroller.roller.options import check_accuracy, check_pairs, check_spin_model
+from trackroller.roller.options import check_accuracy, check_pairs, check_spin_model, check_surface
 from trackroller.study.design.build import MAX_CASES
 from trackroller.study.design.carriage_cases import ROW
 from trackroller.study.design.entries import (
@@ -49,6 +50,7 @@ if TYPE_CHECKING:
 
 
 MOST_LEVELS = 12
+FILM = "layer_flexibility"
 
 
 def _check_options(study: Study) -> None:
@@ -80,6 +82,57 @@ def _check_options(study: Study) -> None:
     check_used({"duty": config.duty}, config.outputs, config.not_checked)
     for model in levels("contact_model"):
         check_accuracy(study.config.accuracy, model, study.config.outputs)
+
+
+def _check_surfaces(study: Study) -> None:
+    """Refuse friction laws and films of a study that one of its contact models does not serve.
+
+    Films of expressions, tables and shelves are checked on the whole design, see `check_geometry`.
+    """
+    where = "base"
+    if "friction_law" in study.factors:
+        where = "factors"
+    for model, law in itertools.product(_contact_models(study), study.friction_laws):
+        with _named(f"{where}.friction_law"):
+            check_surface(model, law, 0.0)
+    factor = study.parsed.get(FILM)
+    films: Sequence[Any] = [study.config.base.get(FILM, 0.0)]
+    where = "base"
+    if factor is not None:
+        films = factor.levels if factor.discrete else [max(factor.numbers, default=0.0)]
+        where = "factors"
+    for model, film in itertools.product(_contact_models(study), films):
+        with _named(f"{where}.{FILM}"):
+            check_surface(model, None, number_or_nan(film, PARAMETERS[FILM].unit))
+
+
+def _contact_models(study: Study) -> list[str]:
+    """Return the contact models of a study, those of the levels of a factor too."""
+    return list(study.factors.get("contact_model", {}).get("values", [study.config.contact_model]))
+
+
+@contextmanager
+def _named(field: str) -> Iterator[None]:
+    """Name the place of a value in the study file in the error of a block."""
+    try:
+        yield
+    except InputError as error:
+        raise error.named(field) from None
+
+
+def _check_films(study: Study, design: xr.Dataset) -> None:
+    """Refuse a film in a row of a design that a contact model of the study does not serve."""
+    if FILM not in design:
+        return
+    films = design[FILM].values
+    for row in np.flatnonzero(films > 0.0)[:1].tolist():
+        for model in _contact_models(study):
+            try:
+                check_surface(model, None, float(films[row]))
+            except InputError as error:
+                if study.config.method.observed:
+                    raise error.at(study.table_path, table_lines(study.table_path)[row]) from None
+                raise error.named(f"factors.{FILM}") from None
 
 
 def cross_check(study: Study) -> None:
@@ -120,11 +173,11 @@ def cross_check(study: Study) -> None:
     if not config.method.proposes and config.method.observed != (config.table is not None):
         remedy = "Write 'table: cases.csv' too, with your file."
         if config.table:
-            remedy = "Write 'design: table' too."
+            remedy = "Write 'method: table' too."
         raise InputError(
             "table",
             config.table,
-            "design: table and the path of a CSV or Excel file together",
+            "method: table and the path of a CSV or Excel file together",
             remedy,
         )
     config.method.check(study.parsed)
@@ -148,6 +201,7 @@ def cross_check(study: Study) -> None:
         _check_roles,
         _check_parts,
         _check_options,
+        _check_surfaces,
         _check_correlations,
         _check_materials,
     ):
@@ -197,7 +251,7 @@ def _check_roles(study: Study) -> None:
     if config.roles and config.method.observed:
         factors = study.drawn.columns
     if config.roles:
-        check_roles(config.roles, factors, config.design)
+        check_roles(config.roles, factors, config.method_name)
 
 
 def _check_parts(study: Study) -> None:
@@ -226,8 +280,8 @@ def _check_groups(
     names = list(free)
     grouped = set()
     if not config.method.grouped:
-        allowed = f"design {listing(those_with('grouped'), 'or')}, not {config.design}"
-        raise InputError("analysis.groups", list(groups), allowed, "Take design: saltelli.")
+        allowed = f"method {listing(those_with('grouped'), 'or')}, not {config.method_name}"
+        raise InputError("analysis.groups", list(groups), allowed, "Take method: saltelli.")
     for group, members in groups.items():
         where = f"analysis.groups.{group}"
         if group in specs:
@@ -253,9 +307,9 @@ def _check_category(config: Any, name: str, free: Mapping[str, Factor]) -> None:
     by_group = "groups" in config.method.takes and bool(config.analysis.groups)
     if not config.method.conditional or by_group:
         if by_group:
-            own = f"{config.design} with analysis.groups"
+            own = f"{config.method_name} with analysis.groups"
         else:
-            own = config.design
+            own = config.method_name
         raise InputError(
             where, name, f"design {listing(those_with('conditional'), 'or')}, not {own}"
         )
@@ -272,7 +326,7 @@ def _check_correlations(study: Study) -> None:
     drawn.
     """
     config = study.config
-    check_design(config.rank_correlations, config.design)
+    check_design(config.rank_correlations, config.method_name)
     random = {n: f for n, f in study.parsed.items() if f.kind != "expression"}
     copula(config.rank_correlations, {n: f for n, f in random.items() if config.method.random(f)})
 
@@ -393,6 +447,7 @@ def check_geometry(study: Study) -> None:
     )
     if needs_rows or config.carriage is not None:
         design = study.design()
+        _check_films(study, design)
         problems = list(geometry_problems({name: design[name].values for name in GEOMETRY}))
         _check_rows(study, design, problems)
         if problems and config.method.observed:
@@ -402,7 +457,7 @@ def check_geometry(study: Study) -> None:
     else:
         levels = [_ends(study, name) for name in GEOMETRY]
         if math.prod(map(len, levels)) > MAX_CASES:
-            raise InputError("design", "grid of the geometry", f"at most {MAX_CASES} cases")
+            raise InputError("method", "grid of the geometry", f"at most {MAX_CASES} cases")
         rows = np.array(list(itertools.product(*levels)), dtype=float)
         problem = geometry_problem({name: rows[:, i] for i, name in enumerate(GEOMETRY)})
     if problem is not None:

@@ -108,7 +108,7 @@ class _Design(BaseModel):
     factors: dict[str, dict[str, Any]] = Field(
         {}, description="what varies: a list or a distribution for each factor"
     )
-    design: str = Field(
+    method_name: str = Field(
         "grid",
         alias="method",
         description="how the factors are combined; `design` is its other name",
@@ -119,15 +119,15 @@ class _Design(BaseModel):
     seed: int = Field(1, ge=0, le=2**32 - 2, description="the same seed gives the same design")
     table: str | None = Field(
         None,
-        description="for design table: CSV file or workbook (.xlsx) of cases beside the study file",
+        description="for method table: CSV file or workbook (.xlsx) of cases beside the study file",
     )
     rank_correlations: Correlations = Field(
         (), description="lhs, sobol, inner_outer: [factor, factor, Spearman rank correlation] each"
     )
 
-    @field_validator("design")
+    @field_validator("method_name")
     @classmethod
-    def _design(cls, value: str) -> str:
+    def _method_name(cls, value: str) -> str:
         return choice(value, "method", METHODS)
 
 
@@ -215,7 +215,7 @@ class StudyFile(_WithOptions):  # type: ignore[misc, valid-type]
     @property
     def method(self) -> Method:
         """Return the design of experiments."""
-        return METHODS[self.design]
+        return METHODS[self.method_name]
 
     @field_validator(*(option.name for option in IN_STUDY), mode="before")
     @classmethod

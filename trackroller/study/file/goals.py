@@ -257,11 +257,11 @@ def check_scatter(config: Any, materials: Mapping[str, Iterable[Any]]) -> None:
         if config.method.weighted and not config.method.whole:
             return
         remedy = "Remove the key: the verdict has the range by the tests in any design."
-        allowed = "design: inner_outer, or a random sample such as design: sobol"
+        allowed = "method: inner_outer, or a random sample such as method: sobol"
         raise InputError("analysis.material_scatter", scatter, allowed, remedy)
     if not config.method.points:
         remedy = "Remove the key: only inner_outer has a B10 life."
-        raise InputError("analysis.material_scatter", scatter, "design: inner_outer", remedy)
+        raise InputError("analysis.material_scatter", scatter, "method: inner_outer", remedy)
     outputs = config.analysis.outputs or [
         f"life_cycles_{body}" for body in materials if "life" in config.outputs
     ]
@@ -301,7 +301,7 @@ def check(
         remedy = "Remove probability, or use inner_outer, lhs, sobol or saltelli."
         raise InputError(
             "requirement",
-            config.design,
+            config.method_name,
             "for probability: a design whose rows have known weights",
             remedy,
         )
@@ -351,7 +351,7 @@ def _check_statistics(config: Any, factors: Mapping[str, Factor], known: list[st
     for name in config.pareto:
         kind, output = statistic(name)
         if not config.method.points and kind:
-            remedy = "Name the result itself, or use design: inner_outer."
+            remedy = "Name the result itself, or use method: inner_outer."
             raise InputError(
                 "pareto", name, "a result or factor; statistics need design points", remedy
             )

@@ -57,6 +57,8 @@ ROOMS = {
 }
 # keys that have two names, and today's name
 OTHER_NAMES = {"design": "method", "analysis.target": "requirement"}
+# keys of a study file, another name of a key included
+KEYS = ("design", *(key.alias or name for name, key in StudyFile.model_fields.items()))
 
 
 def _translated(detail: Mapping[str, Any]) -> InputError:
@@ -70,7 +72,7 @@ def _translated(detail: Mapping[str, Any]) -> InputError:
         name = str(detail["loc"][-1])
         if len(detail["loc"]) > 1 and room_name in ROOMS:
             return unknown_name(room_name, name, ROOMS[room_name])
-        return unknown_name("study key", where, StudyFile.model_fields)
+        return unknown_name("study key", where, KEYS)
     if detail["type"] == "missing":
         *room, key = (str(part) for part in detail["loc"])
         if room:
@@ -126,8 +128,6 @@ def _refuse_both(other: str, name: str, data: Mapping[str, Any]) -> None:
 def _as_written(data: Mapping[str, Any]) -> Iterator[None]:
     """Name in errors the keys of `OTHER_NAMES` and `OTHER_OPTIONS` as the study file does."""
     written = {}
-    if "method" in data and "design" not in data:
-        written["design"] = "method"
     if "design" in data and "method" not in data:
         written["method"] = "design"
     for other, name in OTHER_OPTIONS.items():
@@ -264,9 +264,8 @@ def _on_carriage(
         )
     if config.method.observed:
         allowed = "a design of factors, because a table lists loads of rollers"
-        wrong.errors.append(
-            InputError("design", config.design, allowed, "Write factors in place of the table.")
-        )
+        remedy = "Write factors in place of the table."
+        wrong.errors.append(InputError("method", config.method_name, allowed, remedy))
     # in their order: a file is written the same again
     fields = [name for name in study.factors if field_of(name)]
     with wrong.part():

@@ -1,6 +1,6 @@
 """Check the keys of a study file that state what a search for designs aims at.
 
-design: optimise
+method: optimise
 goals: {pair_life_hours: max, mean(friction_power): min, probability(pair_life_hours): max}
 budget: {designs: 640, hours: 2}
 """
@@ -68,12 +68,12 @@ def check_search(config: Any, factors: Mapping[str, Factor]) -> None:
                 remedy,
             )
         if config.goals:
-            remedy = "Use design: optimise, or name the goals under pareto."
-            raise InputError("goals", config.design, "design: optimise", remedy)
+            remedy = "Use method: optimise, or name the goals under pareto."
+            raise InputError("goals", config.method_name, "method: optimise", remedy)
         return
     if config.pareto:
         raise InputError(
-            "pareto", list(config.pareto), "goals, in design optimise", "Rename the key to goals."
+            "pareto", list(config.pareto), "goals, with method optimise", "Rename the key to goals."
         )
     if len({judged_by(goal) for goal in config.goals}) < len(config.goals):
         raise InputError(

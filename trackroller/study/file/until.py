@@ -66,12 +66,12 @@ def check_until(config: Any) -> None:
     until = config.until
     if until is None:
         return
-    for key, method in (("design", config.design), ("inner", config.inner)):
+    for key, method in (("method", config.method_name), ("inner", config.inner)):
         if method is not None and not METHODS[method].grows:
             allowed = (
                 f"with until: {listing(those_with('grows'), 'or')}, which grow by more samples"
             )
-            if key != "design":
+            if key != "method":
                 allowed = "with until: sobol, whose rows stay as the sample grows"
             remedy = "Choose one of them"
             if METHODS[method].weighs:
@@ -113,9 +113,9 @@ def _check_of(config: Any, name: str, known: list[str]) -> None:
             "until.of", name, "the probability of a requirement or of a regime", remedy
         )
     if "(" in output and not points:
-        allowed = f"with design {config.design}: results, whose indices count"
+        allowed = f"with method {config.method_name}: results, whose indices count"
         raise InputError(
-            "until.of", name, allowed, "Statistics such as b10(..) need design: inner_outer."
+            "until.of", name, allowed, "Statistics such as b10(..) need method: inner_outer."
         )
     if output not in known:
         raise unknown_result("until.of", output, known, config.outputs)

@@ -317,13 +317,14 @@ def unused_cases(ledger: Ledger) -> str:
         why = f": {' and '.join(added)} became a factor"
     if why and not study.config.method.crossed:
         remedy = (
-            f"A {study.config.design} design with another factor is drawn anew. To keep "
+            f"A {study.config.method_name} design with another factor is drawn anew. To keep "
             "both, give it another name."
         )
     elif why:
         remedy = "The old value of a new factor must be one of its levels to keep them."
     elif not _keeps_rows(study) and before.get("samples") != study.samples:
-        why = f": {study.config.inner or study.config.design} draws each number of samples anew"
+        method = study.config.inner or study.config.method_name
+        why = f": {method} draws each number of samples anew"
         remedy = "Design sobol keeps its rows when its samples grow."
     return f"{unused} solved cases of the earlier design are not in this one{why}. {remedy}"
 
@@ -332,7 +333,7 @@ def _keeps_rows(study: Study) -> bool:
     """Return whether a larger sample begins with the rows of a smaller one; True for a design
     without samples.
     """
-    method = METHODS[study.config.inner or study.config.design]
+    method = METHODS[study.config.inner or study.config.method_name]
     return method.grows or not method.sampled
 
 

@@ -91,7 +91,7 @@ def attributes(study: Study) -> dict[str, Any]:
         "study": study.merged(),
         NOT_GIVEN: json.dumps(study.not_given),
         "study_name": study.name,
-        "design": config.design,
+        "design": config.method_name,
         "seed": config.seed,
         "accuracy": OPTIONS["accuracy"].attribute(config.accuracy, ""),
         "solver_digest": solver_digest(),

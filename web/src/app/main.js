@@ -6,6 +6,7 @@ import { parameterRow, wordRow } from "./fields.js";
 import { live } from "./live.js";
 import { materialsEditor } from "./materials.js";
 import { pictureView } from "./picture.js";
+import { requirementView } from "./requirement.js";
 import { resultsView } from "./results.js";
 import { createState } from "./state.js";
 import { studyView } from "./study.js";
@@ -17,6 +18,7 @@ const TABS = [
   ["study", "Study"],
   ["results", "Results"],
   ["carriage", "Carriage"],
+  ["requirement", "Requirement"],
 ];
 const OPEN = ["Loads and use", "Roller and guide"];
 const INSTEAD = { axis_distance: ["outer_radius", "groove_depth"], outer_radius: ["axis_distance"], groove_depth: ["axis_distance"] };
@@ -129,12 +131,13 @@ async function start() {
     redo.disabled = !edited().canRedo();
   };
   const carriage = carriageView(state, { changed: steps });
+  const requirement = requirementView(state, offered, { duty: [["hours_per_day", "Hours a day"], ["days_per_year", "Days a year"]].map(([name, label]) => [name, label, () => dutyOf(name), setDuty(name)]) });
   const reset = el("button", { type: "button", onclick: () => state.replace(offered.first) }, "Reset");
   const pin = el("button", { type: "button", onclick: () => state.pin() }, "Pin");
   const sheet = el("a", { target: "_blank", rel: "noopener" }, "Printable sheet");
   const link = el("button", { type: "button", title: "without the address of this server", onclick: () => copy(location.href, link) }, "Copy link");
   const tabs = TABS.map(([name, text]) => el("button", { type: "button", role: "tab", id: `tab-${name}`, "aria-controls": `panel-${name}`, onclick: () => state.show(name) }, text));
-  const contents = { roller: el("div", { class: "roller" }, fields, view.node, el("div", { class: "lives" }, view.lives)), whatif: variants.node, study: study.node, results: results.node, carriage: carriage.node };
+  const contents = { roller: el("div", { class: "roller" }, fields, view.node, el("div", { class: "lives" }, view.lives)), whatif: variants.node, study: study.node, results: results.node, carriage: carriage.node, requirement: requirement.node };
   const panels = TABS.map(([name]) => el("div", { role: "tabpanel", id: `panel-${name}`, "aria-labelledby": `tab-${name}`, tabindex: "-1" }, contents[name]));
   const list = el("div", { role: "tablist", "aria-label": "Parts of the page" }, tabs);
   list.addEventListener("keydown", (event) => {
@@ -169,6 +172,7 @@ async function start() {
       steps();
       sheet.href = state.file("sheet");
       flow.changed();
+      requirement.draw();
     }
     if (what === "tab") {
       tabs.forEach((tab, i) => {
@@ -180,6 +184,7 @@ async function start() {
       if (state.tab === "study") study.draw();
       if (state.tab === "roller") view.redraw();
       if (state.tab === "carriage") carriage.draw();
+      if (state.tab === "requirement") requirement.look();
       for (const own of [reset, pin, sheet]) own.hidden = state.tab === "carriage"; // they belong to the one roller
       steps();
     }

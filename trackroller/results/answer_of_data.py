@@ -1,4 +1,4 @@
-"""The record of whatever was solved, by the kind of its data set."""
+"""The record of the data set of one roller, a spectrum, wear or a carriage, by its kind."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from trackroller.results.roller_answer import answer_of_roller
 from trackroller.roller.stored_inputs import CASE
 
 
-def answer_of(ds: xr.Dataset) -> Answer | None:
+def answer_of_data(ds: xr.Dataset) -> Answer | None:
     """Return the record of a roller, a roller that wears, a spectrum or a carriage; None for
     results of several cases.
 

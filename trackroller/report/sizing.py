@@ -1,0 +1,70 @@
+"""A sizing in words: which roller to take, and the heads and cells of its tables."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+from trackroller.numerics.units import PLAIN
+from trackroller.parameters import PARAMETERS
+from trackroller.study.design.entries import SIZES
+from trackroller.study.file.shelf import ROLLER
+
+if TYPE_CHECKING:
+    from trackroller.results.size import Sizing
+
+OWN_UNITS = {"life_hours": "h"}  # of columns that a sizing adds
+
+
+def lead_of(sizing: Sizing) -> str:
+    """Return which roller to take, in one sentence."""
+    if not sizing.least:
+        return "No roller of the shelf is surely enough."
+    row = sizing.table.set_index(ROLLER).loc[sizing.least].to_dict()
+    parts = []
+    if sizing.least_of:
+        parts.append(f"{sizing.least_of} {row[sizing.least_of]:g}")
+    if "life_ratio" in row:
+        parts.append(f"{row['life_ratio']:.3g} times the required life")
+    if "overload" in row:
+        parts.append("within all limits at the forces times the safety")
+    if math.isfinite(row.get("load_ratio", math.nan)):
+        parts.append(f"{row['load_ends']} at {row['load_ratio']:.3g} times the forces")
+    number = int((sizing.table["verdict"] == "enough").sum())
+    return f"{sizing.least} is the least of {number} that are enough: {', '.join(parts)}."
+
+
+def notes_of(sizing: Sizing) -> list[str]:
+    """Return a sentence on rollers that may be enough and less, and on those without a rank."""
+    notes = []
+    if sizing.open_and_less:
+        names = ", ".join(sizing.open_and_less)
+        notes.append(f"open, and less: {names}. A finer accuracy or better values decide")
+    if sizing.unranked:
+        names = ", ".join(sizing.unranked)
+        notes.append(f"{names}: no {sizing.least_of}, and so not ranked by it")
+    return notes
+
+
+def head_of(name: str, units: Mapping[str, str]) -> str:
+    """Return the head of a column with its unit; `units` holds those of the user's own columns."""
+    unit = units.get(name, OWN_UNITS.get(name, ""))
+    if name in PARAMETERS:
+        unit = PARAMETERS[name].unit
+    elif name in SIZES:
+        unit = "mm"
+    if unit in PLAIN:
+        return name
+    return f"{name} [{unit}]"
+
+
+def shown(value: Any) -> str:
+    """Return a value of the table of rollers as text."""
+    if isinstance(value, float):
+        if math.isnan(value):
+            return "–"
+        if math.isinf(value):
+            return "any"
+        return f"{float(f'{value:.4g}'):,.10g}"
+    return str(value) or "–"
