@@ -188,7 +188,8 @@ def candidate_columns(own: Comparison, table: pd.DataFrame) -> tuple[Column, ...
     columns += [_choice_column(choice) for choice in own.choices]
     columns += _goods_columns(own, table)
     columns += _output_columns(own)
-    columns += [*_columns_of_others(own), *WHERE_WORST, *_ends_apart(table)]
+    columns += _columns_of_others(own)
+    columns += [*WHERE_WORST, *_ends_apart(table)]
     columns += _count_columns(own)
     columns += _drawn_columns(own, own.ranges.output[2])
     if (table["second"] != "").any():
