@@ -425,6 +425,7 @@ def test_a_missing_package_of_the_cluster_is_named_and_this_process_solves(missi
     written(tmp_path, "s.yaml", SMALL)
     with monkeypatch.context() as without:
         without.setitem(sys.modules, missing, None)  # as if it were not installed
+        without.setattr(cluster, "take_in", lambda package: None)
         told = trackroller("run", "s.yaml", "-q", "--scheduler", "local", cwd=tmp_path, code=2).stderr
     assert "pip install 'trackroller[cluster]'" in told and "Without --scheduler, this process solves." in told
     project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]

@@ -68,7 +68,7 @@ def test_a_required_life_and_a_required_stress_are_judged():
         required = {"pair_life_hours": {"min": factor * hours}, "peak_stress_roller": {"max": stress / factor}}
         answer = answer_of_roller(ds.assign_attrs(requirement=json.dumps(required)))
         assert answer.headline["state"] == state and headline(answer).endswith(f"{state}.")
-        row = limit_row(answer, "peak_stress_roller", "pair")
+        row = limit_row(answer, "peak_stress_roller", "roller")
         assert row["used_low"] == pytest.approx(factor, rel=1e-12) and row["state"] == (
             "kept" if factor < 1 else "exceeded"
         )

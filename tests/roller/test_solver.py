@@ -32,7 +32,8 @@ def test_every_variable_is_labelled():
             assert ds[name].dims == ("case", *VARIABLES[name].dims)
     flags = {"regime", "converged", "validity", "validity_body", "contact_model_used", "first_to_fail"}
     flags |= {"limiting_mechanism", "limit_state"}
-    elsewhere = {"fatigue_stress", "error_over_tolerance"}  # of another `life_criterion`, and of a tolerance
+    # of another `life_criterion`, of a tolerance, and of a bound in place of a number
+    elsewhere = {"fatigue_stress", "error_over_tolerance", "utilisation_at_most"}
     assert {v.name for v in VARIABLES.values()} == (set(ds.data_vars) - flags) | elsewhere
     assert ds.regime.attrs["flag_meanings"].split() == list(parameters.REGIMES)
 

@@ -43,7 +43,7 @@ def test_each_program_has_a_small_instance():
 
 
 def test_rules_name_the_room_in_which_their_result_is_made():
-    assert rooms("workflow/rules/show.smk") == ["results", "report", "report", "study"]
+    assert rooms("workflow/rules/show.smk") == ["results", "report"]
     assert rooms("workflow/rules/solve.smk") == ["study", "study"]
     assert rooms("workflow/rules/until.smk") == ["results", "results"]
     assert rooms("workflow/rules/search.smk") == ["results"]

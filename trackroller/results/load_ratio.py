@@ -97,6 +97,7 @@ def load_ratios(study: Study, factor: str) -> LoadRatios:
     """
     cases = StudyCases(study)
     options, group = cases.options
+    options = [one | {"at_most": ()} for one in options]  # a bound is no number to bring to 100 %
     labels = study.drawn.columns[factor][cases.rows]
     solver = _OfDesign(cases.design, options, group, study.materials)
     return _ratios(solver, labels, list(study.parsed[factor].levels), factor)

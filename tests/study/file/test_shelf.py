@@ -18,7 +18,11 @@ ROWS = (
     "mid;21.75;-7;1.7225-normalised;0.2;;A-2",
     "large;25;-8;1.7225-quenched-tempered;0.31;17;A-3",
 )
-QUICK = {"accuracy": "preview", "contact_model": "sliding", "outputs": ["forces", "contact", "life", "limits"]}
+QUICK = {
+    "accuracy": "preview",
+    "contact_model": "sliding",
+    "outputs": ["forces", "contact", "life", "shakedown", "limits"],
+}
 USE = {"radial_force": -200, "motor_force": 0, "guide_overrollings_per_hour": 100}
 BEARING = "rows;row_distance;kind;dynamic_rating;static_rating;e;X;Y;X0;Y0"
 FACTORS = {"roller": {"file": "rollers.csv"}, "friction_coefficient": {"values": [0.1, 0.2]}}
