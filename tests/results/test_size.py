@@ -156,6 +156,22 @@ def test_requirements_that_make_no_sense_are_refused(case, how, message, shelf):
         tr.size(case or CASE | QUICK, shelf, **how)
 
 
+@pytest.mark.parametrize("name", ["verdict", "load_ratio", "excluded_by", "ends"])
+def test_a_column_that_the_answer_has_is_refused(name, shelf):
+    shelf.write_text(shelf.read_text().replace("price [EUR]", name))
+    with pytest.raises(InputError, match=f"column = '{name}'"):
+        tr.size(CASE | QUICK, shelf, life=100)
+    shelf.write_text(shelf.read_text().replace(name, f"own_{name}"))  # as the message says
+    assert f"own_{name}" in tr.size(CASE | QUICK, shelf, life=100).table
+
+
+def test_a_shelf_elsewhere_is_not_replaced_by_its_namesake_here(shelf, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    for missing in ("folder/rollers.csv", "~/rollers.csv", f"{'a' * 300}.csv"):
+        with pytest.raises(InputError, match="is no file"):
+            tr.size(CASE | QUICK, missing, life=100)
+
+
 @pytest.mark.parametrize(
     ("words", "message"),
     [

@@ -9,6 +9,7 @@ to hold, whatever the life.
 from __future__ import annotations
 
 import math
+import os
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
@@ -50,6 +51,11 @@ from trackroller.yaml_file import read_mapping
 # keys that a study file has and a case file has not
 OF_STUDY = ("factors", "base", "name", "design", "method")
 OF_CARRIAGE = ("mass", "rollers", "cases")  # keys that every carriage file has
+# columns of the table of a sizing, which a shelf has no columns of its own for
+OF_SIZING = (
+    *("verdict", "life_hours", "life_ratio", "ends", "overload", "load_ratio", "load_ends"),
+    "excluded_by",
+)
 OVERLOAD = "overload"  # end of the name of the study with all forces times the safety
 
 
@@ -392,6 +398,10 @@ def _with_shelf(keys: Mapping[str, Any], shelf: Path | str) -> dict[str, Any]:
     """Return the keys of a study with the rollers of a shelf as a factor, which take the place of
     its own roller.
     """
+    if not os.path.isfile(shelf):  # a file of its name in the working directory is another one
+        raise InputError(
+            "shelf", str(shelf), "the path of a table of rollers", "Check the path.", "is no file"
+        )
     out = dict(keys)
     out["factors"] = {ROLLER: {"file": Path(shelf).name}, **(keys.get("factors") or {})}
     base = dict(keys.get("base") or {})
@@ -675,4 +685,15 @@ def _ranked(
 def _checked(keys: Mapping[str, Any], shelf: Path | str) -> Study:
     """Return a study of a sizing, whose file of rollers is found."""
     with files_beside(Path(shelf)):
-        return load_study(keys)
+        study = load_study(keys)
+    raise_all(
+        InputError(
+            f"{shelf}: column",
+            name,
+            "a name that the table of the answer does not use for something else",
+            f"Rename it, for example own_{name}.",
+        )
+        for name in study.columns_of_shelves
+        if name in OF_SIZING
+    )
+    return study
