@@ -89,7 +89,8 @@ def check_place(path: Path, what: str) -> None:
 
 def is_link(path: Path) -> bool:
     """Return whether a path is a link, also if it is dangling."""
-    return path.is_symlink() or bool(getattr(os.path, "isjunction", lambda path: False)(path))
+    # unlike that of pathlib it returns False for a name that no file can have
+    return os.path.islink(path) or bool(getattr(os.path, "isjunction", lambda path: False)(path))
 
 
 def refuse_link(path: Path, what: str) -> None:

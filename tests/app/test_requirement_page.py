@@ -61,12 +61,23 @@ def test_a_carriage_takes_the_place_of_the_roller_on_the_screen():
         ("", "/etc/passwd", "in this folder"),
         ("rollers.yaml", "rollers.csv", "carriage"),
         ("", "none.csv", "none.csv"),
+        ("", "folder/rollers.csv", "'folder/rollers.csv' is no file"),
+        ("", f"{'a' * 300}.csv", "is no file"),
+        (f"{'a' * 300}.yaml", "rollers.csv", "is too long"),
     ],
 )
 def test_other_files_are_refused(carriage, shelf, message):
     Path("rollers.yaml").write_text("radial_force: -20\n")
     with pytest.raises(InputError, match=message):
         sized(ROLLER, carriage, shelf, ASKED, "preview")
+
+
+@pytest.mark.parametrize("name", ["results", "each", "progress"])
+def test_the_page_asks_for_nothing_but_a_requirement(name, tmp_path):
+    """`results` would name a folder to write into, also outside the folder of the page."""
+    with pytest.raises(InputError, match=f"requirement = '{name}' is not known"):
+        sized(ROLLER, "", "rollers.csv", ASKED | {name: str(tmp_path / "elsewhere")}, "preview")
+    assert not (tmp_path / "elsewhere").exists()
 
 
 def test_a_shelf_that_is_a_link_is_refused(tmp_path):

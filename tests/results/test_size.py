@@ -140,16 +140,53 @@ def test_a_shelf_of_one_roller_and_a_study_are_sized_too(shelf):
     [
         ({}, {}, "a required life, or a safety"),
         ({}, {"safety": 0.5}, "safety .*a number >= 1"),
-        ({}, {"life": "3 years"}, "needs a duty"),
-        ({}, {"life": 100, "least": "prize"}, "prize.*Did you mean 'price'"),
-        ({}, {"safety": 2, "least": "prize"}, "prize.*Did you mean 'price'"),
-        ({}, {"life": 100, "failures": "105 %"}, "failure_probability"),
+        ({}, {"life": "3 years"}, "^life = '3 years' needs a duty"),
+        ({}, {"life": "soon"}, "^life = 'soon'"),
+        ({}, {"life": -3}, "^life = -3 .*a life above 0"),
+        ({}, {"life": 100, "least": "prize"}, "^least = 'prize'.*Did you mean 'price'"),
+        ({}, {"safety": 2, "least": "prize"}, "^least = 'prize'.*Did you mean 'price'"),
+        ({}, {"life": 100, "failures": "105 %"}, "^failures = '105 %'.*a number in"),
+        ({}, {"life": 100, "failures": "inf"}, "^failures = 'inf'.*a number in"),
+        ({"failure_probability": 2} | CASE | QUICK, {"life": 100}, "^failure_probability = 2"),
         ({"name": "v", "factors": {"radial_force": {"values": [-1, -2]}}}, {"safety": 2}, "forces under base"),
     ],
 )
 def test_requirements_that_make_no_sense_are_refused(case, how, message, shelf):
     with pytest.raises(InputError, match=message):
         tr.size(case or CASE | QUICK, shelf, **how)
+
+
+@pytest.mark.parametrize("name", ["verdict", "load_ratio", "excluded_by", "ends"])
+def test_a_column_that_the_answer_has_is_refused(name, shelf):
+    shelf.write_text(shelf.read_text().replace("price [EUR]", name))
+    with pytest.raises(InputError, match=f"column = '{name}'"):
+        tr.size(CASE | QUICK, shelf, life=100)
+    shelf.write_text(shelf.read_text().replace(name, f"own_{name}"))  # as the message says
+    assert f"own_{name}" in tr.size(CASE | QUICK, shelf, life=100).table
+
+
+def test_a_shelf_elsewhere_is_not_replaced_by_its_namesake_here(shelf, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    for missing in ("folder/rollers.csv", "~/rollers.csv", f"{'a' * 300}.csv"):
+        with pytest.raises(InputError, match="is no file"):
+            tr.size(CASE | QUICK, missing, life=100)
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (["--life", "soon"], "--life = 'soon'"),
+        (["--life", "50", "--failures", "2"], "--failures = '2'"),
+        (["--life", "50", "--least", "Price"], "--least = 'Price' is not known. Did you mean 'price'"),
+        (["--safety", "0.5"], "--safety = '0.5'"),
+        ([], "--life is missing"),
+    ],
+)
+def test_the_command_names_its_options(words, message, shelf, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    Path("case.yaml").write_text("\n".join(f"{name}: {value}" for name, value in (CASE | QUICK).items()))
+    done = CliRunner().invoke(app, ["size", "case.yaml", "--shelf", "rollers.csv", *words])
+    assert isinstance(done.exception, InputError) and str(done.exception).startswith(message)
 
 
 def test_the_command_writes_studies_that_are_kept(shelf, tmp_path, monkeypatch):

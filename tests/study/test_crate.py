@@ -149,6 +149,13 @@ def test_verify_takes_a_name_in_a_folder_of_results(crate, tmp_path):
     assert "small" in trackroller("verify", "small", cwd=tmp_path, code=2).stderr  # not in results/
 
 
+@pytest.mark.parametrize("name", ["missing.tgz", "missing", "results/missing"])
+def test_a_path_that_does_not_exist_is_named(name, tmp_path):
+    for command in ("verify", "rerun"):
+        said = trackroller(command, name, cwd=tmp_path, code=2).stderr
+        assert f"folder = '{name}' exists neither here nor in results" in said
+
+
 @pytest.mark.parametrize(("kind", "ending", "tool"), [("gztar", "tar.gz", "tar xf"), ("zip", "zip", "unzip")])
 def test_an_archive_is_to_be_unpacked_first(crate, tmp_path, kind, ending, tool):
     """What the message says is done, and the folder is verified."""

@@ -9,13 +9,14 @@ import pandas as pd
 from trackroller.app.carriage import TABLES, is_carriage, place_of
 from trackroller.app.picture import Values, read
 from trackroller.damage import limit_word
-from trackroller.errors import InputError
+from trackroller.errors import InputError, check_names
 from trackroller.report.sizing import head_of, lead_of, notes_of, shown
 from trackroller.results.size import Sizing, size
 from trackroller.roller.stored_inputs import given_inputs
 from trackroller.study.file.shelf import ROLLER
 from trackroller.yaml_file import read_mapping
 
+REQUIRED = ("life", "failures", "safety", "least")  # what the page may ask for
 STATES = {"enough": "kept", "open": "open", "not enough": "exceeded"}
 
 
@@ -59,6 +60,7 @@ def sized(
         own, options, beside = read(values)
         case = given_inputs(own) | options | beside | {"accuracy": accuracy}
         case.pop("outputs", None)
+    check_names("requirement", required, REQUIRED)
     limits: dict[str, Any] = {name: text.strip() or None for name, text in required.items()}
     return _on_page(size(case, table, **limits))
 

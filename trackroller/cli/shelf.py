@@ -8,6 +8,8 @@ import json
 import math
 import os
 import shlex
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -17,7 +19,7 @@ from trackroller.damage import limit_word
 from trackroller.damage.bearing import FIELD as BEARING
 from trackroller.damage.catalogue import FIELD as CATALOGUE
 from trackroller.damage.stud import FIELD as STUD
-from trackroller.errors import InputError
+from trackroller.errors import InputError, raise_all
 from trackroller.files import files_beside, write_text
 from trackroller.report.sizing import head_of, lead_of, notes_of, shown
 from trackroller.report.terminal import print_table, print_text
@@ -136,19 +138,23 @@ def print_size(  # noqa: PLR0913 - one argument for each option of the command
     target = None
     if out is not None:
         target = _target(out, each)
+    if life is None and safety is None:
+        remedy = "Add --life '3 years', or --safety 1.5."
+        raise InputError("--life", None, "a required life, or a safety", remedy, "is missing")
     from trackroller.results.size import size  # heavy: analysis
 
-    sizing = size(
-        case,
-        shelf,
-        life=life,
-        failures=failures,
-        safety=safety,
-        least=least,
-        each=each,
-        results=results,
-        progress=not quiet,
-    )
+    with _as_options():
+        sizing = size(
+            case,
+            shelf,
+            life=life,
+            failures=failures,
+            safety=safety,
+            least=least,
+            each=each,
+            results=results,
+            progress=not quiet,
+        )
     for own in _studies_of(sizing):
         write_crate(study_folder(own.study.name, results).root)
     is_met = bool(sizing.least)
@@ -161,6 +167,22 @@ def print_size(  # noqa: PLR0913 - one argument for each option of the command
         return int(not is_met)
     _print_sizing(sizing, target)
     return int(not is_met)
+
+
+@contextmanager
+def _as_options() -> Iterator[None]:
+    """Name in errors the options of `trackroller size` in place of the arguments of `size`."""
+    try:
+        yield
+    except InputError as error:
+        raise_all(_of_option(one) for one in error.errors)
+
+
+def _of_option(error: InputError) -> InputError:
+    """Return an error on an argument of `size` as one on the option of its name."""
+    if error.field in ("life", "failures", "safety", "least", "each"):
+        return error.named(f"--{error.field}")
+    return error
 
 
 def _print_sizing(sizing: Sizing, target: Path | None) -> None:

@@ -294,9 +294,18 @@ def _crate_at(named: Path, results: Path) -> Path:
             "folder", str(named), "the folder of a study, such as results/NAME", remedy, wrong
         )
     inside = results / named
-    if not named.exists() and inside.is_dir():
+    if named.exists():
+        return named
+    if inside.is_dir():
         return inside
-    return named
+    remedy = "Check the path; `trackroller run` makes the folder."
+    raise InputError(
+        "folder",
+        str(named),
+        "the folder of a study, such as results/NAME",
+        remedy,
+        f"exists neither here nor in {results}",
+    )
 
 
 def print_verified(folder: Path, results: Path) -> int:

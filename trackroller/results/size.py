@@ -9,7 +9,9 @@ to hold, whatever the life.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+import os
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -19,7 +21,7 @@ import pandas as pd
 
 from trackroller.carriage.file import CHANCE, carriage_of, written_out
 from trackroller.carriage.files import name_of_study
-from trackroller.errors import InputError, unknown_name
+from trackroller.errors import InputError, raise_all, unknown_name
 from trackroller.files import files_beside
 from trackroller.numerics.numbers import finite_number
 from trackroller.numerics.plain import mapping_of
@@ -49,6 +51,11 @@ from trackroller.yaml_file import read_mapping
 # keys that a study file has and a case file has not
 OF_STUDY = ("factors", "base", "name", "design", "method")
 OF_CARRIAGE = ("mass", "rollers", "cases")  # keys that every carriage file has
+# columns of the table of a sizing, which a shelf has no columns of its own for
+OF_SIZING = (
+    *("verdict", "life_hours", "life_ratio", "ends", "overload", "load_ratio", "load_ends"),
+    "excluded_by",
+)
 OVERLOAD = "overload"  # end of the name of the study with all forces times the safety
 
 
@@ -267,7 +274,9 @@ def sizing_studies(
         overloaded = _overloaded(keys, safety)
         if not on_carriage:  # the load ratios judge the forces that statics gives
             studies[OVERLOAD] = overloaded
-    checked = {kind: _checked(own, shelf) for kind, own in studies.items()}
+    arguments = {"life": life, "failures": failures, "least": least or None}
+    with _as_arguments(arguments, _life_of(keys)):
+        checked = {kind: _checked(own, shelf) for kind, own in studies.items()}
     for study in checked.values():
         known = [name for name, factor in study.columns_of_shelves.items() if factor.numeric]
         if least and "life" not in studies and least not in known:
@@ -283,6 +292,29 @@ def _check_required(life: Any, safety: Any) -> None:
         )
     if safety is not None and not finite_number(safety, "-", "safety") >= 1.0:
         raise InputError("safety", safety, "a number >= 1", "For example 1.5.")
+
+
+@contextmanager
+def _as_arguments(arguments: Mapping[str, Any], life: str) -> Iterator[None]:
+    """Name in errors the arguments of `size`, with their values, in place of the keys of a study
+    that receive them; `life` is the output whose least value is required.
+    """
+    keys = {f"requirement.{life}": "life", CHANCE: "failures", "pareto": "least"}
+    given = {key: name for key, name in keys.items() if arguments[name] is not None}
+    try:
+        yield
+    except InputError as error:
+        raise_all(_of_argument(one, given, arguments) for one in error.errors)
+
+
+def _of_argument(
+    error: InputError, names: Mapping[str, str], arguments: Mapping[str, Any]
+) -> InputError:
+    """Return an error on a key of a study as one on the argument that the key receives."""
+    for key, name in names.items():
+        if f"{error.field}.".startswith(f"{key}."):
+            return InputError(name, arguments[name], error.allowed, error.remedy, error.wrong)
+    return error
 
 
 def is_spectrum(case: Path | str | Mapping[str, Any]) -> bool:
@@ -318,9 +350,10 @@ def _sized_spectrum(
     if safety is not None:
         safety = finite_number(safety, "-", "safety")
     least = required["least"]
-    table, ratios = spectrum_table(
-        values, path, study, life=required["life"], safety=safety, least=least
-    )
+    with _as_arguments(required, DEFAULT):
+        table, ratios = spectrum_table(
+            values, path, study, life=required["life"], safety=safety, least=least
+        )
     table = table[[*(name for name in table if name != "excluded_by"), "excluded_by"]]
     units = study.parsed[ROLLER].units
     example = _example_values(study)
@@ -365,6 +398,10 @@ def _with_shelf(keys: Mapping[str, Any], shelf: Path | str) -> dict[str, Any]:
     """Return the keys of a study with the rollers of a shelf as a factor, which take the place of
     its own roller.
     """
+    if not os.path.isfile(shelf):  # a file of its name in the working directory is another one
+        raise InputError(
+            "shelf", str(shelf), "the path of a table of rollers", "Check the path.", "is no file"
+        )
     out = dict(keys)
     out["factors"] = {ROLLER: {"file": Path(shelf).name}, **(keys.get("factors") or {})}
     base = dict(keys.get("base") or {})
@@ -648,4 +685,15 @@ def _ranked(
 def _checked(keys: Mapping[str, Any], shelf: Path | str) -> Study:
     """Return a study of a sizing, whose file of rollers is found."""
     with files_beside(Path(shelf)):
-        return load_study(keys)
+        study = load_study(keys)
+    raise_all(
+        InputError(
+            f"{shelf}: column",
+            name,
+            "a name that the table of the answer does not use for something else",
+            f"Rename it, for example own_{name}.",
+        )
+        for name in study.columns_of_shelves
+        if name in OF_SIZING
+    )
+    return study
