@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from trackroller.numerics.units import PLAIN
 from trackroller.parameters import PARAMETERS
-from trackroller.parameters.example import with_unit
+from trackroller.parameters.example import not_given_text
 from trackroller.study.design.entries import SIZES
 from trackroller.study.file.shelf import ROLLER
 
@@ -48,8 +48,7 @@ def notes_of(sizing: Sizing) -> list[str]:
         names = ", ".join(sizing.unranked)
         notes.append(f"{names}: no {sizing.least_of}, and so not ranked by it")
     if sizing.not_given:
-        values = ", ".join(with_unit(name, value) for name, value in sizing.not_given.items())
-        notes.append(f"not given, and taken from the paper's example: {values}. Give yours")
+        notes.append(not_given_text(sizing.not_given))
     return notes
 
 
