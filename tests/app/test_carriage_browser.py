@@ -136,6 +136,8 @@ def test_the_roller_is_not_changed_by_the_carriage(page):
     page.until(SETTLED)
     page.run("document.querySelector('#tab-carriage').focus()")
     page.key("ArrowRight")
+    assert page.run("trackroller.state.tab") == "requirement"
+    page.key("ArrowRight")
     assert page.run("trackroller.state.tab") == "roller"
     assert page.run("JSON.stringify(trackroller.state.values)") == case
 

@@ -299,7 +299,7 @@ def test_the_head_of_a_sheet_names_each_limit_that_may_come_first():
     low, high = (float(ds[f"pair_life_to_first_limit_hours{end}"]) for end in ("_low", "_high"))
     assert low < hours == high
     head = answer_of_roller(ds).headline
-    assert (head["low"], head["high"]) == (low, high) and head["ends"] == ["fatigue", "wear"] and head["guessed"]
+    assert (head["low"], head["high"]) == (low, high) and head["ends"] == ["wear", "fatigue"] and head["guessed"]
     measured = {"like": "1.7225-normalised", "wear_coefficient": 1e-6}
     known = tr.solve(tr.Case(**given, roller_material=measured, guide_material=measured), contact_model="sliding")
     answer = answer_of_roller(known)

@@ -91,7 +91,7 @@ def test_the_page_states_the_wear_coefficient_and_that_it_is_a_placeholder(tmp_p
     assert command[2:6] == ["--to", "1km", "--report", "page.html"]
     assert {"motor_force=0", "friction_coefficient=0.2", "contact_model=sliding", "accuracy=preview"} < set(command)
     assert SLIDING_WEAR in page
-    assert "wear coefficient <i>k</i><sub>W</sub>" in page and "1·10⁻⁵ to 1·10⁻⁴" in page
+    assert "wear coefficient <i>k</i><sub>W</sub>" in page and "4.2·10⁻⁵ to 8.3·10⁻⁴" in page
     assert answer_of_wear(ds).headline["guessed"]
 
 

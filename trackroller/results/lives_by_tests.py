@@ -501,8 +501,10 @@ def _b10_bands(
     lives = [name for name in dict.fromkeys(lives) if is_life(name)]
     if not (design.method.points or design.method.sampled) or not lives:
         return xr.Dataset()
-    points: list[Any] = list(design.points)
-    if not design.method.points:
+    points: list[Any]
+    if design.method.points:
+        points = list(design.points)
+    else:
         points = [design.method.independent_rows(design)]
     columns = _columns(results, lives)
     values = np.full((3, len(columns), len(points)), np.nan)

@@ -76,7 +76,7 @@ export function studyView(state, offered, { started }) {
   };
   const name = input("name", "Name");
   const question = input("description", "Question");
-  const design = select("Design", offered.designs.map((d) => [d, `${d}: ${DESIGNS[d] ?? d}`]), "grid", (value) => set("design", value));
+  const method = select("Method", offered.designs.map((d) => [d, `${d}: ${DESIGNS[d] ?? d}`]), "grid", (value) => set("method", value));
   const samples = input("samples", "Samples", { inputmode: "numeric", placeholder: "1024" });
   const words = (option) => offered.options.find((o) => o.name === option).values;
   const model = select("Contact model", Object.keys(words("contact_model")).map((m) => [m, m]), "kalker", (value) => set("contact_model", value));
@@ -172,8 +172,8 @@ export function studyView(state, offered, { started }) {
 
   function fill() {
     for (const [key, part] of [["name", name], ["description", question], ["samples", samples]]) if (document.activeElement !== part.field) part.field.value = study[key] ?? "";
-    design.field.value = study.design ?? "grid";
-    samples.node.hidden = !SAMPLED.includes(design.field.value);
+    method.field.value = study.method ?? study.design ?? "grid"; // the other name of the key
+    samples.node.hidden = !SAMPLED.includes(method.field.value);
     if (typeof (study.contact_model ?? "kalker") === "string") model.field.value = study.contact_model ?? "kalker";
     accuracy.field.value = study.accuracy ?? "standard";
     const chosen = Array.isArray(study.outputs) ? study.outputs : offered.options.find((o) => o.name === "outputs").value;
@@ -183,7 +183,7 @@ export function studyView(state, offered, { started }) {
     const fixed = Object.entries(study.base ?? {}).map(([key, value]) => `${labelOf(key)} ${typeof value === "object" ? JSON.stringify(value) : value}`);
     base.textContent = `${fixed.length ? `The same in all cases: ${fixed.join(", ")}. ` : ""}All other values are those of the paper's example.`;
   }
-  design.field.addEventListener("change", () => (samples.node.hidden = !SAMPLED.includes(design.field.value)));
+  method.field.addEventListener("change", () => (samples.node.hidden = !SAMPLED.includes(method.field.value)));
 
   // The roller on the screen becomes what all cases share; options become options. The server reads the texts.
   async function takeRoller() {
@@ -248,7 +248,7 @@ export function studyView(state, offered, { started }) {
       base,
       message("base"),
       el("h3", {}, "Design"),
-      el("div", { class: "tools" }, design.node, message("design")),
+      el("div", { class: "tools" }, method.node, message("method")),
       samples.node,
       el("h3", {}, "Results"),
       el("div", { class: "boxes" }, outputs.map((o) => o.node), message("outputs")),
