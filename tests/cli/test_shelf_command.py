@@ -47,6 +47,14 @@ def test_a_case_gives_what_cells_leave_out(tmp_path):
     assert "28" in run(file, "--set", "contact_angle=28", "--set", "axis_distance=30")
 
 
+@pytest.mark.parametrize(("mark", "shown"), [("\x1b[31m", r"\x1b[31m"), ("\u202e", r"\u202e")])
+def test_the_name_of_a_file_reaches_the_terminal_escaped(mark, shown, tmp_path):
+    file = tmp_path / f"a{mark}.csv"
+    file.write_text((SHELVES / "rollers.csv").read_text())
+    text = run(file)
+    assert mark not in text and f"file: a{shown}.csv" in text
+
+
 def test_an_unknown_kind_of_shelf_is_refused():
     with pytest.raises(InputError, match="--of"):
         run(SHELVES / "rollers.csv", "--of", "axle")

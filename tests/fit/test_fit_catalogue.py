@@ -123,3 +123,11 @@ def test_the_command_prints_the_rule_and_writes_its_page(tmp_path, monkeypatch):
     page = (tmp_path / "rule.html").read_text()
     assert "our life by wear, rolling freely" in page and "law: lubricated" in page
     assert tr.report(fit, tmp_path / "again.html").read_text().count("<figure>") == 1
+
+
+def test_the_name_of_the_page_reaches_the_terminal_escaped(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    rows = "\n".join(f"{f:g},{km:g}" for f, km in zip(FACTORS, lives(3, 0.03), strict=True))
+    (tmp_path / "series.csv").write_text(f"load_factor,travel [km]\n{rows}\n")
+    done = CliRunner().invoke(app, ["fit", "catalogue", "series.csv", "--report", "a\x1b[31m.html"])
+    assert done.exit_code == 0 and "\x1b" not in done.output and r"a\x1b[31m.html" in done.output

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from trackroller.errors import escaped
+
 if TYPE_CHECKING:
     from trackroller.fit.fitted import Fit
 
@@ -81,8 +83,8 @@ def _finish(fit: Fit, file: Path, replace: bool, page: Path | None) -> None:
         write_fit(fit, target)
         if written:
             fit.write(file, replace=replace)
-            print(f"material '{fit.name}' is in {file}")
-    print(f"page: {target}")
+            print(escaped(f"material '{fit.name}' is in {file}"))
+    print(escaped(f"page: {target}"))
 
 
 def _priors(words: list[str] | None) -> dict[str, Any]:
@@ -179,7 +181,7 @@ def fit_catalogue(
     print(entry_text(fit.catalogue))
     if page is not None:
         write_rule(fit, page)
-        print(f"page: {page}")
+        print(escaped(f"page: {page}"))
 
 
 @fit.command("example")

@@ -11,6 +11,8 @@ from typing import TextIO
 from rich.console import Console
 from rich.table import Table
 
+from trackroller.errors import escaped
+
 NARROW = 12  # letters; cells that are longer may be broken between words
 FRAME = 3  # letters that the frame takes for each column
 WIDE = 10_000  # letters of a line in a file or a pipe, which no window limits
@@ -93,14 +95,17 @@ def _least(cells: Sequence[str]) -> int:
 
 
 def print_text(text: str, head: str = "", to: TextIO | None = None) -> None:
-    """Print a sentence after a head of its own column, broken between words where the line ends."""
+    """Print a sentence after a head of its own column, broken between words where the line ends.
+
+    A character of a file's name that a terminal obeys stands as an escape.
+    """
     first_indent = ""
     indent = "  "
     if head:
         first_indent = f"{head:<9}"
         indent = " " * 9
     lines = textwrap.wrap(
-        text,
+        escaped(text),
         room(),
         initial_indent=first_indent,
         subsequent_indent=indent,
