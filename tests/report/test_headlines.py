@@ -112,3 +112,13 @@ def test_a_key_that_is_missing_is_left_out(hidden):
         if hidden == "high" or value is None:
             text = headline_of(dataclasses.replace(one, headline={k: v for k, v in head.items() if k != hidden})).text
             assert "None" not in text and "nan" not in text
+
+
+def test_a_range_leaves_conditions_open_in_the_count():
+    near = made_answers.nearest().headline["nearest"]
+    said = [
+        headline_of(decide("none", headline={"names": [], "nearest": near | more})).text
+        for more in ({"perhaps": 9}, {"perhaps": 11}, {"meets": 0, "fails": "everywhere"})
+    ]
+    assert "meets 9 of 12" in said[0] and "meets 9 to 11 of 12" in said[1]
+    assert said[2].endswith("fails everywhere.")

@@ -287,3 +287,22 @@ def test_a_response_surface_takes_a_requirement(tmp_path):
     ends = {name: [stress[own == end].mean() for end in (own.min(), own.max())] for name, own in at.items()}
     by_hand = {name: abs(high - low) for name, (low, high) in ends.items()}
     assert max(effect, key=effect.get) == max(by_hand, key=by_hand.get) == answer.table["name"].iloc[0]
+
+
+def test_a_candidate_fails_where_it_surely_misses_and_not_where_it_is_open(tmp_path):
+    """A plastic roller of which the wear is known within a range: one load is open, the other one is missed."""
+    results = solve(
+        tmp_path,
+        {"roller_material": "PA66-dry", "axial_force": 4, "permissible_wear_depth": 0.15, "velocity": 80},
+        factors={"radial_force": {"values": [-12, -60]}, "roller_profile_radius": {"values": [-6.3, -7]}},
+        outputs=["forces", "contact", "friction_work", "peak_stress", "life", "wear", "limits"],
+        requirement={LIFE: {"min": 6000}},
+    )
+    data = results.data.sel(roller_profile_radius=-6.3)
+    low, high = (data[f"{LIFE}_{end}"].to_series() for end in ("low", "high"))
+    assert (low < 6000).all() and (high >= 6000).tolist() == [True, False]
+    near = results.answer.headline["nearest"]
+    assert near["name"] == {"roller_profile_radius": -6.3}
+    assert (near["meets"], near["perhaps"], near["of"]) == (0, 1, 2)
+    assert "radial force" in near["fails"] and "−60 N" in near["fails"] and "−12 N" not in near["fails"]
+    assert "meets 0 to 1 of 2 conditions" in headline_of(results.answer).text

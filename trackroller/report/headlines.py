@@ -33,8 +33,9 @@ Keys of `Answer.headline`; a key that is missing, None, NaN or empty is left out
 `measure`          {what, of, on, turn, units, low, high}: placeholder, its body, the other one,
                    where the leader turns
 `give`             {what}: load that was not given, in words: "the motor force"
-`nearest`          {name (as one of `names`), holds, of, meets, low, fails}: `fails` says where it
-                   fails, in words
+`nearest`          {name (as one of `names`), holds, of, meets, perhaps, low, fails}: `meets` and
+                   `perhaps` count the conditions that surely meet it and that may; `fails` says
+                   where it surely fails, in words
 `up_to`, `from_on`  levels of the single numeric choice between which all conditions meet the
                    requirement
 `share`, `share_low`, `share_high`  share of the drawn conditions that meets it, Wilson's interval
@@ -345,6 +346,8 @@ def _nearest(answer: Answer) -> list[str]:
     if _known(near, "low") and near["low"] > 0 and near["holds"] == near["of"]:
         clauses[0] += f", {_output(answer, near['low'])} at the worst"
     fails = _short(near.get("fails"))
+    if fails == "everywhere":
+        return [*clauses, "fails everywhere"]
     if fails:
         return [*clauses, f"fails at {fails}"]
     return clauses
@@ -352,7 +355,15 @@ def _nearest(answer: Answer) -> list[str]:
 
 def _reached(near: Mapping[str, Any]) -> list[str]:
     """Return in how many conditions the nearest design meets the requirement."""
-    return [f"meets {near['meets']} of {near['of']} conditions"]
+    return [f"meets {_met_count(near)} of {near['of']} conditions"]
+
+
+def _met_count(head: Mapping[str, Any]) -> str:
+    """Return how many meet the requirement: '7', or '7 to 9' where a range leaves some open."""
+    least = f"{head['meets']:,}"
+    if _known(head, "perhaps") and head["perhaps"] > head["meets"]:
+        return f"{least} to {head['perhaps']:,}"
+    return least
 
 
 def _turn(head: Mapping[str, Any]) -> list[str]:
@@ -412,7 +423,7 @@ def what_matters(answer: Answer) -> Headline:
     if head.get("asked"):
         clauses.append(f"{lowered(head['asked']['title'])}: {_effect(answer, head['asked'])}")
     if answer.required and _known(head, "meets"):
-        clauses.append(f"{head['meets']:,} of {head['of']:,} {_reach(answer.required)}")
+        clauses.append(f"{_met_count(head)} of {head['of']:,} {_reach(answer.required)}")
     return _joined(lead, [clause for clause in clauses if clause])
 
 

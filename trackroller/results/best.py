@@ -331,6 +331,7 @@ def _nearest(outcome: _Outcome, number: int) -> dict[str, Any]:
     """
     rows = outcome.rows(number)
     meets = min((own.sure[number] for own in outcome.shares), default=0.0)
+    perhaps = min((own.may[number] for own in outcome.shares), default=0.0)
     of = rows.stop - rows.start
     worse = outcome.ranges.worse[rows]
     if outcome.ranges.rises:
@@ -341,6 +342,7 @@ def _nearest(outcome: _Outcome, number: int) -> dict[str, Any]:
         "name": _name(outcome, number),
         "holds": int(outcome.results.holds[rows].sum()),
         "meets": round(float(meets) * of),
+        "perhaps": round(float(perhaps) * of),
         "of": of,
         "low": low,
         "verdict": str(outcome.verdict[number]),

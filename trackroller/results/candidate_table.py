@@ -292,7 +292,7 @@ def _count_columns(own: Comparison) -> list[Column]:
         "fails",
         "Fails where",
         "",
-        "levels that cover the misses, or counts of their causes",
+        "levels that cover the sure misses, or counts of their causes",
         "text",
     )
     return [*columns[:2], meets, columns[2], fails]
@@ -512,16 +512,14 @@ def _shares(own: Comparison) -> dict[str, Any]:
 
 
 def _fails(own: Comparison, table: pd.DataFrame) -> list[str]:
-    """Return where each candidate misses its requirement, or is not held without one."""
+    """Return where each candidate surely misses its requirement, or is not held without one."""
     if own.required:
-        good = own.met()[0]
+        good = own.met()[1]
+        good_count = table["perhaps"]
     else:
         good = own.ranges.holds
-    names = [name for name in own.conditions if own.results.table[name].nunique() > 1]
-    if own.required:
-        good_count = table["meets"]
-    else:
         good_count = table["holds"]
+    names = [name for name in own.conditions if own.results.table[name].nunique() > 1]
     missed = table["of"].to_numpy() - good_count.to_numpy()
     everywhere = np.where(table["of"] > 1, "everywhere", "")
     out = []

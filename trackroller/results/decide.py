@@ -402,7 +402,7 @@ def _headline(own: Comparison, table: pd.DataFrame, decision: Decision) -> dict[
     if decision.kind in ("none", "cannot_tell"):
         head["nearest"] = {
             "name": names_of(own, [decision.order[0]])[0],
-            **{key: plain(one[key]) for key in ("holds", "of", "meets", "low", "fails")},
+            **{key: plain(one[key]) for key in ("holds", "of", "meets", "perhaps", "low", "fails")},
         }
     return head | _level_reached(own, table)
 
