@@ -107,7 +107,7 @@ def test_a_message_says_first_what_is_wrong(tmp_path):
         (("solve", "gone.yaml"), "case file = 'gone.yaml' does not exist."),
         (("run", "gone.yaml"), "'gone.yaml' does not exist."),
         (("status", "gone"), "study = 'gone' is not there."),
-        (("verify", "gone"), "crate = 'gone' holds no readable"),
+        (("verify", "gone"), "folder = 'gone' exists neither here nor in results"),
         (("explore", "gone"), "holds no results."),
         (("app", "gone"), "folder = 'gone' does not exist."),
         (("solve", "-o", "gone/x.nc"), "stands in a folder that does not exist."),
