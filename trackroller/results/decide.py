@@ -240,9 +240,11 @@ class Decider:
         judged = (table["judged"] == table["of"]).to_numpy()
         # a condition that no candidate holds, or in which the model judges none, rules none out
         counts = own.counted(np.isin(own.pairs[1], np.unique(own.use[own.reachable])))
-        pool = every[(table["holds"].to_numpy() >= counts) & (table["holds"].to_numpy() > 0)]
         if own.drawn:  # nine of ten drawn conditions have to be held
             pool = every[self.score > own.ranges.sign * own.ranges.worst_value]
+        else:
+            holds = table["holds"].to_numpy()
+            pool = every[(holds >= counts) & (holds > 0)]
         if not len(pool):
             unknown = (~judged & (table["holds"] == 0)).any() and (table["holds"] == 0).all()
             if unknown:

@@ -70,8 +70,10 @@ def run(
         if results is None and not checked.decides:
             return Results(checked, checked.drawn, solve_study(checked, bar.started, bar.advanced))
         # the cases of a study that decides follow from stored results
-        folder: AbstractContextManager[Path | str] = tempfile.TemporaryDirectory()
-        if results is not None:
+        folder: AbstractContextManager[Path | str]
+        if results is None:
+            folder = tempfile.TemporaryDirectory()
+        else:
             folder = nullcontext(results)
         with folder as place:
             solved = open_study(run_any(checked, place, **shown).folder.root)

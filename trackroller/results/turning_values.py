@@ -247,8 +247,9 @@ class Turning:
         ahead = np.zeros(len(levels), dtype=bool)
         overtaking: list[int] = []
         for rival in rivals:
-            theirs = self._at_level(rival, levels)
-            if own.materials[rival] != own.materials[leader]:
+            if own.materials[rival] == own.materials[leader]:
+                theirs = self._at_level(rival, levels)
+            else:
                 theirs = np.full(len(levels), self._middle(rival, levels))
             leads = theirs > mine * (1.0 + own.error_of_ratio(leader, rival))
             ahead |= leads
