@@ -39,7 +39,7 @@ from trackroller.carriage.statics import (
 )
 from trackroller.carriage.strokes import passes_per_km
 from trackroller.contact.hertz import contact_modulus, unit_approach
-from trackroller.damage import LIMITS, verdict
+from trackroller.damage import LIMITS, first_limit
 from trackroller.damage.miner import block_damage
 from trackroller.errors import InputError
 from trackroller.materials import load_database
@@ -688,7 +688,7 @@ def with_lives(
     for values in (case_hours, damage):
         values[~ds["converged"].values] = np.nan
     flagged = np.zeros(shape, dtype=np.int64)
-    lasts = {end: np.full(n, np.inf) for end in verdict.ENDS}
+    lasts = {end: np.full(n, np.inf) for end in first_limit.ENDS}
     own = np.array(
         [roller.case.velocity for roller in whole.rollers if roller.case is not None], dtype=float
     )
@@ -828,11 +828,11 @@ class _Checks:
         state = lives.summed["limit_state"].copy()
         shares = (lives.share == 0)[:, None, None]
         least = lives.of(
-            np.where(shares, len(verdict.STATES), solved["limit_state"].values), np.minimum
+            np.where(shares, len(first_limit.STATES), solved["limit_state"].values), np.minimum
         )
-        exceeded = verdict.STATES.index("exceeded")
-        state[(least == verdict.STATES.index("unknown")) & (state != exceeded)] = (
-            verdict.STATES.index("unknown")
+        exceeded = first_limit.STATES.index("exceeded")
+        state[(least == first_limit.STATES.index("unknown")) & (state != exceeded)] = (
+            first_limit.STATES.index("unknown")
         )
         into = np.ix_(rollers, np.array(places))
         self.state[into] = state
@@ -851,8 +851,8 @@ class _Checks:
         """Return utilisation, hours and state of each limit as variables, with their labels."""
         dims = ("roller", "limit", "body")
         flags = {
-            "flag_values": np.arange(len(verdict.STATES), dtype=np.int8),
-            "flag_meanings": " ".join(verdict.STATES),
+            "flag_values": np.arange(len(first_limit.STATES), dtype=np.int8),
+            "flag_meanings": " ".join(first_limit.STATES),
             "long_name": "whether the limit is kept over the load cases",
         }
         alone = _attrs("h", "hours of travel to the limit, with the damage of all load cases")

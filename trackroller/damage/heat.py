@@ -20,9 +20,9 @@ from trackroller.damage.histories import RollerTractions
 from trackroller.damage.limit import (
     TRACTIONS,
     Limit,
+    LimitUse,
     SolvedRollers,
     Values,
-    Verdict,
     optional,
     variables,
     worst,
@@ -172,7 +172,7 @@ LIMIT = Limit(
     shared=of_patches,
     shared_by_mechanics=False,
     evaluate=evaluate,
-    verdict=lambda solved, results: Verdict(worst(results["heat_utilisation"]), None),
+    use=lambda solved, results: LimitUse(worst(results["heat_utilisation"]), None),
     needs=(TRACTIONS,),
     results=variables(
         "heat",

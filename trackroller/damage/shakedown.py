@@ -21,9 +21,9 @@ from trackroller.damage.histories import RollerTractions
 from trackroller.damage.limit import (
     TRACTIONS,
     Limit,
+    LimitUse,
     SolvedRollers,
     Values,
-    Verdict,
     variables,
     worst,
 )
@@ -136,7 +136,7 @@ LIMIT = Limit(
     shared=of_mechanics,
     bound=bound,
     evaluate=evaluate,
-    verdict=lambda solved, results: Verdict(worst(results["shakedown_utilisation"]), None),
+    use=lambda solved, results: LimitUse(worst(results["shakedown_utilisation"]), None),
     needs=("peak_stress", TRACTIONS),
     results=variables(
         "shakedown",

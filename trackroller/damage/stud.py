@@ -28,7 +28,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from trackroller.damage.bearing import BearingLoads
-from trackroller.damage.limit import Limit, SolvedRollers, Values, Verdict, optional, variables
+from trackroller.damage.limit import Limit, LimitUse, SolvedRollers, Values, optional, variables
 from trackroller.damage.mapping import MappingField
 from trackroller.damage.sn_curve import SNCurve
 from trackroller.errors import InputError
@@ -211,7 +211,7 @@ def _life(amplitude: np.ndarray, own: dict[str, np.ndarray], rule: str) -> np.nd
     return hours
 
 
-def verdict(solved: SolvedRollers, results: Values) -> Verdict:
+def limit_use(solved: SolvedRollers, results: Values) -> LimitUse:
     """Return the utilisation and the hours of the stud, (n, body); the guide has neither.
 
     An endurance limit that is exceeded ends a life where this is known, and is a utilisation
@@ -221,7 +221,7 @@ def verdict(solved: SolvedRollers, results: Values) -> Verdict:
     static = results["stud_static_utilisation"]
     without_life = np.where(np.isnan(hours), results["stud_endurance_utilisation"], np.nan)
     used = np.fmax(static, without_life)
-    return Verdict(
+    return LimitUse(
         *(np.stack([value, np.full_like(value, np.nan)], axis=1) for value in (used, hours))
     )
 
@@ -310,7 +310,7 @@ LIMIT = Limit(
     group="stud",
     meaning="stress, endurance and deflection of the stud or axle",
     evaluate=evaluate,
-    verdict=verdict,
+    use=limit_use,
     results=variables(
         "stud",
         ("stud_stress", (), "MPa", "sigma_S", "von Mises stress at the clamped end of the stud"),

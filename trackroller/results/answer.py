@@ -33,7 +33,7 @@ WARNINGS = {  # code -> what it means
     "doubtful": "values that are unusual, or that tests contradict",
     "flagged": "an assumption of the model or an accuracy is not kept",
 }
-# of a candidate; a limit has those of `trackroller.damage.verdict.STATES`
+# of a candidate; a limit has those of `trackroller.damage.first_limit.STATES`
 STATES = ("met", "open", "missed", "none")
 
 

@@ -19,7 +19,7 @@ import pandas as pd
 from trackroller.carriage.file import carriage_of
 from trackroller.carriage.solve import cases_of, forces_of, with_lives
 from trackroller.damage import LIMITS
-from trackroller.damage.verdict import STATES
+from trackroller.damage.first_limit import STATES
 from trackroller.errors import InputError
 from trackroller.methods.factor import ROWS
 from trackroller.results.load_ratio import EXACT, load_ratios_of_cases
