@@ -44,6 +44,7 @@ USUAL: dict[str, tuple[float, float]] = {
     "friction_coefficient": (0.0, 1.0),
     "ambient_temperature": (0.0, 200.0),
     "cooled_area": (100.0, 1e7),
+    "permissible_temperature": (0.0, 250.0),
     "permissible_wear_depth": (1e-4, 10.0),
 }
 # small values are usual beside larger ones: only the largest counts
