@@ -154,6 +154,35 @@ def test_the_lives_of_a_spectrum_at_a_probability_take_the_typical_scatter(shelf
         tr.size(SPECTRUM, shelf, life=100, least="prize")
 
 
+COOLED = {"heat_transfer_coefficient": 20, "cooled_area": 8000}
+
+
+def test_a_temperature_of_a_spectrum_is_that_of_its_hottest_block(shelf):
+    warm = SPECTRUM | {"base": BASE | COOLED}
+    table = tr.size(warm, shelf, temperature=60).table.set_index("roller")
+    for name in ROWS:
+        rises = []
+        for block in BLOCKS[:2]:
+            loads = {force: block[force] for force in ("radial_force", "axial_force")}
+            ds = tr.solve(BASE | COOLED | roller(name) | loads, ("heat",), **QUICK)
+            rises.append((ds["flash_temperature_rise"] + ds["bulk_temperature_rise"]).max().item())
+        assert table.loc[name, "temperature_ratio"] == pytest.approx(40 / max(rises), rel=1e-9)
+    bare = tr.size(SPECTRUM, shelf, temperature=60).table.set_index("roller").loc[["mid", "large"]]
+    assert set(bare["verdict"]) == {"open"} and bare["excluded_by"].str.contains("cooled_area").all()
+
+
+def test_a_wear_depth_of_a_carriage_counts_at_each_place_and_everywhere(shelf):
+    found = tr.size(cart(), shelf, life=0.1, wear_depth="0.05 mm", least="price", each=True)
+    assert found.mounting.enough and "wear_ratio" in found.table
+    for entry in found.mounting.carriage["rollers"].values():
+        assert entry["roller"]["permissible_wear_depth"] == 0.05
+    ds = solve_carriage(found.mounting.carriage)
+    wear = ds["life_hours_by_limit"].sel(limit="wear", body="roller")
+    assert (wear > 0.1).all() and np.isfinite(wear).all()
+    unknown = tr.size(cart(), shelf, temperature=60, each=True)
+    assert not unknown.mounting.enough and "enough" not in set(unknown.table["verdict"])
+
+
 def test_the_command_writes_the_carriage_of_its_places(shelf, tmp_path):
     text = EXAMPLE.replace(
         "motor_force: 0\n", "motor_force: 0\n      contact_model: sliding\n      accuracy: preview\n"

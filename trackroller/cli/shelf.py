@@ -119,6 +119,8 @@ def print_size(  # noqa: PLR0913 - one argument for each option of the command
     life: str | None,
     failures: str | None,
     safety: str | None,
+    temperature: str | None,
+    wear_depth: str | None,
     least: str | None,
     each: bool,
     out: Path | None,
@@ -138,9 +140,6 @@ def print_size(  # noqa: PLR0913 - one argument for each option of the command
     target = None
     if out is not None:
         target = _target(out, each)
-    if life is None and safety is None:
-        remedy = "Add --life '3 years', or --safety 1.5."
-        raise InputError("--life", None, "a required life, or a safety", remedy, "is missing")
     from trackroller.results.size import size  # heavy: analysis
 
     with _as_options():
@@ -150,6 +149,8 @@ def print_size(  # noqa: PLR0913 - one argument for each option of the command
             life=life,
             failures=failures,
             safety=safety,
+            temperature=temperature,
+            wear_depth=wear_depth,
             least=least,
             each=each,
             results=results,
@@ -180,8 +181,13 @@ def _as_options() -> Iterator[None]:
 
 def _of_option(error: InputError) -> InputError:
     """Return an error on an argument of `size` as one on the option of its name."""
-    if error.field in ("life", "failures", "safety", "least", "each"):
-        return error.named(f"--{error.field}")
+    from trackroller.results.size import REQUIRED  # heavy: analysis
+
+    if error.field == "size":  # nothing is required
+        remedy = "Add --life '3 years', or --safety 1.5, for example."
+        return InputError("--life", None, error.allowed, remedy, "is missing")
+    if error.field in (*REQUIRED, "each"):
+        return error.named(f"--{error.field.replace('_', '-')}")
     return error
 
 

@@ -13,11 +13,20 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
+import xarray as xr
 
 from trackroller.errors import unknown_name
 from trackroller.files import files_beside
-from trackroller.results.answer import Answer
+from trackroller.parameters import BODIES
 from trackroller.results.load_ratio import EXACT, LoadRatios, load_ratios_of_cases
+from trackroller.results.roller_answer import material_name
+from trackroller.results.size_verdicts import (
+    RATIO,
+    VERDICTS,
+    is_permitted_known,
+    lacks_in_words,
+    permitted_ratios,
+)
 from trackroller.results.spectrum_answer import answer_of_spectrum
 from trackroller.roller.requirement import DEFAULT, checked_requirement
 from trackroller.study.design.entries import CASE_FIELDS
@@ -25,8 +34,6 @@ from trackroller.study.file.shelf import ROLLER
 from trackroller.study.file.study import Study
 from trackroller.study.spectrum.file import Spectrum
 from trackroller.study.spectrum.solve import solve_spectrum
-
-VERDICTS = ("enough", "open", "not enough")
 
 
 def spectrum_table(
@@ -37,6 +44,7 @@ def spectrum_table(
     life: str | float | None,
     safety: float | None,
     least: str | None,
+    permitted: tuple[str, ...] = (),
 ) -> tuple[pd.DataFrame, LoadRatios]:
     """Return the rollers of a shelf with their verdicts under a load spectrum, and load ratios.
 
@@ -54,6 +62,8 @@ def spectrum_table(
         Factor on all forces at which no limit may be exceeded [1].
     least : str, optional
         Column of the shelf by which rollers rank.
+    permitted : tuple of str
+        The permitted values that are required, of `trackroller.results.size_verdicts.PERMITTED`.
 
     Returns
     -------
@@ -78,8 +88,8 @@ def spectrum_table(
     ratios = _ratios(spectra, levels, shelf)
     rows = []
     for own in spectra:
-        answer = answer_of_spectrum(solve_spectrum(own, shelf.materials))
-        rows.append(_judged(answer, own, required))
+        ds = solve_spectrum(own, shelf.materials)
+        rows.append(_judged(ds, own, required, permitted))
     table = pd.DataFrame(rows, pd.Index(levels, name=ROLLER))
     if life is None:
         table = table.drop(columns="life_ratio")
@@ -118,9 +128,13 @@ def _ratios(spectra: list[Spectrum], levels: list[str], shelf: Study) -> LoadRat
     return load_ratios_of_cases(cases, labels, options, shelf.materials)
 
 
-def _judged(answer: Answer, own: Spectrum, required: float) -> dict[str, Any]:
-    """Return verdict, life and what excludes a roller by the record of its spectrum."""
-    head = answer.headline
+def _judged(
+    ds: xr.Dataset, own: Spectrum, required: float, permitted: tuple[str, ...]
+) -> dict[str, Any]:
+    """Return verdict, life and what excludes a roller by its solved spectrum."""
+    head = answer_of_spectrum(ds).headline
+    unknown = [one for one in permitted if not is_permitted_known(ds, one).all()]
+    ratios = {RATIO[one]: permitted_ratios(ds, one, required) for one in permitted}
     ends = " or ".join(head["ends"])
     over = [_exceeded(one) for one in (*head["broken"], *head["exceeded"])]
     lacking = [body for body in head["unknown"] if body == "roller" or _rolls_over(own)]
@@ -135,6 +149,10 @@ def _judged(answer: Answer, own: Spectrum, required: float) -> dict[str, Any]:
     elif lacking and not math.isnan(required):
         verdict = VERDICTS[1]
         why = f"open: the life of the {' and '.join(lacking)} is not known"
+    elif unknown:
+        verdict = VERDICTS[1]
+        names = {material_name(ds, body) for body in BODIES}
+        why = f"open: {'; '.join(lacks_in_words(ds, one, names) for one in unknown)}"
     elif head["not_judged"]:
         verdict = VERDICTS[1]
         why = f"open: {'; '.join(head['not_judged'])}"
@@ -146,6 +164,7 @@ def _judged(answer: Answer, own: Spectrum, required: float) -> dict[str, Any]:
         "life_hours": head["low"],
         "life_ratio": head["low"] / required,
         "ends": ends,
+        **{name: float(np.nanmin(values)) for name, values in ratios.items()},
         "excluded_by": why,
     }
 
