@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import yaml
 from typer.testing import CliRunner
 
 import trackroller as tr
@@ -13,7 +14,7 @@ from trackroller.carriage.example import EXAMPLE
 from trackroller.carriage.solve import solve_carriage
 from trackroller.cli.main import app
 from trackroller.errors import InputError
-from trackroller.study.spectrum.file import Spectrum
+from trackroller.study.spectrum.file import Spectrum, load_spectrum
 from trackroller.study.spectrum.solve import solve_spectrum
 from trackroller.yaml_file import parse_mapping
 
@@ -152,6 +153,24 @@ def test_the_lives_of_a_spectrum_at_a_probability_take_the_typical_scatter(shelf
         tr.size(SPECTRUM, shelf, life=100, each=True)
     with pytest.raises(InputError, match=r"prize.*Did you mean 'price'"):
         tr.size(SPECTRUM, shelf, life=100, least="prize")
+
+
+def test_the_spectrum_with_the_least_roller_is_written_and_repeats_its_life(shelf, tmp_path):
+    (tmp_path / "loads").mkdir()
+    lines = ["name,distance,radial_force,axial_force"]
+    lines += [",".join(str(value) for value in block.values()) for block in BLOCKS]
+    Path("loads/blocks.csv").write_text("\n".join(lines) + "\n")
+    Path("loads/shift.yaml").write_text(yaml.safe_dump(SPECTRUM | {"blocks": "blocks.csv"}))
+    words = ["size", "loads/shift.yaml", "--shelf", "rollers.csv", "--life", "3 years", "--least", "price", "-q"]
+    done = CliRunner().invoke(app, [*words, "-o", "sized.yaml"])
+    assert done.exit_code == 0 and "the spectrum with mid" in done.output
+    found = tr.size("loads/shift.yaml", shelf, life="3 years", least="price").table.set_index("roller")
+    ds = solve_spectrum(load_spectrum("sized.yaml"))
+    assert ds["pair_life_to_first_limit_hours_low"].item() == found.loc["mid", "life_hours"]
+    then = done.output.rpartition("its page: trackroller ")[2].split()
+    assert CliRunner().invoke(app, then).exit_code == 0 and Path("page.html").is_file()
+    told = CliRunner().invoke(app, words)
+    assert "no study is kept of a spectrum; -o sized.yaml" in told.output
 
 
 COOLED = {"heat_transfer_coefficient": 20, "cooled_area": 8000}

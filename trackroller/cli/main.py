@@ -368,7 +368,8 @@ def size(  # noqa: PLR0913 - one argument for each option of the command
         bool, typer.Option("--each", help="each place of a carriage takes its own roller")
     ] = False,
     out: Annotated[
-        Path | None, typer.Option("-o", "--out", help="with --each: write this carriage (.yaml)")
+        Path | None,
+        typer.Option("-o", "--out", help="write the carriage of --each, or the spectrum (.yaml)"),
     ] = None,
     results: Results = Path("results"),
     as_json: Annotated[bool, typer.Option("--json", help="print JSON")] = False,

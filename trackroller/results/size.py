@@ -30,7 +30,7 @@ from trackroller.results.load_ratio import EXACT, FORCES, LoadRatios, load_ratio
 from trackroller.results.mounting import Mounting, rollers_by_place
 from trackroller.results.results import Results
 from trackroller.results.run import run
-from trackroller.results.size_spectrum import spectrum_table
+from trackroller.results.size_spectrum import spectrum_table, spectrum_with
 from trackroller.results.size_verdicts import PERMITTED, RATIO, VERDICTS, RollerVerdicts
 from trackroller.roller.aliases import OTHER_OPTIONS, with_options
 from trackroller.roller.duty import OVERROLLINGS
@@ -99,6 +99,9 @@ class Sizing:
         The roller of each place of a carriage, if each takes its own.
     not_given : mapping of str to object
         Parameters that nobody gave, with the values of the paper's example that were used.
+    spectrum : mapping
+        Keys of the spectrum file with the least roller, of which no study is kept; {} for another
+        file, and if no roller is surely enough.
     """
 
     table: pd.DataFrame
@@ -111,6 +114,7 @@ class Sizing:
     units: Mapping[str, str] = field(default_factory=dict, repr=False)
     mounting: Mounting | None = field(default=None, repr=False)
     not_given: Mapping[str, Any] = field(default_factory=dict, repr=False)
+    spectrum: Mapping[str, Any] = field(default_factory=dict, repr=False)
 
     @property
     def open_and_less(self) -> tuple[str, ...]:
@@ -199,7 +203,7 @@ def size(  # noqa: PLR0913 - a requirement has many parts
         Whether each place of a carriage takes its own roller, see `Sizing.mounting`.
     results : path, optional
         Parent of the folders of the studies, as for `trackroller.run`. By default nothing is
-        written.
+        written. A spectrum has no study: `Sizing.spectrum` is the spectrum with the least roller.
     progress : bool
         Whether to show a progress bar.
 
@@ -428,7 +432,10 @@ def _sized_spectrum(
     example = _example_values(study)
     not_given = {name: value for name, value in example.items() if name not in LOAD_FIELDS}
     ranked = _ranked(table, required["least"] or "", None, None)
-    return replace(ranked, ratios=ratios, units=units, not_given=not_given)
+    chosen: dict[str, Any] = {}
+    if ranked.least:
+        chosen = spectrum_with(values, study, ranked.least)
+    return replace(ranked, ratios=ratios, units=units, not_given=not_given, spectrum=chosen)
 
 
 def _keys_of(case: Path | str | Mapping[str, Any], shelf: Path | str) -> dict[str, Any]:

@@ -1,11 +1,13 @@
 """Size the roller of a load spectrum: the life of each roller of a shelf under all blocks.
 
-Damage adds up over the blocks, limit by limit, as in the page of a spectrum. The spectrum of each
-roller is solved by itself, so that there is no study.
+Damage adds up over the blocks, limit by limit, as in the page of a spectrum. A row of a study is
+one case with a life of its own, and a spectrum has one life of many cases. So each roller has its
+own spectrum and there is no study; the spectrum with the least roller is returned as a file.
 """
 
 from __future__ import annotations
 
+import json
 import math
 from collections.abc import Mapping
 from pathlib import Path
@@ -17,7 +19,8 @@ import xarray as xr
 
 from trackroller.errors import unknown_name
 from trackroller.files import files_beside
-from trackroller.parameters import BODIES
+from trackroller.numerics.plain import plain
+from trackroller.parameters import BODIES, MAPPING_FIELDS
 from trackroller.results.load_ratio import EXACT, LoadRatios, load_ratios_of_cases
 from trackroller.results.roller_answer import material_name
 from trackroller.results.size_verdicts import (
@@ -74,13 +77,12 @@ def spectrum_table(
     known = [name for name, factor in shelf.columns_of_shelves.items() if factor.numeric]
     if least and least not in known:
         raise unknown_name("least", least, known)
-    levels = [str(level) for level in shelf.parsed[ROLLER].levels]
+    levels = _levels(shelf)
     columns = shelf.drawn.columns
     spectra = []
-    for place in range(len(levels)):
-        row = {name: column[place] for name, column in columns.items() if name in CASE_FIELDS}
+    for name in levels:
         with files_beside(path):
-            spectra.append(Spectrum.from_dict({**values, "base": _base(shelf, row)}))
+            spectra.append(Spectrum.from_dict(spectrum_with(values, shelf, name)))
     required = math.nan
     if life is not None:
         entry = checked_requirement({DEFAULT: {"min": life}}, spectra[0].duty)
@@ -103,12 +105,39 @@ def spectrum_table(
     return table, ratios
 
 
+def _levels(shelf: Study) -> list[str]:
+    """Return the names of the rollers of a shelf."""
+    return [str(level) for level in shelf.parsed[ROLLER].levels]
+
+
+def spectrum_with(values: Mapping[str, Any], shelf: Study, name: str) -> dict[str, Any]:
+    """Return the keys of a spectrum file with a roller of a shelf.
+
+    Parameters
+    ----------
+    values : mapping
+        Keys of a spectrum file.
+    shelf : Study
+        As for `spectrum_table`.
+    name : str
+        Name of the roller.
+    """
+    place = _levels(shelf).index(name)
+    columns = shelf.drawn.columns
+    row = {key: column[place] for key, column in columns.items() if key in CASE_FIELDS}
+    return {**values, "base": _base(shelf, row)}
+
+
 def _base(shelf: Study, row: Mapping[str, Any]) -> dict[str, Any]:
     """Return the `base` of the spectrum of a roller: what the user gave, and the row of the
     shelf.
     """
     given = {name: v for name, v in shelf.config.base.items() if name not in shelf.not_given}
-    return given | {name: value for name, value in row.items() if not _is_missing(value)}
+    own = {name: plain(value) for name, value in row.items() if not _is_missing(value)}
+    for name in MAPPING_FIELDS:
+        if isinstance(own.get(name), str):
+            own[name] = json.loads(own[name])
+    return given | own
 
 
 def _is_missing(value: Any) -> bool:
