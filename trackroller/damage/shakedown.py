@@ -161,7 +161,7 @@ def _largest_traction(t: RollerTractions) -> np.ndarray:
     """Return the largest |tau|/p of each patch, (n, contact) [1]."""
     pressed = t.pressure > 0.02 * np.nanmax(t.pressure, axis=(2, 3), keepdims=True, initial=0.0)
     with np.errstate(divide="ignore", invalid="ignore"):
-        local = np.hypot(t.shear_lateral, t.shear_rolling) / t.pressure
+        local = t.shear / t.pressure
     return np.asarray(np.max(np.where(pressed, local, 0.0), axis=(2, 3)))
 
 
