@@ -69,7 +69,7 @@ def of_patches(solved: SolvedRollers) -> Values:
     rises = largest_rises(steps, heat[case, contact], own_decays)
     whole = t.of_all_patches(rises.reshape(-1, *decays.shape[1:]) / conductivity[case])
     cell = (t.x[:, :, 1] - t.x[:, :, 0]) * (t.y[:, :, 1] - t.y[:, :, 0])
-    slides = (np.hypot(t.slip_lateral, t.slip_rolling) * t.pressure).sum(axis=(2, 3))
+    slides = (t.slip * t.pressure).sum(axis=(2, 3))
     return {
         "_rise": whole,
         "_heat_power": heat.sum(axis=(2, 3)) * cell,
