@@ -1,7 +1,7 @@
 """Compiled stresses of planes below patches, and the shear stresses at which patches shake down.
 
 Stresses at a depth are smooth: half the nodes give them with errors of the fourth order of the
-spacing, 1000 times larger than the rounding of single precision. LoadedPatches are carried to these nodes,
+spacing, 1000 times larger than the rounding of single precision. Loads are carried to these nodes,
 which lie on a ladder of shapes, so that patches of nearly the same shape share their kernels. Each
 patch is computed by itself, so that its digits do not depend on the patches beside it.
 """
@@ -112,7 +112,7 @@ def loads_on_ladder(tractions, scales, nodes):  # pragma: no cover (compiled)
     Returns
     -------
     numpy.ndarray
-        LoadedPatches, (3, nodes along y, nodes along x) [MPa]. The resultants and first moments stay, and
+        Loads, (3, nodes along y, nodes along x) [MPa]. The resultants and first moments stay, and
         the second moments grow by a quarter of the squared spacing, which the kernels take back.
     """
     nx = tractions.shape[2]
@@ -223,7 +223,7 @@ def deep_planes(loads: PatchLoads, poisson_ratio: np.ndarray) -> np.ndarray:
 
 
 class LoadedPatches(NamedTuple):
-    """LoadedPatches of m patches, q_x, q_y, p (m, ny, nx) each [MPa]; spacings (m, 2) [mm]; nu (m, body)
+    """Loads of m patches, q_x, q_y, p (m, ny, nx) each [MPa]; spacings (m, 2) [mm]; nu (m, body)
     [1]; bodies that are asked for (m, body).
     """
 

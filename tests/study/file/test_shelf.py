@@ -299,7 +299,11 @@ def test_names_of_rows_may_be_figures(tmp_path, monkeypatch):
     ("text", "more", "message"),
     [
         (TABLE.replace("small", "smal"), {}, r"cases.csv, line 3: roller = 'smal' is not known.*'small'"),
-        (TABLE.replace("axial_force", "axis_distance").replace(",0\n", ",9\n"), {}, "column axis_distance is in factors.roller too"),
+        (
+            TABLE.replace("axial_force", "axis_distance").replace(",0\n", ",9\n"),
+            {},
+            "column axis_distance is in factors.roller too",
+        ),
         (TABLE.replace("roller,", "own,"), {}, "Add a column roller to the table"),
         (TABLE, {"radial_force": {"values": [-1, -2]}}, "Remove it, or the column radial_force of the table"),
         (TABLE, {"velocity": {"values": [10, 20]}}, "Only expressions and shelves may stand beside a table"),
