@@ -228,14 +228,6 @@ LIMIT = Limit(
             0.0,
         ),
         optional("cooled_area", "A_c", "mm2", "surface from which the roller loses heat", 0.0),
-        optional(
-            "permissible_temperature",
-            "theta_zul",
-            "degC",
-            "permissible temperature of roller and guide; that of their materials counts too",
-            -100.0,
-            4e3,
-        ),
         Parameter(
             "ambient_temperature",
             "theta_0",
@@ -245,6 +237,14 @@ LIMIT = Limit(
             -100.0,
             1000.0,
             role="condition",
+        ),
+        optional(
+            "permissible_temperature",
+            "theta_zul",
+            "degC",
+            "permissible temperature of roller and guide; that of their materials counts too",
+            -100.0,
+            4e3,
         ),
     ),
     materials=(
