@@ -73,11 +73,11 @@ def rollers_by_place(study: Study, safety: float = 1.0, least: str = "") -> Moun
     if study.carriage is None:
         remedy = "Leave it out, or give a carriage file."
         raise InputError("each", True, "a carriage, which has places", remedy)
-    search = _Search(study, safety, least)
+    search = _Mounting(study, safety, least)
     return search.mounted()
 
 
-class _Search:
+class _Mounting:
     """Judge the rollers of a shelf at the places of a carriage."""
 
     def __init__(self, study: Study, safety: float, least: str) -> None:
