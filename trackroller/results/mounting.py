@@ -80,11 +80,11 @@ def rollers_by_place(
     if study.carriage is None:
         remedy = "Leave it out, or give a carriage file."
         raise InputError("each", True, "a carriage, which has places", remedy)
-    search = _Search(study, safety, least, permitted)
+    search = _Mounting(study, safety, least, permitted)
     return search.mounted()
 
 
-class _Search:
+class _Mounting:
     """Judge the rollers of a shelf at the places of a carriage."""
 
     def __init__(self, study: Study, safety: float, least: str, permitted: tuple[str, ...]) -> None:
