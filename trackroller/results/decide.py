@@ -281,11 +281,13 @@ class Decider:
         """
         own = self.own
         failed = own.reachable & own.ranges.judged & ~own.ranges.holds
-        number = np.bincount(own.place[failed], minlength=own.count)
+        number = np.bincount(own.candidate[failed], minlength=own.count)
         share = 0.0
         if own.drawn:
             share = 0.1
-        return np.asarray(number <= share * np.bincount(own.place[own.own], minlength=own.count))
+        return np.asarray(
+            number <= share * np.bincount(own.candidate[own.own], minlength=own.count)
+        )
 
     def _beats(self, one: int, other: int) -> bool:
         """Return whether a candidate is never worse than another one by more than the error, and
