@@ -351,23 +351,32 @@ def solve_and_tell(  # noqa: PLR0913 - one argument for each option of the comma
     dataset = solve_case(given, options, beside, **chosen)
     if target is not None:
         _write_roller(dataset, target, book)
-    from trackroller.report.pages.sheet import as_json as json_of  # heavy: rich and jinja2
-    from trackroller.report.pages.sheet import print_facts, print_limits, write_sheet
-
     if page is not None:
+        from trackroller.report.pages.sheet import write_sheet  # heavy: rich and jinja2
+
         write_sheet(dataset, page, _name(case))
-    shows_limits = limits is not None and not is_failed(dataset)
-    if as_json:
-        print(json_of(dataset))
-    elif target is None and shows_limits:
-        print_limits(dataset)
-    elif target is None:
-        print_facts(dataset)
+    if as_json or target is None:
+        _print_case(dataset, as_json, limits is not None)
     if not is_failed(dataset):
         return 0
     if as_json or target is not None:
         print(f"trackroller: the case failed: {dataset['reason'].item()}", file=sys.stderr)
     return 1
+
+
+def _print_case(dataset: xr.Dataset, as_json: bool, margins_alone: bool) -> None:
+    """Print the result of a case as JSON, its margins alone, or its facts; a case that failed has
+    no margins.
+    """
+    from trackroller.report.pages.sheet import as_json as json_of  # heavy: rich and jinja2
+    from trackroller.report.pages.sheet import print_facts, print_limits
+
+    if as_json:
+        print(json_of(dataset))
+    elif margins_alone and not is_failed(dataset):
+        print_limits(dataset)
+    else:
+        print_facts(dataset)
 
 
 def _check_search_alone(
