@@ -31,6 +31,8 @@ Keys of `Answer.headline`; a key that is missing, None, NaN or empty is left out
 `exceeded`         {limit, body, use [1], hours}: the worst check of the leader above 100 %
 `second`           {limit, verdict, low, high}: second model ("rating") that turns the leader's
                    verdict; a state of `STATES`; its life at the worst condition [h]
+`earlier`          {limit, body, low, high}: first limit of the leader, where a life by fatigue is
+                   required and this limit comes before it; its life at the worst condition [h]
 `measure`          {what, of, on, turn, units, low, high}: placeholder, its material, the other one,
                    where the leader turns, and its range
 `give`             {what}: load that was not given, in words: "the motor force"
@@ -104,6 +106,8 @@ from trackroller.report.numbers import (
     years_of,
 )
 from trackroller.results.answer import Answer, Caution, Column, Required
+from trackroller.results.life_columns import OF_PAIR
+from trackroller.roller.output_names import body_of
 from trackroller.study.design.levels import NAMED
 
 MOST_WORDS = 40
@@ -1148,9 +1152,9 @@ def _notes(head: Mapping[str, Any]) -> list[str]:
 def _output(
     answer: Answer, low: float, high: float | None = None, notes: Sequence[str] = ()
 ) -> str:
-    """Return a value of the output of an answer, or a range; hours alone say that it is a life."""
+    """Return a value of the output of an answer, or a range; hours alone are a life of the pair."""
     value = _value(answer, low, high, notes)
-    if answer.output[2] == "h":
+    if answer.output[2] == "h" and not body_of(answer.output[0]):
         return value
     return f"{lowered(answer.output[1])} {value}"
 
@@ -1199,7 +1203,9 @@ def _then(head: Mapping[str, Any]) -> str:
 
 
 def _other_rules(head: Mapping[str, Any]) -> list[str]:
-    """Return a second model that turns the verdict, and the check that is exceeded most."""
+    """Return a second model that turns the verdict, a limit that comes before the required life,
+    and the check that is exceeded most.
+    """
     clauses = []
     second = head.get("second")
     if second:
@@ -1213,6 +1219,10 @@ def _other_rules(head: Mapping[str, Any]) -> list[str]:
         if second["verdict"] == "open" and _known(second, "low"):
             life = [f"{carried_range(second['low'], second['high'])} h"]
         clauses.append(_noted(f"the {second['limit']} {verb[second['verdict']]}", life))
+    earlier = head.get("earlier")
+    if earlier:
+        hours = carried_range(earlier["low"], earlier["high"])
+        clauses.append(f"{_limit_of(earlier)} comes first ({hours} h)")
     exceeded = head.get("exceeded")
     if exceeded:
         clauses.append(f"{exceeded['limit']} exceeded ({percent(exceeded['use'])})")
@@ -1228,10 +1238,11 @@ def _required(answer: Answer) -> list[str]:
 
 def _bound(required: Required, answer: Answer) -> str:
     """Return a requirement with its unit, and with the words of its output where it is another than
-    the table's; one life needs no words.
+    the table's; a single life of the pair needs no words.
     """
     lives = sum(one.units == "h" for one in answer.required)
-    if required.output == answer.output[0] or (required.units == "h" and lives == 1):
+    of_pair = required.output in OF_PAIR
+    if required.output == answer.output[0] or (of_pair and lives == 1):
         words = ""
     else:
         words = f"{lowered(required.words)} "
