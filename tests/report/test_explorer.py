@@ -18,7 +18,7 @@ from typer.testing import CliRunner
 
 from trackroller.cli.main import app
 from trackroller.errors import InputError
-from trackroller.report.explorer.designs import design_columns
+from trackroller.report.explorer.candidate_columns import candidate_columns
 from trackroller.report.explorer.pack import MOST_BYTES, MOST_ROWS, RARE, affordable_rows, pack, sample_rows
 from trackroller.report.explorer.page import explorer, pareto_rows, secured, write_explorer
 from trackroller.report.explorer.rows import STATES, Column, collect, flag_text, solve_inputs
@@ -194,7 +194,7 @@ def test_a_uniform_factor_does_not_stand_on_a_logarithmic_axis():
 
 def test_designs_and_conditions_are_numbered_where_designs_repeat(study):
     results = results_of(study)
-    columns, lists = design_columns(results)
+    columns, lists = candidate_columns(results)
     found = {c.name: c.values for c in columns}
     assert set(found) == {"design", "design_worst", "condition"} and lists["design"]["factors"] == ("material_pair",)
     pair = results.table["material_pair"].to_numpy()
@@ -205,7 +205,7 @@ def test_designs_and_conditions_are_numbered_where_designs_repeat(study):
     assert (np.diff(valid) >= 0).all() and lists["condition"]["of"] == len(valid) == 12
     hard = [row[-3] for row in lists["condition"]["rows"]]
     assert hard == [f"{int(n)} of 2" for n in valid]
-    assert design_columns(results_of(sampled_study(40))) == ([], {})
+    assert candidate_columns(results_of(sampled_study(40))) == ([], {})
 
 
 def test_names_of_users_cannot_end_the_data_and_the_policy_allows_nothing_else(tmp_path):

@@ -44,9 +44,7 @@ from trackroller.yaml_file import parse_yaml, write_yaml
 Values = dict[str, Any]
 POINTS = 21  # cases of a curve
 LIVE = ("forces", "contact", "friction_work", "peak_stress", "life", "tractions")
-_JUDGED = tuple(
-    dict.fromkeys(limit.group for limit in LIMITS.values() if limit.verdict is not None)
-)
+_JUDGED = tuple(dict.fromkeys(limit.group for limit in LIMITS.values() if limit.use is not None))
 # not searched, which takes up to 1 s
 _UNKNOWN = Limits((math.nan, math.nan), (math.nan, math.nan), math.nan)
 STILL = 0.01  # of the largest local creepage: elements that creep less count as adhering

@@ -23,8 +23,8 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from trackroller.damage import LIMITS, catalogue, judged, limit_word, wear
-from trackroller.damage.verdict import STATES
+from trackroller.damage import LIMITS, catalogue, checked_limits, limit_word, wear
+from trackroller.damage.first_limit import STATES
 from trackroller.parameters import BODIES, MATERIAL_FIELDS, REGIME_LABELS, REGIMES
 from trackroller.parameters.carriage_fields import long_name_of
 from trackroller.parameters.validity import VALIDITY
@@ -372,7 +372,7 @@ def _limits_of(own: xr.Dataset, state: str = "") -> Iterator[tuple[str, str, flo
     """Yield name, body, use and hours of the limits of a roller, or of those with a state alone."""
     if "limit_state" not in own:
         return
-    for limit in judged():
+    for limit in checked_limits():
         for body in limit.bodies:
             at = own.sel(limit=limit.name, body=body)
             if not state or int(at["limit_state"]) == STATES.index(state):

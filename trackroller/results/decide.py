@@ -116,7 +116,7 @@ class Decider:
                 sign = 1.0
             worst = np.full(own.count, np.inf)
             rows = own.reachable & ~np.isnan(values.astype(float))
-            np.minimum.at(worst, own.place[rows], sign * values[rows].astype(float))
+            np.minimum.at(worst, own.candidate[rows], sign * values[rows].astype(float))
             columns.append(np.where(np.isposinf(worst), -np.inf, worst)[:, None])
         return np.concatenate(columns, axis=1)
 
@@ -152,7 +152,7 @@ class Decider:
             return np.array([float(quantile(np.sort(values[rows]), 0.1)) for rows in own.rows])
         worst = np.full(own.count, np.inf)
         rows = own.reachable
-        np.minimum.at(worst, own.place[rows], values[rows])
+        np.minimum.at(worst, own.candidate[rows], values[rows])
         return np.where(np.isposinf(worst) | np.isnan(worst), 0.0, worst)
 
     def best_first(self, among: Iterable[int]) -> list[int]:
@@ -383,8 +383,8 @@ def _meets_without(own: Comparison, lost: np.ndarray) -> bool:
     if not own.drawn:
         return False  # the states of candidates leave out the conditions that none holds
     rows = own.own & ~lost
-    total = np.bincount(own.place[rows], minlength=own.count)
-    hits = np.bincount(own.place[rows & own.met()[1]], minlength=own.count)
+    total = np.bincount(own.candidate[rows], minlength=own.count)
+    hits = np.bincount(own.candidate[rows & own.met()[1]], minlength=own.count)
     return bool((hits[total > 0] >= own.wanted_share * total[total > 0]).any())
 
 

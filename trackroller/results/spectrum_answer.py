@@ -22,7 +22,7 @@ import pandas as pd
 import xarray as xr
 
 from trackroller.damage import LIMITS
-from trackroller.damage.verdict import STATES
+from trackroller.damage.first_limit import STATES
 from trackroller.numerics.numbers import number_or_nan
 from trackroller.parameters import BODIES, PARAMETERS, REGIME_LABELS, REGIMES
 from trackroller.parameters.carriage_fields import long_name_of

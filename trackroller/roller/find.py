@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from trackroller.damage import groups_of
-from trackroller.damage.verdict import GROUP as VERDICT
+from trackroller.damage.first_limit import GROUP as LIMITS_GROUP
 from trackroller.errors import InputError, unknown_name
 from trackroller.materials import MaterialDatabase, load_database
 from trackroller.numerics.brackets import narrowed
@@ -318,7 +318,7 @@ class _Search:
         self.results = sorted(used & set(PARTS))
         self.parameters = sorted(used & set(PARAMETERS))
         groups = {PARTS[result].variable.group for result in self.results} - {STATUS}
-        if VERDICT in groups:
+        if LIMITS_GROUP in groups:
             groups |= set(groups_of("find", ["all"]))
         self.options = {**options, "outputs": tuple(sorted(groups | {"forces"}))}
         self.ranged: set[str] = set()

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numba.core.registry import cpu_target
 
-from trackroller.damage import fatigue, judged, limits_of, verdict
+from trackroller.damage import checked_limits, fatigue, first_limit, limits_of
 from trackroller.damage.limit import Limit
 from trackroller.errors import InputError
 from trackroller.materials import load_database
@@ -226,7 +226,9 @@ def _solve_table(table: CaseTable, options: Options, single: bool) -> xr.Dataset
         assemble(block, options, single), worn, options, temperature.reasons(block) | lost
     )
     tell_errors(ds, worn, options)
-    checks_limits = verdict.GROUP in options.outputs or options.life_criterion in fatigue.STRESS_OF
+    checks_limits = (
+        first_limit.GROUP in options.outputs or options.life_criterion in fatigue.STRESS_OF
+    )
     warm = temperature.notes(worn, block)
     if checks_limits or warm or any(limit.shared for limit in limits_of(options.outputs)):
         ds.attrs[NOTES] = "\n".join([*notes_on_limits(worn, options), *warm])
@@ -382,13 +384,13 @@ def assemble(block: Block, options: Options, single: bool) -> xr.Dataset:
         if (
             name in VARIABLES
             and VARIABLES[name].group in options.outputs
-            and name != verdict.AT_MOST
+            and name != first_limit.AT_MOST
         )
         or name == "residual"
-        or (name == verdict.AT_MOST and options.at_most)
+        or (name == first_limit.AT_MOST and options.at_most)
         or (name == "error_estimate" and "peak_stress" in options.outputs)
         # the materials of these results are those at this temperature
-        or (name == "bulk_temperature_rise" and verdict.GROUP in options.outputs)
+        or (name == "bulk_temperature_rise" and first_limit.GROUP in options.outputs)
     ]
     attrs: dict[str, Any] = {
         **file_attributes("Forces, stresses and life of track rollers", "solved"),
@@ -404,15 +406,15 @@ def assemble(block: Block, options: Options, single: bool) -> xr.Dataset:
         flags["accuracy_used"] = block.rung
     grouped = {
         "first_to_fail": "life",
-        "limiting_mechanism": verdict.GROUP,
-        "limit_state": verdict.GROUP,
+        "limiting_mechanism": first_limit.GROUP,
+        "limit_state": first_limit.GROUP,
     }
     flags |= {
         name: block.values[name] for name, group in grouped.items() if group in options.outputs
     }
-    if verdict.GROUP in options.outputs:
+    if first_limit.GROUP in options.outputs:
         attrs["limits"] = " ".join(
-            limit.name for limit in judged(options.outputs, options.not_checked)
+            limit.name for limit in checked_limits(options.outputs, options.not_checked)
         )
     if options.stop_if is not None:
         flags["stopped"] = block.stopped

@@ -14,7 +14,7 @@ from typing import Any
 import markupsafe
 import numpy as np
 
-from trackroller.report.explorer.designs import design_columns
+from trackroller.report.explorer.candidate_columns import candidate_columns
 from trackroller.report.explorer.pack import affordable_rows, extreme_rows, pack, sample_rows
 from trackroller.report.explorer.rows import STATES, Column, collect, solve_inputs, strengths
 from trackroller.report.html import render
@@ -24,7 +24,7 @@ from trackroller.results.results import Results
 from trackroller.study.outputs import flat
 from trackroller.study.store.put import put_text
 
-MODEL = "contact_model"  # a Pareto set compares designs solved with one model
+MODEL = "contact_model"  # a Pareto set compares candidates solved with one model
 POLICY = "@content-security-policy@"  # stands in the templates where the policy is filled in
 
 
@@ -45,8 +45,8 @@ def explorer(results: Results) -> dict[str, Any]:
     columns = collect(results)
     settings, setting_columns = solve_inputs(results, {c.name: c for c in columns})
     columns += setting_columns
-    of_designs, lists = design_columns(results)
-    columns += of_designs
+    of_candidates, lists = candidate_columns(results)
+    columns += of_candidates
     state = next(c for c in columns if c.name == "state").values
     cases = len(state)
     chosen = pareto_rows(results, cases) | extreme_rows(

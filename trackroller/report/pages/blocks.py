@@ -16,7 +16,7 @@ from typing import Any
 
 from markupsafe import Markup
 
-from trackroller.damage import judged
+from trackroller.damage import checked_limits
 from trackroller.files import inert_cell
 from trackroller.report.headlines import WARNING_HEADS, headline_of, warning_rows
 from trackroller.report.numbers import carried, count, long_name, on_duty, plain, unit_text
@@ -135,7 +135,7 @@ def screen_of(answer: Answer) -> dict[str, Any]:
             "outputs": _outputs(answer),
             "definitions": list(definitions(answer)),
             "limits": [
-                (limit.word, limit.title) for limit in judged() if limit.word != limit.title
+                (limit.word, limit.title) for limit in checked_limits() if limit.word != limit.title
             ],
             "parts": [(part, part_rows(answer, part)) for part in answer.parts],
             "download": download_of(answer),
