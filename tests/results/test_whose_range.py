@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import json
+import re
 
 import numpy as np
 import pytest
 
 import trackroller as tr
 from trackroller.report.headlines import headline_of
+from trackroller.report.tables.rows import rows_of
 from trackroller.results.roller_answer import answer_of_roller
 
 BASE = {"axis_distance": 26, "contact_angle": 45, "motor_force": 0, "friction_coefficient": 0.2, "axial_force": 4}
@@ -124,3 +126,22 @@ def test_a_sheet_judges_the_life_of_the_roller_that_was_asked():
         answer = answer_of_roller(asked)
         assert answer.headline["states"] == [state]
         assert "required life of the roller at least" in headline_of(answer).text
+
+
+@pytest.mark.parametrize("wanted", [{"min": 20}, {"max": 200}])
+def test_an_output_of_a_roller_that_skids_everywhere_is_said_by_its_cause(wanted, tmp_path):
+    """All loads skid: the record says so, and neither headline nor table shows an infinite force."""
+    factors = {"roller_profile_radius": {"values": [-6.3, -7]}, "motor_force": {"values": [-60, -70]}}
+    base = {"radial_force": -60}
+    results = solved(base, factors=factors, requirement={"normal_force_1": wanted})
+    assert (results.table["regime"] == 1).all() and results.table["normal_force_1"].notna().all()
+    answer = results.answer
+    assert answer.headline["nearest"]["cause"] == "skids" and set(answer.table["ends"]) == {"skids"}
+    text = headline_of(answer).text
+    assert text.endswith("skids everywhere.")
+    tr.report(results, tmp_path / "page.html")
+    rows = rows_of(answer)
+    cells = [cell.text for row in rows.cells for cell in row]
+    assert "not held" in cells and not [one for one in (*cells, *rows.shared, text) if "\u221e" in one]
+    shown = re.sub(r"<script.*?</script>", "", (tmp_path / "page.html").read_text(), flags=re.S)
+    assert "\u221e N" not in shown and "\u2212\u221e" not in shown

@@ -39,7 +39,7 @@ Keys of `Answer.headline`; a key that is missing, None, NaN or empty is left out
 `nearest`          {name (as one of `names`), holds, judged, of, meets, perhaps, low, fails}:
                    `meets` and `perhaps` count the conditions that surely meet it and that may;
                    `judged` those that the model judges; `fails` says where it surely fails, in
-                   words
+                   words; `cause` why it holds nowhere ("skids"), '' otherwise
 `up_to`, `from_on`  levels of the single numeric choice between which all conditions meet the
                    requirement
 `share`, `share_low`, `share_high`  share of the drawn conditions that meets it, Wilson's interval
@@ -91,6 +91,7 @@ from trackroller.errors import listing
 from trackroller.parameters.carriage_fields import parameter_of
 from trackroller.report.bounds import bounds_of_output
 from trackroller.report.numbers import (
+    NOT_HELD,
     as_required,
     capital,
     carried,
@@ -99,6 +100,7 @@ from trackroller.report.numbers import (
     level_text,
     long_name,
     lowered,
+    may_be_lost,
     on_duty,
     percent,
     plain,
@@ -311,7 +313,7 @@ def _lasts(answer: Answer) -> list[str]:
         place = " at its worst condition"
         if _one_condition(answer):
             place = ""
-        clauses.append(f"{whose}{_value_said(answer)}{place}{_then(head)}")
+        clauses.append(f"{whose}{_at_worst(answer)}{place}{_then(head)}")
         if answer.kind in ELSEWHERE:
             clauses += _goals_said(head)
     clauses += _turn(head)
@@ -400,6 +402,8 @@ def _nearest(answer: Answer) -> list[str]:
     if _known(near, "low") and near["low"] > 0 and near["holds"] == near["of"]:
         clauses[0] += f", {_output(answer, near['low'])} at the worst"
     fails = _short(near.get("fails"))
+    if near.get("cause"):
+        return [*clauses, f"{near['cause']} everywhere"]
     if fails == "everywhere":
         return [*clauses, "fails everywhere"]
     if fails:
@@ -460,7 +464,18 @@ def _worst(answer: Answer) -> list[str]:
     head = answer.headline
     if not _known(head, "low"):
         return []
-    return [f"{_value_said(answer)} at the worst{_then(head)}"]
+    return [f"{_at_worst(answer)} at the worst{_then(head)}"]
+
+
+def _at_worst(answer: Answer) -> str:
+    """Return the value of the leader at its worst condition, or why it has none there: an output
+    that is no life has no value where the roller does not roll.
+    """
+    head = answer.headline
+    ends = [head["low"], head.get("high", head["low"])]
+    if may_be_lost(answer.question, answer.output[2]) and any(map(math.isinf, ends)):
+        return str(head.get("ends") or NOT_HELD)
+    return _value_said(answer)
 
 
 def what_matters(answer: Answer) -> Headline:

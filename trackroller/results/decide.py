@@ -283,11 +283,12 @@ class Decider:
         """
         own = self.own
         failed = own.reachable & own.ranges.judged & ~own.ranges.holds
-        number = np.bincount(own.place[failed], minlength=own.count)
+        number = np.bincount(own.candidate[failed], minlength=own.count)
         share = 0.0
         if own.drawn:
             share = 0.1
-        return np.asarray(number <= share * np.bincount(own.place[own.own], minlength=own.count))
+        of = np.bincount(own.candidate[own.own], minlength=own.count)
+        return np.asarray(number <= share * of)
 
     def _beats(self, one: int, other: int) -> bool:
         """Return whether a candidate is never worse than another one by more than the error, and
@@ -424,7 +425,10 @@ def _headline(own: Comparison, table: pd.DataFrame, decision: Decision) -> dict[
         head["nearest"] = {
             "name": names_of(own, [decision.order[0]])[0],
             **{key: plain(one[key]) for key in NEAREST},
+            "cause": "",
         }
+        if one["holds"] == 0 and one["judged"] == one["of"]:
+            head["nearest"]["cause"] = causes_text(own, own.rows[int(one["number"])])
     return head | _level_reached(own, table)
 
 
