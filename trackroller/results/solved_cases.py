@@ -502,8 +502,7 @@ class SolvedCases:
 
     @cached_property
     def judged_targets(self) -> dict[str, np.ndarray]:
-        """Return the life that judges a target on the life of a pair or a roller, shape (n,) each
-        [h].
+        """Return the life that judges a target on the life of a pair, shape (n,) each [h].
 
         It is the low end of the life to the first limit, as in the verdict: a longer life by one
         limit is of no use if another limit comes first. Other targets are judged by the result that
