@@ -916,12 +916,16 @@ def carriage(answer: Answer) -> Headline:
 def _carriage_lasts(answer: Answer, margins: Sequence[str]) -> Headline:
     """Say which roller ends first; a limit that is exceeded comes before it."""
     head = answer.headline
-    life = _life_to_end(head)
-    lasts = f"roller {head['roller']} ends first: {life}, {grouped(head['km'], 3)} km"
-    lasts = f"{_if_model_holds(head)}{lasts}"
     clauses = []
+    if _known(head, "at_most"):
+        lasts = f"roller {head['roller']} lasts {_at_most(head)}"
+        clauses.append(f"not on both contacts in {head['not_on_both']}")
+    else:
+        life = _life_to_end(head)
+        lasts = f"roller {head['roller']} ends first: {life}, {grouped(head['km'], 3)} km"
+    lasts = f"{_if_model_holds(head)}{lasts}"
     if head["limit"]:
-        clauses = [f"then {head['limit']} of the {head['body']}"]
+        clauses.append(f"then {head['limit']} of the {head['body']}")
     if _known(head, "part"):
         clauses.append(f"{percent(head['part'])} of it by {head['case']}")
     if head["unknown"]:
@@ -951,6 +955,9 @@ def end_of_carriage(answer: Answer) -> str:
     which limit.
     """
     head = answer.headline
+    if answer.kind == "lasts" and _known(head, "at_most"):
+        contacts = f"roller {head['roller']} is not on both contacts in {head['not_on_both']}"
+        return f"The carriage lasts {_at_most(head)}: {contacts}."
     if answer.kind != "lasts" or not head["limit"]:
         return ""
     if head["body"] == "guide":
@@ -958,7 +965,16 @@ def end_of_carriage(answer: Answer) -> str:
     else:
         place = f"roller {head['roller']}"
     reaches = f"then {place} reaches its first limit, {head['limit']}"
-    return f"The carriage lasts {_life_to_end(head)}: {reaches}."
+    bound = ""
+    if head["unknown"]:
+        bound = "at most "
+    return f"The carriage lasts {bound}{_life_to_end(head)}: {reaches}."
+
+
+def _at_most(head: Mapping[str, Any]) -> str:
+    """Return the bound of a life of which the damage of some load cases is not known."""
+    hours = f"{grouped(head['at_most'], 3)} h"
+    return f"at most {_noted(hours, [years_of(head['at_most'])])}"
 
 
 def _life_to_end(head: Mapping[str, Any]) -> str:

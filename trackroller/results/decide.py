@@ -38,7 +38,7 @@ from trackroller.results.study_facts import (
     lost_by_missing_input,
     not_given_words,
 )
-from trackroller.results.subgroups import places_of, places_text, plain
+from trackroller.results.subgroups import labels_in_place, places_of, places_text, plain
 from trackroller.results.turning_values import Turning
 from trackroller.roller.output_names import is_life
 
@@ -540,6 +540,7 @@ def _conditions_of(own: Comparison, rows: np.ndarray, of: int) -> dict[str, Any]
     first = np.flatnonzero(own.own)[np.unique(own.use[own.own], return_index=True)[1]]
     lost = np.isin(own.use[first], np.unique(own.use[rows]))
     names = [name for name in own.conditions if table[name].nunique() > 1]
+    names = labels_in_place(table.iloc[first], names, own.results.labels, lost)
     place = places_of(table.iloc[first], names, lost, np.ones(len(first), dtype=bool))
     where = places_text(place, table.iloc[first]) or causes_text(own, rows)
     return {"count": int(lost.sum()), "of": of, "where": where}
