@@ -265,13 +265,9 @@ def _solve_window(table: CaseTable, options: Options) -> Block:
 
     distinct = one_handed
     number = np.arange(len(table))
-    # limits of patches depend on the speed and on all values of the materials
-    if (
-        options.shortcuts
-        and len(table) > 1
-        and not stages_outcome.of_patches(_limits(one_handed, options))
-    ):
-        rows, number = distinct_contacts.distinct_mechanics(one_handed)
+    if options.shortcuts and len(table) > 1:
+        marks = stages_outcome.marks_of_limits(one_handed, options)
+        rows, number = distinct_contacts.distinct_mechanics(one_handed, marks)
         distinct = one_handed.take(rows)
         if options.at_most:
             distinct = stages_outcome.with_weakest(distinct, one_handed, number)
@@ -301,18 +297,21 @@ def _groups(table: CaseTable, options: Options) -> Iterator[tuple[str, int, np.n
     """Yield contact model, factor on the elements across, and rows of cases that can be solved in
     one batch.
 
-    Frictionless cases and those with a film are batches alone.
+    Frictionless cases and those with a film are batches alone, and so are cases with the same
+    limits.
     """
     bare = distinct_contacts.is_frictionless(table) & options.shortcuts
     across = finer_across(table, options)
     has_film = (table.layer_flexibility > 0.0).astype(float)
-    columns = bare, *(getattr(table, name) for name in MECHANICAL_MAPPINGS), has_film, across
+    limits = stages_outcome.marks_of_limits(table, options)[:, 0]
+    mappings = (getattr(table, name) for name in MECHANICAL_MAPPINGS)
+    columns = limits, bare, *mappings, has_film, across
     keys = list(zip(*(column.tolist() for column in columns), strict=True))
     rows: dict[tuple, list[int]] = {}
     for i, key in enumerate(keys):
         rows.setdefault(key, []).append(i)
     for key, own in rows.items():
-        yield model_in_use(options, key[1], key[-2]), key[-1], np.array(own)
+        yield model_in_use(options, key[2], key[-2]), key[-1], np.array(own)
     if not keys:
         yield options.contact_model, 1, np.arange(0)
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Sequence
 from functools import cache, partial
 from typing import TYPE_CHECKING
 
@@ -14,7 +14,7 @@ from trackroller.contact.drawn_profiles import gap
 from trackroller.contact.slip import pole_split
 from trackroller.damage import LIMITS, computed, judged, verdict
 from trackroller.damage.histories import RollerTractions
-from trackroller.damage.limit import TRACTIONS, Limit, SolvedRollers, Verdict
+from trackroller.damage.limit import TRACTIONS, Limit, SolvedRollers
 from trackroller.damage.wear import BEYOND_TABLE, KM_PER_HOUR
 from trackroller.damage.wear import TABLE as WEAR_TABLE
 from trackroller.halfspace.tractions import Tractions
@@ -134,11 +134,38 @@ def to_compute(solved: SolvedRollers, options: Options) -> tuple[Limit, ...]:
     case serves.
     """
     candidates = computed(options.outputs, options.not_checked, options.life_criterion)
-    return tuple(
-        own
-        for own in candidates
-        if own.group in options.outputs or own.verdict is None or own.served(solved)
-    )
+    return tuple(own for own in candidates if _has_results(own, solved, options).any())
+
+
+def _has_results(limit: Limit, solved: SolvedRollers, options: Options) -> np.ndarray:
+    """Return the cases for which a limit is computed, (n,) bool.
+
+    A case decides for itself, so that its results do not depend on the cases beside it.
+    """
+    if limit.group in options.outputs or limit.verdict is None:
+        return np.ones(len(solved.rolling_radius), dtype=bool)
+    return limit.served(solved)
+
+
+def marks_of_limits(table: CaseTable, options: Options) -> np.ndarray:
+    """Return two numbers of each case that others with the same mechanics may lack, (n, 2).
+
+    The first is that of the set of limits whose needs have to be computed for the case, and cases
+    are solved together only if it is equal. The second is a number of the case alone if one of
+    these limits needs the tractions of each case, see `of_patches`, and otherwise 0.
+    """
+    solved = solved_of(table, {}, options)
+    mark = np.zeros(len(table))
+    alone = np.zeros(len(table), dtype=bool)
+    for place, limit in enumerate(
+        computed(options.outputs, options.not_checked, options.life_criterion)
+    ):
+        if limit.needs or limit.shared is not None:
+            concerned = _has_results(limit, solved, options)
+            mark += concerned * 2.0**place
+            if of_patches([limit]):
+                alone |= concerned
+    return np.stack([mark, np.where(alone, 1.0 + np.arange(len(table)), 0.0)], axis=1)
 
 
 def of_patches(limits: Iterable[Limit]) -> tuple[Limit, ...]:
@@ -181,10 +208,10 @@ def limits(
     on_patches = of_patches(computed_limits)  # see `patch_limits`
     for limit in computed_limits:
         if limit not in on_patches:
-            v |= limit.evaluate(solved)
+            v |= _evaluated(limit, solved, options)
     places = [solved]
-    if any(limit.moves(solved) for limit in computed_limits):
-        places += [_at_end(solved, computed_limits, end) for end in (0, 1)]
+    if any(limit.moves(solved).any() for limit in computed_limits):
+        places += [_at_end(solved, computed_limits, options, end) for end in (0, 1)]
         for end, place in zip(("low", "high"), places[1:], strict=True):
             names = [
                 result.name
@@ -196,36 +223,61 @@ def limits(
     if verdict.GROUP in options.outputs:
         names = list(LIMITS)
         counted = judged(options.outputs, options.not_checked)
-        known = list(counted)
-        for i, limit in enumerate(counted):
-            if limit not in computed_limits:
-                known[i] = _nothing(limit)
-        v |= verdict.verdict(
-            places, known, [names.index(limit.name) for limit in counted], len(names)
-        )
+        numbers = [names.index(limit.name) for limit in counted]
+        known = _known_verdicts(counted, solved, options)
+        v |= verdict.verdict(places, counted, numbers, len(names), known)
     for name in [name for name in v if name.startswith("_") and name != BEYOND_TABLE]:
         del v[name]
 
 
-def _nothing(limit: Limit) -> Limit:
-    """Return a limit that no case serves, with a verdict that knows nothing."""
-    unknown = Verdict(None, None)
-    return dataclasses.replace(limit, verdict=lambda solved, results: unknown, bound=None)
+def _known_verdicts(limits: Sequence[Limit], solved: SolvedRollers, options: Options) -> np.ndarray:
+    """Return for which cases the limits of the verdict were computed, (n, limit) bool."""
+    own = [_has_results(limit, solved, options) for limit in limits]
+    return np.array(own, dtype=bool).reshape(len(limits), -1).T
 
 
-def _at_end(solved: SolvedRollers, limits: tuple[Limit, ...], end: int) -> SolvedRollers:
+def _evaluated(limit: Limit, solved: SolvedRollers, options: Options) -> dict[str, np.ndarray]:
+    """Return the results of a limit; cases for which it is not computed keep their values, or have
+    NaN.
+    """
+    concerned = _has_results(limit, solved, options)
+    return _of_cases(concerned, limit.evaluate(solved), solved.values)
+
+
+def _of_cases(
+    concerned: np.ndarray, own: Mapping[str, np.ndarray], others: Mapping[str, np.ndarray]
+) -> dict[str, np.ndarray]:
+    """Return values (n, ...) of the cases concerned, and for the others those of the same name or
+    NaN.
+    """
+    if concerned.all():
+        return dict(own)
+    return {
+        name: np.where(
+            concerned.reshape(-1, *(1,) * (value.ndim - 1)), value, others.get(name, np.nan)
+        )
+        for name, value in own.items()
+    }
+
+
+def _at_end(
+    solved: SolvedRollers, limits: tuple[Limit, ...], options: Options, end: int
+) -> SolvedRollers:
     """Return the rollers and their results with the placeholders at the worse (0) or the better (1)
     end.
     """
     values = dict(solved.values)
     moved = solved.at_end(end)
     on_patches = of_patches(limits)
-    for limit in (limit for limit in limits if limit.moves(solved)):
+    for limit in limits:
+        concerned = limit.moves(solved) & _has_results(limit, solved, options)
+        if not concerned.any():
+            continue
         if limit in on_patches:
             own = {result.name: values[f"_{end}_{result.name}"] for result in limit.results}
         else:
             own = limit.evaluate(dataclasses.replace(moved, values=values))
-        values |= own
+        values |= _of_cases(concerned, own, values)
     return dataclasses.replace(moved, values=values)
 
 
@@ -257,7 +309,7 @@ def patch_limits(results: StageResults, options: Options, limits: tuple[Limit, .
         ready = solved
         if limit.shared is not None:
             ready = dataclasses.replace(solved, values=results.values | limit.shared(solved))
-        if limit.moves(solved):
+        if limit.moves(solved).any():
             for end in (0, 1):
                 at_end = limit.evaluate(ready.at_end(end))
                 results.values |= {f"_{end}_{one.name}": at_end[one.name] for one in limit.results}
@@ -298,7 +350,8 @@ def outlives_groove(table: CaseTable, block: Block, options: Options) -> np.ndar
     solved = solved_of(table, v, options.changed(at_most=()), block.regime)
     run_in = v["run_in_distance"] / (KM_PER_HOUR * table.velocity)
     counted = [own for own in to_compute(solved, options) if own.verdict is not None]
-    known = verdict.verdict([solved], counted, range(len(counted)), len(counted))
+    computed_for = _known_verdicts(counted, solved, options)
+    known = verdict.verdict([solved], counted, range(len(counted)), len(counted), computed_for)
     return np.asarray(known["life_to_first_limit_hours"] > run_in[:, None])
 
 
@@ -356,6 +409,7 @@ def validity(table: CaseTable, block: Block, options: Options) -> None:
         if "run_in_distance" in v:
             warn("worn", outlives_groove(table, block, options))
         if BEYOND_TABLE in v:
-            warn("wear_extrapolated", v.pop(BEYOND_TABLE))
+            # NaN where the wear of a case is not computed
+            warn("wear_extrapolated", v.pop(BEYOND_TABLE) > 0.0)
     block.bodies = body | block.bits[:, None]  # The flags of the equilibrium hold for both bodies.
     block.bits |= body[:, 0] | body[:, 1]
