@@ -93,6 +93,16 @@ def test_a_row_of_mixed_limits_is_the_same_alone(model, given, seed):
         assert_row(block, i, turned.isel(case=[i]))
 
 
+def test_to_leave_out_every_limit_is_refused():
+    every = [own.name for own in judged()]
+    with pytest.raises(tr.InputError, match=r"leaves out every limit.*Name fewer limits, or remove limits"):
+        tr.solve([tr.Case()], OUTPUTS, not_checked=every)
+    fewer = tr.solve([tr.Case()], OUTPUTS, not_checked=every[1:], contact_model="sliding")
+    assert np.isfinite(fewer.utilisation.sel(limit=every[0])).all()
+    without = tr.solve([tr.Case()], OUTPUTS[:-1], not_checked=every, contact_model="sliding")
+    assert "utilisation" not in without
+
+
 def test_the_rows_serve_and_lack_every_limit():
     """The sample is one that can fail: of each limit, some rows have a number and others have none."""
     ds = tr.solve(mixed_rows(40, 60), OUTPUTS, contact_model="sliding")
