@@ -13,7 +13,7 @@ import numpy as np
 from trackroller.parameters.accuracy import PEAK_OUTPUTS, RUNGS
 from trackroller.parameters.contact_models import DECLARED
 from trackroller.roller import distinct_contacts
-from trackroller.roller.stages.outcome import marks_of_limits
+from trackroller.roller.case_limits import marks_of_limits
 
 if TYPE_CHECKING:
     from trackroller.roller.case import CaseTable
