@@ -246,6 +246,13 @@ def test_an_answer_without_a_solution_loads_no_heavy_package(words, code, heavy,
     assert not loaded & (heavy | {"xarray", "matplotlib"})
 
 
+def test_a_plan_needs_no_compiled_solver(tmp_path):
+    """What a case serves of the limits is known without the solver."""
+    text = "import sys, trackroller.cli.study; print('numba' in sys.modules)"
+    done = subprocess.run([sys.executable, "-c", text], capture_output=True, text=True, cwd=tmp_path)
+    assert done.stdout.split() == ["False"], done.stderr
+
+
 # with what `trackroller solve` takes 1.5 s of processor time; each of these packages takes 0.03 to 0.3 s more
 NOT_FOR_ONE_ROLLER = {
     *("dask.base", "pint.registry", "jinja2", "matplotlib", "SALib", "netCDF4"),

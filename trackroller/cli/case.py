@@ -145,8 +145,8 @@ def _left_out(words: str) -> tuple[str, ...]:
 def _served(case: Case, options: Mapping[str, Any]) -> tuple[str, ...]:
     """Return the groups of outputs of the checked limits whose inputs a case gives."""
     from trackroller.roller.case import to_table
+    from trackroller.roller.case_limits import solved_of, to_compute  # heavy: as above
     from trackroller.roller.options import Options
-    from trackroller.roller.stages.outcome import solved_of, to_compute  # heavy: as above
 
     of_limits = Options(**{**options, "outputs": ("limits",)})
     limits = to_compute(solved_of(to_table(case), {}, of_limits), of_limits)
