@@ -355,12 +355,10 @@ class SolvedCases:
     def material(self, body: str) -> np.ndarray:
         """Return the name of the material of a body in every case, shape (n,)."""
         if "material_pair" in self.table:
-            return (
-                self.table["material_pair"]
-                .str.split(" / ")
-                .str[BODIES.index(body)]
-                .to_numpy(dtype=str)
-            )
+            # a study has few pairs in many cases
+            number, pairs = pd.factorize(self.table["material_pair"], use_na_sentinel=False)
+            names = pd.Series(pairs).str.split(" / ").str[BODIES.index(body)]
+            return names.to_numpy(dtype=str)[number]
         name = f"{body}_material"
         given = self.table.get(name, pd.Series(str(self.base.get(name, "")), self.table.index))
         return given.to_numpy(dtype=str)
