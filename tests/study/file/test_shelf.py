@@ -299,7 +299,11 @@ def test_names_of_rows_may_be_figures(tmp_path, monkeypatch):
     ("text", "more", "message"),
     [
         (TABLE.replace("small", "smal"), {}, r"cases.csv, line 3: roller = 'smal' is not known.*'small'"),
-        (TABLE.replace("axial_force", "axis_distance").replace(",0\n", ",9\n"), {}, "column axis_distance is in factors.roller too"),
+        (
+            TABLE.replace("axial_force", "axis_distance").replace(",0\n", ",9\n"),
+            {},
+            "column axis_distance is in factors.roller too",
+        ),
         (TABLE.replace("roller,", "own,"), {}, "Add a column roller to the table"),
         (TABLE, {"radial_force": {"values": [-1, -2]}}, "Remove it, or the column radial_force of the table"),
         (TABLE, {"velocity": {"values": [10, 20]}}, "Only expressions and shelves may stand beside a table"),
@@ -311,3 +315,11 @@ def test_what_stands_beside_a_table_in_vain_is_refused(text, more, message, tmp_
         of_table(tmp_path, monkeypatch, text, factors=factors)
     if "smal," in text:  # as the message says
         assert of_table(tmp_path, monkeypatch, TABLE, factors=factors).drawn.size == 3
+
+
+@pytest.mark.parametrize("cell", ["small", "A-1"])
+def test_a_line_end_in_a_text_of_a_row_is_refused(cell, tmp_path, monkeypatch):
+    rows = [row.replace(cell, f'"{cell}\n2"') for row in ROWS]
+    with pytest.raises(InputError, match=r"rollers.csv, line 3: .* holds a control character"):
+        study(tmp_path, monkeypatch, rows)
+    assert study(tmp_path, monkeypatch, [row.replace("\n", "") for row in rows]).parsed  # as the message says

@@ -22,7 +22,7 @@ from trackroller.damage.bearing import FIELD as BEARING
 from trackroller.damage.catalogue import FIELD as CATALOGUE
 from trackroller.damage.mapping import MappingField
 from trackroller.damage.stud import FIELD as STUD
-from trackroller.errors import Collector, InputError, nearest, raise_all
+from trackroller.errors import Collector, InputError, checked_text, nearest, raise_all
 from trackroller.files import find_beside
 from trackroller.methods.factor import ROWS
 from trackroller.numerics.numbers import finite_number
@@ -428,6 +428,7 @@ def _note_names(table: UserTable, shelf: str, path: Path, places: Places) -> Non
                 raise InputError("name", name, "a name in each row", "Name the row.").at(
                     path, number
                 )
+            _checked_cell(name, "name", (path, number))
             if before is not None:
                 stands = f"stands in line {before[1]} too"
                 error = InputError(
@@ -487,8 +488,26 @@ def _own_columns(
         elif all(_is_plain_number(cell) for cell in cells.values() if cell):
             columns[name] = [float(cell) if cell else None for cell in cells.values()]
         else:
-            columns[name] = [str(cell) for cell in cells.values()]
+            columns[name] = [
+                _checked_text_of(head, cell, (path, number), wrong)
+                for number, cell in cells.items()
+            ]
     return columns, shown
+
+
+def _checked_text_of(head: str, cell: str, place: Place, wrong: Collector) -> str:
+    """Return a cell of a column of words; a character that tables cannot show adds an error."""
+    with wrong.part():
+        _checked_cell(cell, head, place)
+    return str(cell)
+
+
+def _checked_cell(cell: str, head: str, place: Place) -> None:
+    """Refuse a text with line ends, or with other characters that tables cannot show."""
+    try:
+        checked_text(cell, head)
+    except InputError as error:
+        raise error.at(*place) from None
 
 
 def _is_plain_number(cell: str) -> bool:
