@@ -52,6 +52,7 @@ FIELDS = (BEARING, CATALOGUE, STUD)  # mappings of a case whose keys are columns
 PROFILES = ("roller_profile", "guide_profile")  # their cells name files of points
 OUTER_DIAMETER = "outer_diameter"  # of the bearings in a shelf of bearings
 MEASURED = ("kg", "mm", "N", "N mm", "MPa", "h", "W", "K")  # units to which those of goods convert
+MANY_GROOVES = 5  # beside which a single convex roller is asked about
 CURRENCIES = ("EUR", "USD", "GBP", "CHF", "JPY", "CNY", "SEK", "PLN", "CZK", "INR", "KRW")
 KIND = "shelf"  # of the file, in messages
 Keys = Mapping[str, tuple[MappingField, str]]
@@ -163,10 +164,11 @@ def _sound_rows(
         filled = _filled(shelf, places.leave_out(shelf, rows, error), values)
     for name in {*base} - {*values}:
         del base[name]
-    try:
-        _check_ratings(shelf, filled)
-    except InputError as error:
-        return list(places.leave_out(shelf, filled, error))
+    for check in (_check_ratings, _check_grooves):
+        try:
+            check(shelf, filled)
+        except InputError as error:
+            filled = list(places.leave_out(shelf, filled, error))
     return filled
 
 
@@ -302,6 +304,28 @@ def _check_ratings(shelf: str, rows: list[dict[str, Any]]) -> None:
         )
         for name in larger
     )
+
+
+def _check_grooves(shelf: str, rows: list[dict[str, Any]]) -> None:
+    """Refuse a convex roller in a shelf whose other rollers have grooves: a sign is lost easily.
+
+    A shelf with several convex rollers means them.
+    """
+    name = "roller_profile_radius"
+    parameter = PARAMETERS[name]
+    radii = {str(row.get("name")): finite_number(row.get(name), parameter.unit) for row in rows}
+    convex = [row for row, radius in radii.items() if radius > 0]
+    grooves = [row for row, radius in radii.items() if radius < 0]
+    if len(convex) != 1 or len(grooves) < MANY_GROOVES:
+        return
+    field = f"{field_of_row(shelf, convex[0])}.{name}"
+    remedy = (
+        f"Write {-radii[convex[0]]:g} for a groove, or put the convex roller into a shelf of its "
+        "own."
+    )
+    allowed = "a radius below 0, as in the other rows"
+    wrong = "is that of a convex roller"
+    raise InputError(field, f"{radii[convex[0]]:g} mm", allowed, remedy, wrong)
 
 
 def _read(shelf: str, file: Any, places: Places) -> dict[str, Any]:
@@ -527,7 +551,7 @@ def _number(head: str, cell: str, unit: str, place: Place, wrong: Collector) -> 
     number = finite_number(cell.removesuffix(unit).strip())
     with wrong.part():
         try:
-            if math.isnan(number):
+            if math.isnan(number) and unit not in CURRENCIES:
                 number = finite_number(cell, unit, head)
             if math.isnan(number):
                 raise InputError(
