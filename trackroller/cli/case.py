@@ -347,8 +347,8 @@ def solve_and_tell(  # noqa: PLR0913 - one argument for each option of the comma
     chosen = _options(given, options, limits, page is not None, plain)
     if no_shortcuts:
         chosen["shortcuts"] = False
-    tell_start(case, settings)
     dataset = solve_case(given, options, beside, **chosen)
+    tell_start(case, settings)
     if target is not None:
         _write_roller(dataset, target, book)
     if page is not None:

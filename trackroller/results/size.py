@@ -27,6 +27,7 @@ from trackroller.numerics.numbers import finite_number
 from trackroller.numerics.plain import mapping_of
 from trackroller.parameters import PARAMETERS
 from trackroller.parameters.example import EXAMPLE, used_of
+from trackroller.results.life_columns import FIRST_LIMIT
 from trackroller.results.load_ratio import EXACT, FORCES, LoadRatios, load_ratios
 from trackroller.results.mounting import Mounting, rollers_by_place
 from trackroller.results.results import Results
@@ -504,7 +505,7 @@ def _life_of(keys: Mapping[str, Any]) -> str:
             return DEFAULT
     if OVERROLLINGS in keys["base"] or OVERROLLINGS in keys["factors"]:
         return DEFAULT
-    return "roller_life_hours"
+    return FIRST_LIMIT[0]
 
 
 def _path_of(case: Any) -> Path | None:
