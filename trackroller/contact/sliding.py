@@ -26,6 +26,7 @@ from trackroller.contact.slip import (
     rolling_slip,
     spin_model_index,
 )
+from trackroller.halfspace.tractions import lengths
 from trackroller.numerics.quadrature import clustered_rule
 from trackroller.numerics.threads import share_rows
 
@@ -188,7 +189,7 @@ def tractions(
         unit = (2.0 * np.arange(points) + 1.0) / points - 1.0
     x, y, pressure = ellipse.pressures(unit)
     slip_x, slip_y = slip_field(ellipse, slip, x[:, None, :], y[:, :, None], spin_model)
-    speed = np.hypot(slip_x, slip_y)
+    speed = lengths(slip_x, slip_y)
     bound = friction[:, None, None] * pressure / np.where(speed > 0, speed, np.inf)
     if law is not None:
         bound = bound * law(speed * np.broadcast_to(travel_speed, len(x))[:, None, None])

@@ -19,7 +19,7 @@ from trackroller.study.file.questions import QUESTIONS as QUESTIONS
 
 # of the keys of `Answer.to_dict`; a key that is new or renamed, or that changes its meaning,
 # raises it
-VERSION = 2
+VERSION = 3
 WARNINGS = {  # code -> what it means
     "not_held": "cases that skid, lift off, break, or exceed a limit",
     "not_judged": "cases that the model cannot judge",
@@ -102,8 +102,8 @@ class Curve:
     factor, title, units : the factor with its words and unit
     role : `choice`, `condition` or ''
     levels : values of the factor, shape (k,)
-    middle, low, high : of the output at each level: the fit, or the median of like cases, and the
-        tenth and the ninetieth hundredth of the cases, shape (k,) each [unit of the output]
+    middle, low, high : of the output at each level, and the tenth and the ninetieth hundredth of
+        the cases, shape (k,) each [unit of the output]
     logarithmic : whether the levels stand on a logarithmic axis
     ordered : whether the levels have an order
     height : largest over smallest middle [1]; of an output that is not above 0 everywhere largest
@@ -112,6 +112,9 @@ class Curve:
     rows : cases that it rests on
     left_out : valid cases that lack a partner at some level
     by_ratio : whether `height` is a ratio; otherwise it is a difference
+    by : what it is made of: `like cases` that are there at all levels, a `fit`, `changes` between
+        cases that differ in this factor alone, or `drawn cases` at each level, which differ in all
+        factors
     """
 
     factor: str
@@ -129,6 +132,7 @@ class Curve:
     rows: int
     left_out: int = 0
     by_ratio: bool = True
+    by: str = "like cases"
 
 
 @dataclass(frozen=True)

@@ -20,6 +20,7 @@ from trackroller.parameters import PARAMETERS
 from trackroller.roller.aliases import AXIS_DISTANCE, RADII
 from trackroller.study.design.entries import (
     FACTOR_NAMES,
+    SHELVES,
     check_own_name,
     field_value,
     names_without_blanks,
@@ -146,6 +147,8 @@ def _check_meaning(name: str, bare: str, unit: str, names: Collection[str]) -> N
 
 def _numbers_of(name: str, cells: Mapping[int, str]) -> np.ndarray | None:
     """Return a column of plain numbers that its parameter allows, None for any other column."""
+    if name in SHELVES:  # names of rows, also where they are digits
+        return None
     if name not in PARAMETERS:
         if name in FACTOR_NAMES or not all(isinstance(cell, Stored) for cell in cells.values()):
             return None
