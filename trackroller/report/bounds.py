@@ -10,7 +10,7 @@ def required_of_output(answer: Answer) -> list[Required]:
     """Return what is required of the output of an answer.
 
     A required life of the pair or the roller is compared with the life to the first limit, as its
-    verdict is.
+    state is.
     """
     name = answer.output[0]
     names: tuple[str, ...] = (name,)

@@ -146,7 +146,7 @@ def decide(answer: Answer) -> Headline:
     if head.get("not_held") and head.get("elsewhere") and answer.kind in ELSEWHERE:
         lost = f"None holds in {_part(head['not_held'], 'conditions')}"
         lead = f"{lost}; elsewhere {ELSEWHERE[answer.kind](answer)}"
-        clauses = [_value_said(answer), *_goals_said(head), *_other_rules(head)]
+        clauses = [_value_said(answer), *_goal_clauses(head), *_other_rules(head)]
         return Headline(lead, f": {'; '.join(clauses)}.")
     shares = _known(head, "share") and bool(answer.required)
     if shares and answer.kind != "none":
@@ -266,7 +266,7 @@ def _lasts(answer: Answer) -> list[str]:
             place = ""
         clauses.append(f"{whose}{_value_said(answer)}{place}{_then(head)}")
         if answer.kind in ELSEWHERE:
-            clauses += _goals_said(head)
+            clauses += _goal_clauses(head)
     clauses += _turn(head)
     if answer.kind == "cannot_tell":
         others = []
@@ -290,10 +290,12 @@ def _one_condition(answer: Answer) -> bool:
     return conditions in (1, [1, 1], (1, 1))
 
 
-def _goals_said(head: Mapping[str, Any]) -> list[str]:
+def _goal_clauses(head: Mapping[str, Any]) -> list[str]:
     """Return the goals that the leader follows beside the requirement."""
-    goals = head.get("goals") or ()
-    return [listing([_goal(one) for one in goals])] if goals else []
+    goals = head.get("goals")
+    if not goals:
+        return []
+    return [listing([_goal(one) for one in goals])]
 
 
 def _tenth(answer: Answer) -> str:
