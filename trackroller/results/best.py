@@ -44,6 +44,7 @@ from trackroller.results.study_facts import (
     given_for_nothing,
     not_given_words,
 )
+from trackroller.results.turning_values import value_behind
 from trackroller.roller.output_names import is_life
 from trackroller.study.design.levels import in_words
 from trackroller.study.file.search import judged_by
@@ -211,7 +212,8 @@ def answer_of_search(results: SolvedCases) -> Answer:
         solution leaves the requirement open), `open` (a range leaves it open), or `none`: no
         candidate holds, or none meets the requirement. The headline holds `designs` (name, goals,
         `at`, `stopped`), `binds`, `accuracy`, `extrapolated`, `second` and `exceeded`. Where no
-        candidate is known to meet the requirement, `nearest` stands in place of `designs`.
+        candidate is known to meet the requirement, `nearest` stands in place of `designs`;
+        `measure` of `open` is the value whose range leaves it open.
 
     Raises
     ------
@@ -281,6 +283,10 @@ def _headline(outcome: _Outcome, kind: str) -> dict[str, Any]:
         "count": int(outcome.front.sum()),
     }
     if not head["designs"]:
+        if kind == "open":
+            head["measure"] = value_behind(
+                outcome.results, outcome.judges, _numbers(outcome, chosen)
+            )
         return head | {"nearest": _nearest(outcome, chosen)}
     if outcome.is_required and _is_drawn(outcome):
         own = _requirement(outcome, chosen)
@@ -341,12 +347,19 @@ def _nearest(outcome: _Outcome, number: int) -> dict[str, Any]:
     return {
         "name": _name(outcome, number),
         "holds": int(outcome.results.holds[rows].sum()),
+        "judged": int(outcome.ranges.judged[rows].sum()),
         "meets": round(float(meets) * of),
         "perhaps": round(float(perhaps) * of),
         "of": of,
         "low": low,
         "verdict": str(outcome.states[number]),
     }
+
+
+def _numbers(outcome: _Outcome, number: int) -> np.ndarray:
+    """Return the numbers of the cases of a design, shape (k,)."""
+    rows = outcome.rows(number)
+    return np.arange(rows.start, rows.stop)
 
 
 def _name(outcome: _Outcome, number: int) -> dict[str, Any]:

@@ -26,7 +26,7 @@ from trackroller.parameters import BODIES
 from trackroller.results.load_ratio import EXACT, load_ratios_of_cases
 from trackroller.results.size_verdicts import LIMIT_OF
 from trackroller.roller.aliases import RADII
-from trackroller.study.design.entries import CASE_FIELDS
+from trackroller.study.design.factor_names import CASE_FIELDS
 from trackroller.study.file.shelf import ROLLER
 from trackroller.study.file.study import Study
 

@@ -18,14 +18,14 @@ from trackroller.numerics.table_cells import RefusedCell, Stored, is_number, spl
 from trackroller.numerics.units import PLAIN, in_unit
 from trackroller.parameters import PARAMETERS
 from trackroller.roller.aliases import AXIS_DISTANCE, RADII
-from trackroller.study.design.entries import (
+from trackroller.study.design.factor_names import (
     FACTOR_NAMES,
     SHELVES,
     check_own_name,
-    field_value,
     names_without_blanks,
     without_blanks,
 )
+from trackroller.study.design.field_values import field_value
 from trackroller.study.file.user_columns import column_names, read_table
 from trackroller.tables.user_table import UserTable
 
