@@ -93,6 +93,7 @@ class Lives:
         """Return the cases with the flag `worn` of each roller over all its load cases."""
         if "life_to_first_limit_hours" not in self.summed:
             return self.solved
+        # the number of the roller of each case: `order` sorts the cases by roller
         roller = np.empty(len(self.order), dtype=int)
         roller[self.order] = np.repeat(np.arange(len(self.first)), self.counts)
         km = self.summed["life_to_first_limit_hours"] / self.hours[:, None]

@@ -838,28 +838,27 @@ class _Checks:
         """Take the limits of rollers that were solved together; one that is unknown in a load case
         is not known.
         """
-        places = [self.names.index(name) for name in solved["limit"].values.tolist()]
-        state = lives.summed["limit_state"].copy()
-        shares = (lives.share == 0)[:, None, None]
-        least = lives.of(
-            np.where(shares, len(first_limit.STATES), solved["limit_state"].values), np.minimum
-        )
-        exceeded = first_limit.STATES.index("exceeded")
-        state[(least == first_limit.STATES.index("unknown")) & (state != exceeded)] = (
-            first_limit.STATES.index("unknown")
-        )
-        into = np.ix_(rollers, np.array(places))
-        self.state[into] = state
+        limits = solved["limit"].values.tolist()
+        into = np.ix_(rollers, np.array([self.names.index(name) for name in limits]))
+        self.state[into] = self._states(lives, solved)
         self.used[into] = lives.summed["utilisation"]
         self.hours[into] = lives.summed["life_hours_by_limit"]
-        self.requested += [
-            name for name in solved["limit"].values.tolist() if name not in self.requested
-        ]
-        self.notes += [
-            line
-            for line in str(solved.attrs.get(NOTES, "")).split("\n")
-            if line and line not in self.notes
-        ]
+        self.requested += [name for name in limits if name not in self.requested]
+        notes = str(solved.attrs.get(NOTES, "")).split("\n")
+        self.notes += [line for line in notes if line and line not in self.notes]
+
+    @staticmethod
+    def _states(lives: Lives, solved: xr.Dataset) -> np.ndarray:
+        """Return the state of each limit over all load cases, (roller, limit, body): unknown if it
+        is unknown in a load case that counts, unless another one exceeds it.
+        """
+        unknown = first_limit.STATES.index("unknown")
+        exceeded = first_limit.STATES.index("exceeded")
+        state = lives.summed["limit_state"].copy()
+        counts = (lives.share != 0)[:, None, None]
+        is_unknown = lives.of(counts & (solved["limit_state"].values == unknown), np.logical_or)
+        state[is_unknown & (state != exceeded)] = unknown
+        return state
 
     def variables(self) -> dict[str, Any]:
         """Return utilisation, hours and state of each limit as variables, with their labels."""

@@ -155,7 +155,7 @@ def decide(answer: Answer) -> Headline:
     lost = _lost(head)
     if lost and head.get("elsewhere") and answer.kind in ELSEWHERE:
         lead = capital(f"{listing(lost)}; elsewhere {ELSEWHERE[answer.kind](answer)}")
-        clauses = [_value_said(answer), *_goals_said(head), *_other_rules(head)]
+        clauses = [_value_said(answer), *_goal_clauses(head), *_other_rules(head)]
         return Headline(lead, f": {'; '.join(clauses)}.")
     shares = _known(head, "share") and bool(answer.required)
     if shares and answer.kind != "none":
@@ -315,7 +315,7 @@ def _lasts(answer: Answer) -> list[str]:
             place = ""
         clauses.append(f"{whose}{_at_worst(answer)}{place}{_then(head)}")
         if answer.kind in ELSEWHERE:
-            clauses += _goals_said(head)
+            clauses += _goal_clauses(head)
     clauses += _turn(head)
     if answer.kind == "cannot_tell":
         others = []
@@ -339,10 +339,12 @@ def _one_condition(answer: Answer) -> bool:
     return conditions in (1, [1, 1], (1, 1))
 
 
-def _goals_said(head: Mapping[str, Any]) -> list[str]:
+def _goal_clauses(head: Mapping[str, Any]) -> list[str]:
     """Return the goals that the leader follows beside the requirement."""
-    goals = head.get("goals") or ()
-    return [listing([_goal(one) for one in goals])] if goals else []
+    goals = head.get("goals")
+    if not goals:
+        return []
+    return [listing([_goal(one) for one in goals])]
 
 
 def _tenth(answer: Answer) -> str:

@@ -578,7 +578,7 @@ MOST_FACTORS = 2  # whose levels describe where a candidate fails
 
 def _second_models(own: Comparison) -> dict[str, Any]:
     """Return the life of each candidate by the second model that is shortest, with its name and its
-    verdict.
+    state.
 
     A second model that knows no life of a body whose fatigue is known says nothing of this
     candidate.

@@ -340,7 +340,7 @@ def _first_margins(ds: xr.Dataset) -> Iterator[dict[str, Any]]:
 
 
 def _required(table: pd.DataFrame) -> tuple[Required, ...]:
-    """Return the life that is required of the rollers with the worst verdict; () without a
+    """Return the life that is required of the rollers with the worst state; () without a
     requirement.
     """
     required = table["required"][table["state"] == _judged(table)["state"]]
@@ -350,7 +350,7 @@ def _required(table: pd.DataFrame) -> tuple[Required, ...]:
 
 
 def _judged(table: pd.DataFrame) -> dict[str, Any]:
-    """Return the worst verdict of the rollers, and which rollers have it where others have another
+    """Return the worst state of the rollers, and which rollers have it where others have another
     one.
     """
     states = table["state"]

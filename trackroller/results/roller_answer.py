@@ -415,9 +415,9 @@ def _row(margin: Margin, least: float) -> dict[str, Any]:
         model = "no fatigue life"
     state = margin.state
     if margin.ends and state != "exceeded" and math.isfinite(least):
-        verdict = state_of_life(margin.soonest, margin.latest, least)
-        if verdict != "met":
-            state = verdict
+        state_by_life = state_of_life(margin.soonest, margin.latest, least)
+        if state_by_life != "met":
+            state = state_by_life
     if margin.lifeless:
         state = "none"
     elif state == "kept" and margin.used > 1.0:
