@@ -12,17 +12,18 @@ from __future__ import annotations
 
 import graphlib
 from collections.abc import Collection, Mapping
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from trackroller.errors import InputError, check_names, unknown_name
+from trackroller.errors import Collector, InputError, check_names, unknown_name
 from trackroller.methods import METHODS, Design, those_that_take, those_with
 from trackroller.methods.factor import Factor, parse, readable
 from trackroller.methods.grid import MAX_ROWS
 from trackroller.methods.table import of_columns
 from trackroller.parameters import PARAMETERS, expressions
-from trackroller.study.design.read_table import genes, table
+from trackroller.study.design.read_table import genes, table, table_lines
 
 
 def sample(
@@ -71,11 +72,11 @@ def sample(
     columns: dict[str, np.ndarray] = {}
     if drawn_by.observed:
         columns = table(settings["table"], {*_in_expressions(factors), *used})
-    parsed = {name: parse(name, spec) for name, spec in factors.items() if name not in columns}
+    parsed = {name: parse(name, spec) for name, spec in factors.items()}
     meta: dict[str, Any] = {}
     if drawn_by.observed:
         free, unit = of_columns(columns)
-        _check_beside_table(parsed, factors)
+        _check_beside_table(parsed, columns, settings["table"])
     else:
         free = {name: factor for name, factor in parsed.items() if factor.varies}
         if not free and not drawn_by.crossed:
@@ -102,13 +103,54 @@ def _in_expressions(factors: Mapping[str, Any]) -> set[str]:
     return {name for text in texts for name in expressions.names(text)}
 
 
-def _check_beside_table(parsed: Mapping[str, Factor], factors: Mapping[str, Any]) -> None:
-    """Refuse a factor beside a table that is neither one of its columns nor an expression."""
+def _check_beside_table(
+    parsed: Mapping[str, Factor], columns: Mapping[str, np.ndarray], path: str
+) -> None:
+    """Refuse factors that stand beside a table in vain, and names of rows that a shelf has not.
+
+    Parameters
+    ----------
+    parsed : all factors: expressions, and shelves of which a column of the table names rows
+    columns : columns of the table by name, shape (n,)
+    path : the table
+    """
+    wrong = Collector()
     for name, factor in parsed.items():
-        if factor.kind != "expression":
+        field = f"factors.{name}"
+        if factor.beside and name in columns:
+            wrong.errors += _unknown_rows(factor, columns[name], path)
+            for twice in {*factor.beside} & {*columns}:
+                remedy = "Remove it from the table, or from the shelf."
+                wrong.errors.append(
+                    InputError(f"column {twice}", None, "one value", remedy, f"is in {field} too")
+                )
+        elif factor.beside:
+            remedy = f"Add a column {name} to the table, with names of its rows."
+            allowed = "a shelf whose rows a column of the table names"
+            wrong.errors.append(InputError(field, None, allowed, remedy))
+        elif name in columns:
+            remedy = f"Remove it, or the column {name} of the table."
+            wrong.errors.append(
+                InputError(field, None, "one description", remedy, "is a column of the table too")
+            )
+        elif factor.kind != "expression":
             allowed = "factors as columns of the table"
-            remedy = "Only expressions may stand beside a table."
-            raise InputError(f"factors.{name}", factors[name], allowed, remedy)
+            remedy = "Only expressions and shelves may stand beside a table."
+            wrong.errors.append(InputError(field, factor.levels, allowed, remedy))
+    wrong.check()
+
+
+def _unknown_rows(factor: Factor, levels: np.ndarray, path: str) -> list[InputError]:
+    """Return an error for each case of a table that names no row of a shelf."""
+    known = {str(level) for level in factor.levels}
+    places = [place for place, level in enumerate(levels.tolist()) if level not in known]
+    if not places:
+        return []
+    lines = table_lines(Path(path))
+    return [
+        unknown_name(factor.name, levels[place], sorted(known)).at(Path(path), lines[place])
+        for place in places
+    ]
 
 
 def _with_computed(
