@@ -29,14 +29,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from trackroller.damage.bearing import BearingLoads
-from trackroller.damage.limit import (
-    Limit,
-    SolvedRollers,
-    Values,
-    Verdict,
-    optional,
-    variables,
-)
+from trackroller.damage.limit import Limit, LimitUse, SolvedRollers, Values, optional, variables
 from trackroller.damage.mapping import MappingField
 from trackroller.damage.sn_curve import SNCurve, typical_scatter
 from trackroller.errors import InputError
@@ -253,7 +246,7 @@ def _life(
     return hours, limit
 
 
-def verdict(solved: SolvedRollers, results: Values) -> Verdict:
+def limit_use(solved: SolvedRollers, results: Values) -> LimitUse:
     """Return the utilisation and the hours of the stud at the failure probability, (n, body); the
     guide has neither.
 
@@ -265,7 +258,7 @@ def verdict(solved: SolvedRollers, results: Values) -> Verdict:
     if probability == 0.5:
         hours = results["stud_life_hours"]
         without_life = np.where(np.isnan(hours), results["stud_endurance_utilisation"], np.nan)
-        return Verdict(_of_roller(np.fmax(static, without_life)), _of_roller(hours))
+        return LimitUse(_of_roller(np.fmax(static, without_life)), _of_roller(hours))
     own = FIELD.columns(solved.cases[FIELD.name])
     loads = root_loads(
         BearingLoads.of(solved), own["length"], np.nan_to_num(own["eccentricity"], nan=0.0)
@@ -282,7 +275,7 @@ def verdict(solved: SolvedRollers, results: Values) -> Verdict:
         limits.append(limit)
     without_life = np.where(np.isnan(lives[0][:, 0]), amplitude / limits[0], np.nan)
     used = _of_roller(np.fmax(static, without_life))
-    return Verdict(used, lives[0], life_low=lives[1], life_high=lives[2])
+    return LimitUse(used, lives[0], life_low=lives[1], life_high=lives[2])
 
 
 def _of_roller(values: np.ndarray) -> np.ndarray:
@@ -385,7 +378,7 @@ LIMIT = Limit(
     group="stud",
     meaning="stress, endurance and deflection of the stud or axle",
     evaluate=evaluate,
-    verdict=verdict,
+    use=limit_use,
     results=variables(
         "stud",
         ("stud_stress", (), "MPa", "sigma_S", "von Mises stress at the clamped end of the stud"),

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from trackroller.damage import fields_of, judged, limits_of
+from trackroller.damage import checked_limits, fields_of, limits_of
 from trackroller.damage.limit import SN_SCATTER, Limit, SolvedRollers, missing
 from trackroller.damage.sn_curve import TYPICAL_SCATTER
 from trackroller.damage.stud import FIELD as STUD_FIELD
@@ -306,7 +306,8 @@ def given_in_vain(values: Mapping[str, Any], idle: Iterable[str]) -> dict[str, l
         any study may have.
     """
     users = {
-        name: [limit.name for limit in judged() if name in fields_of(limit)] for name in values
+        name: [limit.name for limit in checked_limits() if name in fields_of(limit)]
+        for name in values
     }
     unused = {
         name: own for name, own in users.items() if own and {*own} <= {*idle} and name != "travel"
