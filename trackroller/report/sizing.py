@@ -21,6 +21,12 @@ RATIOS = {
     "temperature_ratio": "times its temperature rise is permitted",
     "wear_ratio": "times the required life to the wear depth",
 }
+# how near the best roller comes where none is enough
+NEAREST = {
+    "life_ratio": "{} lasts {:.3g} times the required life",
+    "temperature_ratio": "{} warms by {:.3g} times the permitted rise",
+    "wear_ratio": "{} wears off the depth after {:.3g} times the required life",
+}
 OWN_UNITS = {"life_hours": "h"}  # of columns that a sizing adds
 
 
@@ -56,11 +62,12 @@ def _none_is_enough(sizing: Sizing) -> str:
     """Return that no roller is enough, with the nearest one to each requirement that none meets."""
     table = sizing.table.set_index(ROLLER)
     parts = []
-    for column, words in RATIOS.items():
-        if column in table and (table[column] < 1.0).all():
-            best = str(table[column].idxmax())
+    for column, words in NEAREST.items():
+        if column in table and (table[column] < 1.0).all() and table[column].max() > 0.0:
             ratio = float(table[column].max())
-            parts.append(f"{best} comes to {ratio:.3g} {words}")
+            if column == "temperature_ratio":
+                ratio = 1.0 / ratio
+            parts.append(words.format(table[column].idxmax(), ratio))
     if "overload" in table and (table["overload"] != "held").all():
         ratios = table["load_ratio"].fillna(0.0)
         best = str(ratios.idxmax())
