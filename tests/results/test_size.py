@@ -11,6 +11,7 @@ from typer.testing import CliRunner
 import trackroller as tr
 from trackroller.cli.main import app
 from trackroller.errors import InputError
+from trackroller.report.sizing import lead_of
 
 HEAD = "name;axis_distance;roller_profile_radius;roller_material;price [EUR]"
 ROWS = (
@@ -123,6 +124,14 @@ def test_what_nothing_meets_is_said(shelf):
     found = tr.size(CASE | QUICK, shelf, life=1e7, least="price")
     assert found.least == "" and set(found.table["verdict"]) == {"not enough"}
     assert (found.table["excluded_by"] != "").all()
+    all_three = tr.size(WARM, shelf, life=1e7, safety=400, temperature=20.1)
+    table = all_three.table.set_index("roller")
+    lead = lead_of(all_three)
+    coolest = table["temperature_ratio"].idxmax()
+    rise = 1 / table["temperature_ratio"].max()
+    assert f"{coolest} warms by {rise:.3g} times the permitted rise" in lead
+    assert f" at {table['load_ratio'].max():.3g} times the forces" in lead
+    assert f"{found.table['life_ratio'].max():.3g} times the required life" in lead_of(found)
 
 
 def test_a_shelf_of_one_roller_and_a_study_are_sized_too(shelf):
