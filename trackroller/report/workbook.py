@@ -19,7 +19,7 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from trackroller.damage.verdict import STATES
+from trackroller.damage.first_limit import STATES
 from trackroller.errors import InputError
 from trackroller.files import inert_cell
 from trackroller.parameters import REGIME_LABELS
