@@ -31,7 +31,7 @@ PAGES_A_CASE = 3.5e-4  # seconds: gathering, analysis, figures and page of a lar
 # MB of a process that gathers or reports: what it imports, and the figures of a small study
 MEGABYTES_OF_PROGRAM = 1000
 # memory of a large study over its place on the disk
-COPIES = 2.0
+COPIES = 2.5
 _BYTES = {
     "forces": 200,
     "contact": 120,
