@@ -10,7 +10,7 @@ import pytest
 import xarray as xr
 
 import trackroller as tr
-from trackroller.damage import LIMITS, judged
+from trackroller.damage import LIMITS, checked_limits
 from trackroller.parameters import OPTIONS
 from validation.benchmarks.samples import random_designs
 
@@ -94,7 +94,7 @@ def test_a_row_of_mixed_limits_is_the_same_alone(model, given, seed):
 
 
 def test_to_leave_out_every_limit_is_refused():
-    every = [own.name for own in judged()]
+    every = [own.name for own in checked_limits()]
     with pytest.raises(tr.InputError, match=r"leaves out every limit.*Name fewer limits, or remove limits"):
         tr.solve([tr.Case()], OUTPUTS, not_checked=every)
     fewer = tr.solve([tr.Case()], OUTPUTS, not_checked=every[1:], contact_model="sliding")
@@ -107,7 +107,7 @@ def test_the_rows_serve_and_lack_every_limit():
     """The sample is one that can fail: of each limit, some rows have a number and others have none."""
     ds = tr.solve(mixed_rows(40, 60), OUTPUTS, contact_model="sliding")
     known = (np.isfinite(ds.utilisation) | np.isfinite(ds.life_hours_by_limit)).any("body")
-    always = {limit.name for limit in judged() if not limit.requires}
-    for name in {own.name for own in LIMITS.values() if own.verdict is not None} - always:
+    always = {limit.name for limit in checked_limits() if not limit.requires}
+    for name in {own.name for own in LIMITS.values() if own.use is not None} - always:
         own = known.sel(limit=name).values
         assert own.any() and not own.all(), name

@@ -222,7 +222,7 @@ def deep_planes(loads: PatchLoads, poisson_ratio: np.ndarray) -> np.ndarray:
     return np.asarray(planes_of_patch(own, kernels, ratio, ladder))
 
 
-class Loads(NamedTuple):
+class LoadedPatches(NamedTuple):
     """Loads of m patches, q_x, q_y, p (m, ny, nx) each [MPa]; spacings (m, 2) [mm]; nu (m, body)
     [1]; bodies that are asked for (m, body).
     """
@@ -290,12 +290,12 @@ def _write_shears(
                 out[m, body] = top_of_depths(shear[k, body], log_depth)
 
 
-def shakedown_shears(loads: Loads, below_ellipses: bool = False) -> np.ndarray:
+def shakedown_shears(loads: LoadedPatches, below_ellipses: bool = False) -> np.ndarray:
     """Return the shear yield stress at which the stresses below patches just shake down.
 
     Parameters
     ----------
-    loads : Loads
+    loads : LoadedPatches
         The patches and the bodies that are asked for.
     below_ellipses : bool
         Whether the patches are ellipses, so that the depths around the largest shear suffice.

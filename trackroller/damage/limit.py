@@ -144,7 +144,7 @@ class SolvedRollers:
 
 
 @dataclass(frozen=True)
-class Verdict:
+class LimitUse:
     """What one limit says: how far it is used, and the hours until it is reached.
 
     Both have the shape (n, body), and are None where the limit has none.
@@ -182,9 +182,9 @@ class Limit:
         Group of `outputs` that brings the results.
     evaluate : callable
         Function of a `SolvedRollers` that returns the results by name.
-    verdict : callable
-        Function of `SolvedRollers` and of the results that returns a `Verdict`; None if the verdict
-        leaves the limit out.
+    use : callable
+        Function of `SolvedRollers` and of the results that returns a `LimitUse`; None if the
+        limit is not checked.
     meaning : str
         Meaning of the group for the documentation. A group of the solver has its meaning there.
     needs : tuple of str
@@ -210,12 +210,15 @@ class Limit:
     mappings : tuple of MappingField
         Fields of a case that are mappings and belong to this limit.
     requires : tuple of str
-        Fields of a case and values of a material without which there is no verdict.
+        Fields of a case and values of a material without which the limit is not known.
     requires_by : mapping of str to mapping of str to tuple of str
         What else is required, by option and by those of its values that require more.
     instead : mapping of str to tuple of str
         By a required value of a material, the mark and the value that takes its place where the
         mark is 1.
+    or_field : mapping of str to str
+        By a required value of a material, the field of a case that bounds the same. The material
+        may lack its value where the case gives this field; otherwise both count.
     bodies : tuple of str
         Bodies that the limit concerns.
     bounded : bool
@@ -241,7 +244,7 @@ class Limit:
     title: str
     group: str
     evaluate: Callable[[SolvedRollers], Values]
-    verdict: Callable[[SolvedRollers, Values], Verdict] | None = None
+    use: Callable[[SolvedRollers, Values], LimitUse] | None = None
     meaning: str = ""
     needs: tuple[str, ...] = ()
     shared: Callable[[SolvedRollers], Values] | None = None
@@ -254,6 +257,7 @@ class Limit:
     requires: tuple[str, ...] = ()
     requires_by: Mapping[str, Mapping[str, tuple[str, ...]]] = field(default_factory=dict)
     instead: Mapping[str, tuple[str, str]] = field(default_factory=dict)
+    or_field: Mapping[str, str] = field(default_factory=dict)
     bodies: tuple[str, ...] = BODIES
     bounded: bool = True
     beside: bool = False
@@ -269,7 +273,7 @@ class Limit:
         return self.short or self.title.partition(" (")[0]
 
     def required(self, options: Mapping[str, Any]) -> tuple[str, ...]:
-        """Return the fields of a case and values of a material that a verdict requires under
+        """Return the fields of a case and values of a material that the limit requires under
         options of a solution.
         """
         return self.requires + tuple(
@@ -277,15 +281,19 @@ class Limit:
         )
 
     def required_of(self, solved: SolvedRollers) -> Iterator[tuple[str, np.ndarray]]:
-        """Yield each value of a material that a verdict requires, and of which bodies, (n, 2)."""
+        """Yield each value of a material that the limit requires, and of which bodies, (n, 2)."""
         for name in self.required(solved.options):
             if name in solved.materials:
                 mark, other = self.instead.get(name, (name, ""))
                 marked = (solved.materials[mark] == 1.0) & (other != "")
-                yield from ((name, ~marked), *(((other, marked),) if other else ()))
+                counts = ~marked
+                if name in self.or_field:
+                    given = ~missing(solved.cases[self.or_field[name]])[:, None]
+                    counts &= ~(given & np.isnan(solved.materials[name]))
+                yield from ((name, counts), *(((other, marked),) if other else ()))
 
     def lacking(self, solved: SolvedRollers) -> np.ndarray:
-        """Return where a value that a verdict on a body requires is not given, (n, body) bool."""
+        """Return where a value that the limit of a body requires is not given, (n, body) bool."""
         out = np.zeros((len(solved.rolling_radius), len(BODIES)), dtype=bool)
         for name in self.required(solved.options):
             column = solved.cases.get(name)
@@ -296,18 +304,18 @@ class Limit:
         return out
 
     def served(self, solved: SolvedRollers) -> np.ndarray:
-        """Return which cases have all that a verdict on a body requires, or give a field that
+        """Return which cases have all that the limit of a body requires, or give a field that
         serves this limit alone, (n,) bool.
         """
         own = [
             *(one.name for one in self.parameters if one.allow_missing),
             *(one.name for one in self.mappings),
         ]
-        out = ~self.lacking(solved).all(axis=1)
+        out = np.asarray(~self.lacking(solved).all(axis=1))
         for name in own:
             if name in solved.cases:
-                out |= ~missing(solved.cases[name])
-        return out
+                out = out | ~missing(solved.cases[name])
+        return np.asarray(out)
 
     def kept_by_bound(self, solved: SolvedRollers) -> np.ndarray:
         """Return which bodies get a bound of the utilisation in place of the number, (n, body)
@@ -321,8 +329,8 @@ class Limit:
         return np.asarray(self.bound(solved.at_end(0)) < 1.0)
 
     def moves(self, solved: SolvedRollers) -> np.ndarray:
-        """Return which verdicts rest on a value of a material that is known within a range only,
-        (n,) bool.
+        """Return whose use of the limit rests on a value of a material that is known within a
+        range only, (n,) bool.
         """
         out = np.zeros(len(solved.rolling_radius), dtype=bool)
         for name, _ in self.required_of(solved):

@@ -21,9 +21,9 @@ from trackroller.damage.histories import RollerTractions
 from trackroller.damage.limit import (
     TRACTIONS,
     Limit,
+    LimitUse,
     SolvedRollers,
     Values,
-    Verdict,
     variables,
     worst,
 )
@@ -39,7 +39,7 @@ def _shears_of_patches(
     shape [MPa]; it is NaN where no number is wanted.
     """
     # numba compiles on import, and planning needs none of it
-    from trackroller.damage.deep_planes import Loads, shakedown_shears
+    from trackroller.damage.deep_planes import LoadedPatches, shakedown_shears
 
     out = np.full(wanted.shape, np.nan)
     some = wanted.any(axis=1)
@@ -51,7 +51,7 @@ def _shears_of_patches(
         field[at] for field in (t.shear_lateral, t.shear_rolling, t.pressure)
     )
     steps = np.stack(t.steps, axis=2)[at]
-    own = Loads(lateral, rolling, pressure, steps, poisson_ratio[at[0]], wanted[some])
+    own = LoadedPatches(lateral, rolling, pressure, steps, poisson_ratio[at[0]], wanted[some])
     surface = np.sqrt(np.max(lateral**2 + rolling**2, axis=(1, 2)))
     out[some] = np.maximum(shakedown_shears(own, hertzian), surface[:, None])
     return out
@@ -194,7 +194,7 @@ LIMIT = Limit(
     shared=of_mechanics,
     bound=bound,
     evaluate=evaluate,
-    verdict=lambda solved, results: Verdict(worst(results["shakedown_utilisation"]), None),
+    use=lambda solved, results: LimitUse(worst(results["shakedown_utilisation"]), None),
     needs=("peak_stress", TRACTIONS),
     results=variables(
         "shakedown",

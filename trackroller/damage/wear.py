@@ -32,9 +32,9 @@ from trackroller.damage.histories import RollerTractions
 from trackroller.damage.limit import (
     TRACTIONS,
     Limit,
+    LimitUse,
     SolvedRollers,
     Values,
-    Verdict,
     optional,
     variables,
     worst,
@@ -445,7 +445,7 @@ def evaluate(solved: SolvedRollers) -> Values:
     }
 
 
-def verdict(solved: SolvedRollers, results: Values) -> Verdict:
+def limit_use(solved: SolvedRollers, results: Values) -> LimitUse:
     """Return the required travel over the travel to the permissible depth, and the hours, (n,
     body).
     """
@@ -454,7 +454,7 @@ def verdict(solved: SolvedRollers, results: Values) -> Verdict:
         used = solved.cases["required_travel"][:, None] / (
             hours * (solved.cases["velocity"] * KM_PER_HOUR)[:, None]
         )
-    return Verdict(used, hours, life_low=low, life_high=high)
+    return LimitUse(used, hours, life_low=low, life_high=high)
 
 
 def check(given: dict[str, Any]) -> None:
@@ -502,7 +502,7 @@ LIMIT = Limit(
     "permissible depth",
     shared=of_mechanics,
     evaluate=evaluate,
-    verdict=verdict,
+    use=limit_use,
     needs=("friction_work", TRACTIONS),
     results=variables(
         "wear",

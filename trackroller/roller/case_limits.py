@@ -125,7 +125,7 @@ def with_weakest(table: CaseTable, cases: CaseTable, number: np.ndarray) -> Case
 
 
 def to_compute(solved: SolvedRollers, options: Options) -> tuple[Limit, ...]:
-    """Return the limits to compute: those named among the outputs, and those of the verdict that a
+    """Return the limits to compute: those named among the outputs, and the checked ones that a
     case serves.
     """
     candidates = computed(options.outputs, options.not_checked, options.life_criterion)
@@ -137,7 +137,7 @@ def has_results(limit: Limit, solved: SolvedRollers, options: Options) -> np.nda
 
     A case decides for itself, so that its results do not depend on the cases beside it.
     """
-    if limit.group in options.outputs or limit.verdict is None:
+    if limit.group in options.outputs or limit.use is None:
         return np.ones(len(solved.rolling_radius), dtype=bool)
     return limit.served(solved)
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from trackroller.contact.friction_laws import law_of
-from trackroller.damage import judged, verdict
+from trackroller.damage import checked_limits, first_limit
 from trackroller.errors import Collector, InputError
 from trackroller.numerics.plain import plain
 from trackroller.parameters import OPTIONS
@@ -181,7 +181,7 @@ def check_pairs(hertz: str, normal: str, slip_terms: Collection[str], contact_mo
 
 
 def check_not_checked(outputs: Collection[str], not_checked: Collection[str]) -> None:
-    """Refuse to leave out every limit of a verdict that the outputs ask for.
+    """Refuse to leave out every limit that the outputs ask for.
 
     Parameters
     ----------
@@ -193,9 +193,9 @@ def check_not_checked(outputs: Collection[str], not_checked: Collection[str]) ->
     InputError
         If no limit is left.
     """
-    if verdict.GROUP in outputs and not judged(outputs, not_checked):
-        remedy = f"Name fewer limits, or remove {verdict.GROUP} from outputs."
-        wrong = f"leaves out every limit, and the outputs ask for {verdict.GROUP}"
+    if first_limit.GROUP in outputs and not checked_limits(outputs, not_checked):
+        remedy = f"Name fewer limits, or remove {first_limit.GROUP} from outputs."
+        wrong = f"leaves out every limit, and the outputs ask for {first_limit.GROUP}"
         raise InputError("not_checked", ", ".join(not_checked), "", remedy, wrong)
 
 

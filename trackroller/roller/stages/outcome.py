@@ -11,7 +11,7 @@ import numpy as np
 
 from trackroller.contact import close_fit
 from trackroller.contact.slip import pole_split
-from trackroller.damage import LIMITS, judged, verdict
+from trackroller.damage import LIMITS, checked_limits, first_limit
 from trackroller.damage.histories import RollerTractions
 from trackroller.damage.limit import Limit, SolvedRollers
 from trackroller.damage.wear import BEYOND_TABLE, KM_PER_HOUR
@@ -24,7 +24,7 @@ from trackroller.roller.geometry import rolling_radius
 from trackroller.roller.stages.scene import StageResults, surface_tractions
 
 if TYPE_CHECKING:
-    from trackroller.roller.block_results import Block
+    from trackroller.roller.block_results import BlockResults
     from trackroller.roller.options import Options
 
 LIFE_CONVENTIONS = (
@@ -39,7 +39,7 @@ LIFE_CONVENTIONS = (
 )
 
 
-def finish(table: CaseTable, block: Block, options: Options) -> None:
+def finish(table: CaseTable, block: BlockResults, options: Options) -> None:
     """Add friction power, life and validity flags to the results of a block, in place."""
     v = block.values
     if "friction_work" in options.outputs:
@@ -51,8 +51,8 @@ def finish(table: CaseTable, block: Block, options: Options) -> None:
 def limits(
     table: CaseTable, v: dict[str, np.ndarray], options: Options, regime: np.ndarray
 ) -> None:
-    """Add the results of the limits asked for to the results `v`, and the verdict if it is asked
-    for.
+    """Add the results of the limits asked for to the results `v`, and how far each is used if it is
+    asked for.
     """
     solved = solved_of(table, v, options, regime)
     computed_limits = to_compute(solved, options)
@@ -71,18 +71,18 @@ def limits(
                 if result.end == end
             ]
             v |= {name: place.values[name] for name in names}
-    if verdict.GROUP in options.outputs:
+    if first_limit.GROUP in options.outputs:
         names = list(LIMITS)
-        counted = judged(options.outputs, options.not_checked)
+        counted = checked_limits(options.outputs, options.not_checked)
         numbers = [names.index(limit.name) for limit in counted]
-        known = _known_verdicts(counted, solved, options)
-        v |= verdict.verdict(places, counted, numbers, len(names), known)
+        known = _known_uses(counted, solved, options)
+        v |= first_limit.limit_uses(places, counted, numbers, len(names), known)
     for name in [name for name in v if name.startswith("_") and name != BEYOND_TABLE]:
         del v[name]
 
 
-def _known_verdicts(limits: Sequence[Limit], solved: SolvedRollers, options: Options) -> np.ndarray:
-    """Return for which cases the limits of the verdict were computed, (n, limit) bool."""
+def _known_uses(limits: Sequence[Limit], solved: SolvedRollers, options: Options) -> np.ndarray:
+    """Return for which cases checked limits were computed, (n, limit) bool."""
     own = [has_results(limit, solved, options) for limit in limits]
     return np.array(own, dtype=bool).reshape(len(limits), -1).T
 
@@ -189,7 +189,7 @@ def split_pole(table: CaseTable, v: dict[str, np.ndarray]) -> np.ndarray:
         return np.maximum(*split) > 0.1
 
 
-def outlives_groove(table: CaseTable, block: Block, options: Options) -> np.ndarray:
+def outlives_groove(table: CaseTable, block: BlockResults, options: Options) -> np.ndarray:
     """Return True where the own life of a body, in travel of the roller, exceeds the run-in
     distance, (n, 2).
 
@@ -200,13 +200,15 @@ def outlives_groove(table: CaseTable, block: Block, options: Options) -> np.ndar
     # a limit that a bound shows to be kept ends no life
     solved = solved_of(table, v, options.changed(at_most=()), block.regime)
     run_in = v["run_in_distance"] / (KM_PER_HOUR * table.velocity)
-    counted = [own for own in to_compute(solved, options) if own.verdict is not None]
-    computed_for = _known_verdicts(counted, solved, options)
-    known = verdict.verdict([solved], counted, range(len(counted)), len(counted), computed_for)
+    counted = [own for own in to_compute(solved, options) if own.use is not None]
+    computed_for = _known_uses(counted, solved, options)
+    known = first_limit.limit_uses(
+        [solved], counted, range(len(counted)), len(counted), computed_for
+    )
     return np.asarray(known["life_to_first_limit_hours"] > run_in[:, None])
 
 
-def validity(table: CaseTable, block: Block, options: Options) -> None:
+def validity(table: CaseTable, block: BlockResults, options: Options) -> None:
     """Set the validity flags where the assumptions of the model do not hold, see
     `parameters.validity`.
     """

@@ -1,4 +1,4 @@
-"""The verdict: how far each limit is used, when it is reached, and which limit comes first."""
+"""The first limit: how far each limit is used, when it is reached, and which limit comes first."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from trackroller.damage.limit import Limit, SolvedRollers, Values, Verdict, variables
+from trackroller.damage.limit import Limit, LimitUse, SolvedRollers, Values, variables
 from trackroller.damage.pair import first_failure
 from trackroller.numerics.parameter import Parameter
 from trackroller.numerics.variable import BODIES, LIFE
@@ -194,7 +194,7 @@ def states(
     return np.where((has_bound & (least > 1.0)) | broken, STATES.index("exceeded"), state)
 
 
-def _ends(own: Verdict) -> np.ndarray:
+def _ends(own: LimitUse) -> np.ndarray:
     """Return the life of a limit and the ends of its range, (end, n, body), which is the life
     itself where the limit gives none.
     """
@@ -225,7 +225,7 @@ def _bound(solved: SolvedRollers, limit: Limit) -> np.ndarray:
     return np.where(bounded, limit.bound(solved), np.nan)
 
 
-def verdict(
+def limit_uses(
     places: Sequence[SolvedRollers],
     limits: Sequence[Limit],
     numbers: Sequence[int],
@@ -273,14 +273,14 @@ def verdict(
     timed = np.zeros(len(limits), dtype=bool)
     lacking = _lacking(places[0], limits)
     for i, limit in enumerate(limits):
-        assert limit.verdict is not None
+        assert limit.use is not None
         if not served[:, i].any():
             continue
         counts = served[:, i, None]
         concerned = counts & [body in limit.bodies for body in BODIES]
         at_most[:, i] = np.where(counts, _bound(places[0], limit), np.nan)
         for place, solved in enumerate(places):
-            own = limit.verdict(solved, dict(solved.values))
+            own = limit.use(solved, dict(solved.values))
             if own.utilisation is not None:
                 used[place, :, i] = np.where(concerned, own.utilisation, np.nan)
             if own.life_hours is not None:
