@@ -21,7 +21,7 @@ from trackroller.errors import InputError
 from trackroller.report.explorer.candidate_columns import candidate_columns
 from trackroller.report.explorer.pack import MOST_BYTES, MOST_ROWS, RARE, affordable_rows, pack, sample_rows
 from trackroller.report.explorer.page import explorer, pareto_rows, secured, write_explorer
-from trackroller.report.explorer.rows import STATES, Column, collect, flag_text, solve_inputs
+from trackroller.report.explorer.rows import STATES, ExplorerColumn, collect, flag_text, solve_inputs
 from trackroller.report.figures import style
 from trackroller.results.pareto import pareto
 from trackroller.results.stored_study import open_study
@@ -98,8 +98,8 @@ def test_states_tell_every_case_that_is_left_out(study):
 
 
 def test_missing_values_stay_missing():
-    column = Column("x", "x", "", "factor", np.array([-1, 0, 1]), ("a", "b"), ("a", "b"))
-    header, block = pack([column, Column("y", "y", "mm", "output", np.array([np.nan, np.inf, 1.0]))])
+    column = ExplorerColumn("x", "x", "", "factor", np.array([-1, 0, 1]), ("a", "b"), ("a", "b"))
+    header, block = pack([column, ExplorerColumn("y", "y", "mm", "output", np.array([np.nan, np.inf, 1.0]))])
     found = unpacked(header, block)
     assert found["x"].tolist() == [0, 1, 2] and header[0]["type"] == "u1"
     assert np.array_equal(found["y"], [np.nan, np.inf, 1.0], equal_nan=True)
@@ -275,8 +275,8 @@ def test_a_folder_without_results_is_refused(tmp_path):
 def test_a_page_of_many_cases_and_columns_stays_below_its_size():
     """Random numbers do not compress: 40 such columns leave room for a fifth of 60,000 cases."""
     rng = np.random.default_rng(0)
-    columns = [Column(f"x{i}", "x", "mm", "output", rng.normal(size=60_000)) for i in range(40)]
+    columns = [ExplorerColumn(f"x{i}", "x", "mm", "output", rng.normal(size=60_000)) for i in range(40)]
     rows = affordable_rows(columns)
     _, block = pack([replace(c, values=c.values[:rows]) for c in columns])
     assert 0.97 * MOST_BYTES < len(block) < 1.03 * MOST_BYTES and rows < 15_000
-    assert affordable_rows([Column("x", "x", "mm", "output", np.zeros(60_000))]) == MOST_ROWS
+    assert affordable_rows([ExplorerColumn("x", "x", "mm", "output", np.zeros(60_000))]) == MOST_ROWS

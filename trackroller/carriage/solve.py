@@ -26,8 +26,8 @@ from trackroller.carriage.lives import Lives, hours_per_km
 from trackroller.carriage.loads import Wrenches, swing_of, wrenches_of
 from trackroller.carriage.statics import (
     MOTIONS,
-    Equilibrium,
     Moves,
+    RollerForces,
     Springs,
     equilibrium,
     free_ways,
@@ -341,7 +341,7 @@ def _reduced(wrench: np.ndarray, springs: Springs) -> np.ndarray:
     return springs.basis.T @ np.concatenate([wrench[1:3], wrench[3:] / springs.length])
 
 
-def _equilibrium(whole: Carriage, springs: Springs, wrenches: Wrenches, name: str) -> Equilibrium:
+def _equilibrium(whole: Carriage, springs: Springs, wrenches: Wrenches, name: str) -> RollerForces:
     """Return the forces of the rollers in a load case; an error names the case."""
     try:
         state = equilibrium(springs, _reduced(wrenches.all, springs))
@@ -377,7 +377,7 @@ def _unknown(whole: Carriage) -> list[int]:
     ]
 
 
-def _decided(whole: Carriage, wrenches: Wrenches, state: Equilibrium) -> bool:
+def _decided(whole: Carriage, wrenches: Wrenches, state: RollerForces) -> bool:
     """Return whether other values of the unknown stiffnesses give the same forces, and lift the
     same rollers.
     """
@@ -401,7 +401,9 @@ def _attrs(units: str, long_name: str, symbol: str = "") -> dict[str, str]:
     return {"units": units, "long_name": long_name, "symbol": symbol}
 
 
-def _forces(whole: Carriage, states: list[Equilibrium], wrenches: list[Wrenches]) -> dict[str, Any]:
+def _forces(
+    whole: Carriage, states: list[RollerForces], wrenches: list[Wrenches]
+) -> dict[str, Any]:
     """Return the forces of rollers and drive, and what the file says of the load cases, as
     variables.
     """

@@ -23,7 +23,7 @@ from trackroller.errors import InputError, raise_all
 from trackroller.files import files_beside, write_text
 from trackroller.report.sizing import head_of, lead_of, notes_of, shown
 from trackroller.report.terminal import print_table, print_text
-from trackroller.study.design.entries import SHELVES
+from trackroller.study.design.factor_names import SHELVES
 from trackroller.study.design.levels import entries, in_words
 from trackroller.study.file.load import parse_study
 from trackroller.study.file.shelf import ROLLER, base_beside_shelf, with_rows, without_overridden

@@ -15,7 +15,7 @@ import numpy as np
 
 from trackroller.contact.friction_laws import FrictionLaw, constant
 from trackroller.contact.quantities import Ellipse, Patch, Resultants, SurfaceTractions
-from trackroller.contact.sliding_kernels import Rule, SlidingPatches, Sums, integrate
+from trackroller.contact.sliding_kernels import Rule, SlidingEllipses, Sums, integrate
 from trackroller.contact.slip import (
     Slip,
     lateral_slip,
@@ -85,7 +85,7 @@ def integrals(
     """
     n = np.size(friction)
     law = constant() if law is None or law.is_constant else law  # a law that stays at 1 is constant
-    patches = SlidingPatches(
+    patches = SlidingEllipses(
         *np.array((*_geometry(ellipse, slip), travel_speed / slip.rolling_radius))
     )
     sums = np.empty((4, n))
@@ -97,7 +97,7 @@ def integrals(
 
 
 def _geometry(patch: Patch, slip: Slip) -> tuple[np.ndarray, ...]:
-    """Return a, b, sine and cosine of the contact angle, r_C,G and r_Delta0: `SlidingPatches`
+    """Return a, b, sine and cosine of the contact angle, r_C,G and r_Delta0: `SlidingEllipses`
     without speed.
     """
     axes = patch.semi_axis_lateral, patch.semi_axis_rolling

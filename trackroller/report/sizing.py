@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from trackroller.numerics.units import PLAIN
 from trackroller.parameters import PARAMETERS
 from trackroller.parameters.example import not_given_text
-from trackroller.study.design.entries import SIZES
+from trackroller.study.design.factor_names import SIZES
 from trackroller.study.file.shelf import ROLLER
 
 if TYPE_CHECKING:

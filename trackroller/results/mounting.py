@@ -26,7 +26,7 @@ from trackroller.parameters import BODIES
 from trackroller.results.load_ratio import EXACT, load_ratios_of_cases
 from trackroller.results.size_verdicts import LIMIT_OF
 from trackroller.roller.aliases import RADII
-from trackroller.study.design.entries import CASE_FIELDS
+from trackroller.study.design.factor_names import CASE_FIELDS
 from trackroller.study.file.shelf import ROLLER
 from trackroller.study.file.study import Study
 
@@ -80,11 +80,11 @@ def rollers_by_place(
     if study.carriage is None:
         remedy = "Leave it out, or give a carriage file."
         raise InputError("each", True, "a carriage, which has places", remedy)
-    search = _Search(study, safety, least, permitted)
+    search = _Mounting(study, safety, least, permitted)
     return search.mounted()
 
 
-class _Search:
+class _Mounting:
     """Judge the rollers of a shelf at the places of a carriage."""
 
     def __init__(self, study: Study, safety: float, least: str, permitted: tuple[str, ...]) -> None:

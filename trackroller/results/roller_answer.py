@@ -29,7 +29,7 @@ from trackroller.materials import Material
 from trackroller.parameters import BODIES, PARAMETERS, REGIMES
 from trackroller.parameters.carriage_fields import long_name_of
 from trackroller.parameters.example import drive_question
-from trackroller.results.answer import Answer, Caution, Column, Part, Required, yes_or_blank
+from trackroller.results.answer import Answer, Caution, Column, FurtherTable, Required, yes_or_blank
 from trackroller.results.case_columns import at_surface
 from trackroller.results.friction import friction_cautions
 from trackroller.results.life_columns import FIRST_LIMIT, OF_PAIR
@@ -510,16 +510,16 @@ OF_ROLLER = (QUANTITY, Column("value", "Value", "", "", "whole"), UNIT)
 
 def _parts(
     ds: xr.Dataset, inputs: Mapping[str, Any], materials: Mapping[str, Material]
-) -> Iterable[Part]:
+) -> Iterable[FurtherTable]:
     """Yield the further tables of one roller: both contacts, the whole roller, and the lives by
     fatigue.
     """
     contacts = _contacts(ds)
     if not contacts.empty:
-        yield Part("contacts", "Contacts", contacts, OF_CONTACTS)
+        yield FurtherTable("contacts", "Contacts", contacts, OF_CONTACTS)
     whole = quantities(ds, shown())
     if not whole.empty:
-        yield Part("whole", "Slip, and loads on the bearing", whole, OF_ROLLER)
+        yield FurtherTable("whole", "Slip, and loads on the bearing", whole, OF_ROLLER)
     lives = lives_part(ds, inputs, materials, lifeless_bodies(ds, materials))
     if lives is not None:
         yield lives

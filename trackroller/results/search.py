@@ -55,7 +55,7 @@ MOST_CATEGORIES = 12  # of a choice without an order whose levels are all tried 
 
 
 @dataclass
-class _Search:
+class _CandidateSearch:
     """Solve candidates of a study and judge them; solved cases are found in the store."""
 
     study: Study
@@ -135,7 +135,9 @@ def search_candidates(study: Study, results: Path | str = "results", **how: Any)
     with Runner(results, **how) as runner, runner.deciding(study) as folder:
         tell = runner.tell
         runner.started(study.config.budget.designs * study.drawn.meta["inner_samples"], 0)
-        search = _Search(study, folder, dataclasses.replace(runner, tell=unheard, started=unheard))
+        search = _CandidateSearch(
+            study, folder, dataclasses.replace(runner, tell=unheard, started=unheard)
+        )
         known, facts = _evolve(search, cheaper(study), tell)
         if cheaper(study) is study:
             decided = known
@@ -146,7 +148,7 @@ def search_candidates(study: Study, results: Path | str = "results", **how: Any)
         return _reported(search, decided, facts | {"reasons": known.reasons}, tell)
 
 
-def _evolve(search: _Search, study: Study, tell: Tell) -> tuple[Judged, dict[str, Any]]:
+def _evolve(search: _CandidateSearch, study: Study, tell: Tell) -> tuple[Judged, dict[str, Any]]:
     """Return all candidates of the search and facts about it; stop at the budget or when no
     candidate is left.
     """
@@ -192,7 +194,9 @@ def _choices(study: Study) -> dict[str, Factor]:
     return {name: study.drawn.factors[name] for name in study.drawn.meta["outer"]}
 
 
-def _reported(search: _Search, decided: Judged, facts: dict[str, Any], tell: Tell) -> Ledger:
+def _reported(
+    search: _CandidateSearch, decided: Judged, facts: dict[str, Any], tell: Tell
+) -> Ledger:
     """Polish the recommended candidate, solve the optima at reference, and gather all."""
     study = search.study
     choices = _choices(search.study)
@@ -278,7 +282,7 @@ def _neighbour(candidate: Judged) -> dict[str, Any]:
 
 
 def _with_corners(
-    search: _Search, decided: Judged, choices: Mapping[str, Factor]
+    search: _CandidateSearch, decided: Judged, choices: Mapping[str, Factor]
 ) -> tuple[Judged, dict[str, bool]]:
     """Add candidates about the recommended one, then about the best one in each of several goals.
 
@@ -300,7 +304,7 @@ def _with_corners(
     return decided, reached
 
 
-def _is_spent(search: _Search, decided: Judged) -> bool:
+def _is_spent(search: _CandidateSearch, decided: Judged) -> bool:
     """Return whether the hours of the budget are spent."""
     hours = search.study.config.budget.hours
     return (
@@ -309,7 +313,7 @@ def _is_spent(search: _Search, decided: Judged) -> bool:
 
 
 def _polished(
-    search: _Search, decided: Judged, choices: Mapping[str, Factor], goal: int | None
+    search: _CandidateSearch, decided: Judged, choices: Mapping[str, Factor], goal: int | None
 ) -> tuple[Judged, bool]:
     """Add candidates about the best one in a goal, or about the recommended one, from the best one
     found so far.

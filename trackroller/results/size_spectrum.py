@@ -32,7 +32,7 @@ from trackroller.results.size_verdicts import (
 )
 from trackroller.results.spectrum_answer import answer_of_spectrum
 from trackroller.roller.requirement import DEFAULT, checked_requirement
-from trackroller.study.design.entries import CASE_FIELDS
+from trackroller.study.design.factor_names import CASE_FIELDS
 from trackroller.study.file.shelf import ROLLER
 from trackroller.study.file.study import Study
 from trackroller.study.spectrum.file import Spectrum

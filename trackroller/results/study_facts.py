@@ -133,11 +133,16 @@ def unchecked_names(results: SolvedCases) -> list[str]:
 
 
 def given_for_nothing(results: SolvedCases) -> dict[str, str]:
-    """Return the values under `base` that serve only limits which were not checked, with these
-    limits in words.
+    """Return the values under `base` that serve only limits of which nothing was computed, with
+    these limits in words.
     """
     unknown = names_not_given(results.data.attrs)
-    idle = given_in_vain(results.config.base, unchecked_names(results))
+    unused = [
+        name
+        for name in unchecked_names(results)
+        if not any(own.name in results.data for own in LIMITS[name].results)
+    ]
+    idle = given_in_vain(results.config.base, unused)
     return {
         name: "needed by " + " and ".join(limit_word(one) for one in limits)
         for name, limits in idle.items()

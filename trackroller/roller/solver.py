@@ -16,7 +16,7 @@ from trackroller.materials import load_database
 from trackroller.parameters import CONTACT_MODELS, MECHANICAL_MAPPINGS, OPTIONS
 from trackroller.parameters.accuracy import RUNGS, Accuracy
 from trackroller.roller import distinct_contacts, temperature
-from trackroller.roller.block_results import Block, join
+from trackroller.roller.block_results import BlockResults, join
 from trackroller.roller.case import Case, CaseTable, is_single, to_table
 from trackroller.roller.dataset import NOTES, VARIABLES, build, file_attributes, joined
 from trackroller.roller.expected_errors import tell_errors
@@ -254,7 +254,7 @@ def _cut(table: CaseTable, size: int) -> Iterator[CaseTable]:
         yield table.take(np.arange(i, min(i + size, len(table))))
 
 
-def _solve_window(table: CaseTable, options: Options) -> Block:
+def _solve_window(table: CaseTable, options: Options) -> BlockResults:
     """Solve each distinct mechanics once; then compute power, life and warnings of every case."""
     if options.shortcuts:
         one_handed, mirrored = handed(table)
@@ -262,7 +262,7 @@ def _solve_window(table: CaseTable, options: Options) -> Block:
         one_handed = table
         mirrored = np.zeros(len(table), bool)
 
-    def solve_all(cases: CaseTable) -> Block:
+    def solve_all(cases: CaseTable) -> BlockResults:
         return join([meet(few, options, _solve_block) for few in _cut(cases, BLOCK)])
 
     distinct = one_handed
@@ -286,7 +286,7 @@ def _solve_window(table: CaseTable, options: Options) -> Block:
     return block
 
 
-def _solve_block(table: CaseTable, options: Options) -> Block:
+def _solve_block(table: CaseTable, options: Options) -> BlockResults:
     """Solve cases together that share a contact model, a friction law and profiles."""
     groups = list(_groups(table, options))
     if len(groups) == 1:  # its rows are in order
@@ -319,7 +319,7 @@ def _groups(table: CaseTable, options: Options) -> Iterator[tuple[str, int, np.n
         yield options.contact_model, 1, np.arange(0)
 
 
-def _solve_group(table: CaseTable, options: Options, across: int) -> Block:
+def _solve_group(table: CaseTable, options: Options, across: int) -> BlockResults:
     scene = stages.prepare(table, options, across)
     results = StageResults.start(scene, balance(scene))
     results.flag(
@@ -328,7 +328,7 @@ def _solve_group(table: CaseTable, options: Options, across: int) -> Block:
     return block_of(results, options)
 
 
-def block_of(results: StageResults, options: Options) -> Block:
+def block_of(results: StageResults, options: Options) -> BlockResults:
     """Return the results of balanced rollers with the stages that the outputs need."""
     scene = results.scene
     outputs = set(options.outputs)
@@ -358,7 +358,7 @@ def block_of(results: StageResults, options: Options) -> Block:
     rung = np.zeros(scene.n, dtype=np.int8)
     if settings in RUNGS:
         rung[:] = RUNGS.index(settings)
-    return Block(
+    return BlockResults(
         results.values,
         results.regime,
         results.converged,
@@ -374,7 +374,7 @@ def _limits(table: CaseTable, options: Options) -> tuple[Limit, ...]:
     return stages_outcome.to_compute(stages_outcome.solved_of(table, {}, options), options)
 
 
-def assemble(block: Block, options: Options, single: bool) -> xr.Dataset:
+def assemble(block: BlockResults, options: Options, single: bool) -> xr.Dataset:
     """Return a block of finished cases as a labelled data set; `single` drops the dimension
     `case`.
     """

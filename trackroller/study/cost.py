@@ -17,7 +17,7 @@ from trackroller.parameters.contact_models import (
     YARDSTICK,
     measured_costs,
 )
-from trackroller.study.design.entries import OPTION_FACTORS
+from trackroller.study.design.factor_names import OPTION_FACTORS
 
 if TYPE_CHECKING:
     from trackroller.study.file.study import Study

@@ -20,7 +20,7 @@ from trackroller.parameters import (
 )
 from trackroller.roller.dataset import FLAGS, VARIABLES
 from trackroller.roller.output_names import PARTS, Part, declared, parts_of
-from trackroller.study.design.entries import CASE_FIELDS
+from trackroller.study.design.factor_names import CASE_FIELDS
 
 BOOKKEEPING = {  # variables that describe how a case was solved; an analysis compares other results
     *(*FLAGS, "validity", "validity_body", "reason", "material_pair", "residual"),

@@ -10,7 +10,7 @@ import numpy as np
 import pandas as pd
 
 from trackroller.parameters import FIRST_TO_FAIL
-from trackroller.report.explorer.rows import Column
+from trackroller.report.explorer.rows import ExplorerColumn
 from trackroller.report.numbers import GUIDE_UNKNOWN, Life, capital, count, part_of, with_unit
 from trackroller.report.tables.table import cell, factor_cell, goal_heading, heading
 from trackroller.results.candidates import Candidates, hardest_first
@@ -22,7 +22,7 @@ from trackroller.study.file.goals import statistic
 MOST_LISTED = 200  # candidates or conditions in a list; the axis holds all of them
 
 
-def candidate_columns(results: Results) -> tuple[list[Column], dict[str, Any]]:
+def candidate_columns(results: Results) -> tuple[list[ExplorerColumn], dict[str, Any]]:
     """Return what the explorer needs to compare candidates over their conditions.
 
     Parameters
@@ -53,7 +53,7 @@ def candidate_columns(results: Results) -> tuple[list[Column], dict[str, Any]]:
     words, unit = candidates.goal[1:]
     columns = [
         _numbered("design", "Design, the best first", np.where(own, number, -1)),
-        Column(
+        ExplorerColumn(
             "design_worst",
             f"Worst {words} of the design",
             unit,
@@ -71,9 +71,9 @@ def candidate_columns(results: Results) -> tuple[list[Column], dict[str, Any]]:
     return columns, lists
 
 
-def _numbered(name: str, label: str, codes: np.ndarray) -> Column:
+def _numbered(name: str, label: str, codes: np.ndarray) -> ExplorerColumn:
     levels = tuple(float(i + 1) for i in range(codes.max() + 1))
-    return Column(
+    return ExplorerColumn(
         name, label, "", "design", codes, levels, tuple(count(int(level)) for level in levels)
     )
 

@@ -16,7 +16,13 @@ import numpy as np
 
 from trackroller.report.explorer.candidate_columns import candidate_columns
 from trackroller.report.explorer.pack import affordable_rows, extreme_rows, pack, sample_rows
-from trackroller.report.explorer.rows import STATES, Column, collect, solve_inputs, strengths
+from trackroller.report.explorer.rows import (
+    STATES,
+    ExplorerColumn,
+    collect,
+    solve_inputs,
+    strengths,
+)
 from trackroller.report.html import render
 from trackroller.report.numbers import count, lives_in_years
 from trackroller.results.pareto import pareto
@@ -55,10 +61,10 @@ def explorer(results: Results) -> dict[str, Any]:
     rows = sample_rows(state, chosen, affordable_rows(columns))
     if len(rows) < cases:
         columns = [dataclasses.replace(c, values=c.values[rows]) for c in columns]
-        columns.append(Column("row", "Row", "", "row", rows.astype(float)))
+        columns.append(ExplorerColumn("row", "Row", "", "row", rows.astype(float)))
     numbers = _numbers(results)
     if numbers is not None:
-        columns.append(Column("case", "Case", "", "row", numbers[rows].astype(float)))
+        columns.append(ExplorerColumn("case", "Case", "", "row", numbers[rows].astype(float)))
     packed, block = pack(columns)
     compared = ""
     if MODEL in results.factors:

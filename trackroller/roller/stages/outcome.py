@@ -28,7 +28,7 @@ from trackroller.roller.geometry import rolling_radius
 from trackroller.roller.stages.scene import StageResults, surface_tractions
 
 if TYPE_CHECKING:
-    from trackroller.roller.block_results import Block
+    from trackroller.roller.block_results import BlockResults
     from trackroller.roller.options import Options
 
 LIFE_CONVENTIONS = (
@@ -43,7 +43,7 @@ LIFE_CONVENTIONS = (
 )
 
 
-def finish(table: CaseTable, block: Block, options: Options) -> None:
+def finish(table: CaseTable, block: BlockResults, options: Options) -> None:
     """Add friction power, life and validity flags to the results of a block, in place."""
     v = block.values
     if "friction_work" in options.outputs:
@@ -286,7 +286,7 @@ def split_pole(table: CaseTable, v: dict[str, np.ndarray]) -> np.ndarray:
         return np.maximum(*split) > 0.1
 
 
-def outlives_groove(table: CaseTable, block: Block, options: Options) -> np.ndarray:
+def outlives_groove(table: CaseTable, block: BlockResults, options: Options) -> np.ndarray:
     """Return True where the own life of a body, in travel of the roller, exceeds the run-in
     distance, (n, 2).
 
@@ -302,7 +302,7 @@ def outlives_groove(table: CaseTable, block: Block, options: Options) -> np.ndar
     return np.asarray(known["life_to_first_limit_hours"] > run_in[:, None])
 
 
-def validity(table: CaseTable, block: Block, options: Options) -> None:
+def validity(table: CaseTable, block: BlockResults, options: Options) -> None:
     """Set the validity flags where the assumptions of the model do not hold, see
     `parameters.validity`.
     """

@@ -14,18 +14,18 @@ from trackroller.errors import Collector, InputError, contained, listing, neares
 from trackroller.files import read_bytes
 from trackroller.methods.factor import column
 from trackroller.numerics.numbers import read_number
-from trackroller.numerics.table_cells import Refused, Stored, is_number, split_head
+from trackroller.numerics.table_cells import RefusedCell, Stored, is_number, split_head
 from trackroller.numerics.units import PLAIN, in_unit
 from trackroller.parameters import PARAMETERS
 from trackroller.roller.aliases import AXIS_DISTANCE, RADII
-from trackroller.study.design.entries import (
+from trackroller.study.design.factor_names import (
     FACTOR_NAMES,
     SHELVES,
     check_own_name,
-    field_value,
     names_without_blanks,
     without_blanks,
 )
+from trackroller.study.design.field_values import field_value
 from trackroller.study.file.user_columns import column_names, read_table
 from trackroller.tables.user_table import UserTable
 
@@ -175,7 +175,7 @@ def _cells_of(name: str, cells: Mapping[int, str], path: Any, wrong: Collector) 
     """Return a column with words, units or wrong cells; each wrong cell adds an error."""
     values: list[Any] = []
     for number, cell in cells.items():
-        if not cell or isinstance(cell, Refused):  # the reader has added its error
+        if not cell or isinstance(cell, RefusedCell):  # the reader has added its error
             continue
         try:
             values.append(_value_of(name, cell))

@@ -12,7 +12,8 @@ from trackroller.errors import InputError, collected, unknown_name
 from trackroller.methods import METHODS
 from trackroller.methods.factor import UNBOUNDED, Factor
 from trackroller.parameters import ROLE_OF, ROLES, expressions
-from trackroller.study.design.entries import OPTION_FACTORS, choice
+from trackroller.study.design.factor_names import OPTION_FACTORS
+from trackroller.study.design.field_values import choice
 
 BELLS = (*UNBOUNDED, "truncnormal", "triangular")
 

@@ -69,20 +69,16 @@ def sample(
     """
     settings = _settings(method, options)
     drawn_by = METHODS[method]
+    columns: dict[str, np.ndarray] = {}
     if drawn_by.observed:
-        in_factors = {
-            name
-            for spec in factors.values()
-            for name in expressions.names(spec.get("expression", "0"))
-        }
-        columns = table(settings["table"], {*in_factors, *used})
+        columns = table(settings["table"], {*_in_expressions(factors), *used})
+    parsed = {name: parse(name, spec) for name, spec in factors.items()}
+    meta: dict[str, Any] = {}
+    if drawn_by.observed:
         free, unit = of_columns(columns)
-        meta: dict[str, Any] = {}
-        parsed = {name: parse(name, spec) for name, spec in factors.items()}
         _check_beside_table(parsed, columns, settings["table"])
     else:
-        parsed = {name: parse(name, spec) for name, spec in factors.items()}
-        free = {k: f for k, f in parsed.items() if f.varies}
+        free = {name: factor for name, factor in parsed.items() if factor.varies}
         if not free and not drawn_by.crossed:
             raise InputError("factors", list(factors), "at least one factor that varies")
         _check_weights(free, method)
@@ -92,20 +88,19 @@ def sample(
             settings["genes"] = genes(settings["table"])
         unit, meta = drawn_by.draw(free, int(n), int(seed), settings)
         columns = {name: drawn_by.values(f, unit[:, j]) for j, (name, f) in enumerate(free.items())}
-    rows = len(unit)
-    if rows > MAX_ROWS:
+    if len(unit) > MAX_ROWS:
         raise InputError("method", method, f"at most {MAX_ROWS} rows")
-    for name, factor in parsed.items():
-        if len(factor.levels) == 1:
-            columns[name] = factor.take(np.zeros(rows, dtype=int))
-    columns |= columns_of_rows(parsed, columns)
-    columns |= _derived(parsed, columns, dict(base or {}), rows)
-    order = [*[k for k in columns if k not in parsed], *[k for k in parsed if k in columns]]
-    columns = {name: columns[name] for name in order}
+    columns = _with_computed(columns, parsed, dict(base or {}), len(unit))
     _check_bounds(columns, parsed)
     if settings.get("replicates", 1) > 1:
         meta["replicates"] = settings["replicates"]
     return Design(columns, free, drawn_by, unit, meta | {"seed": int(seed)})
+
+
+def _in_expressions(factors: Mapping[str, Any]) -> set[str]:
+    """Return the names that the expressions of factors use."""
+    texts = [spec.get("expression", "0") for spec in factors.values()]
+    return {name for text in texts for name in expressions.names(text)}
 
 
 def _check_beside_table(
@@ -156,6 +151,23 @@ def _unknown_rows(factor: Factor, levels: np.ndarray, path: str) -> list[InputEr
         unknown_name(factor.name, levels[place], sorted(known)).at(Path(path), lines[place])
         for place in places
     ]
+
+
+def _with_computed(
+    columns: Mapping[str, np.ndarray], parsed: Mapping[str, Factor], base: dict[str, Any], rows: int
+) -> dict[str, np.ndarray]:
+    """Return drawn columns with those of single levels, of shelves and of expressions.
+
+    Columns of a table and of shelves come first, then the factors in their order.
+    """
+    whole = dict(columns)
+    for name, factor in parsed.items():
+        if len(factor.levels) == 1:
+            whole[name] = factor.take(np.zeros(rows, dtype=int))
+    whole |= columns_of_rows(parsed, whole)
+    whole |= _derived(parsed, whole, base, rows)
+    beside = [name for name in whole if name not in parsed]
+    return {name: whole[name] for name in (*beside, *(name for name in parsed if name in whole))}
 
 
 def columns_of_rows(

@@ -30,7 +30,8 @@ from trackroller.parameters import MATERIAL_FIELDS, PARAMETERS, REGIMES, express
 from trackroller.roller.dataset import VARIABLES
 from trackroller.roller.output_names import PARTS, Part, body_of, is_life, parts_of, unit_of
 from trackroller.roller.requirement import DEFAULT, KEY
-from trackroller.study.design.entries import FACTOR_NAMES, check_own_name, choice
+from trackroller.study.design.factor_names import FACTOR_NAMES, check_own_name
+from trackroller.study.design.field_values import choice
 
 SCALES = ("natural", "log10")
 DIRECTIONS = ("max", "min")
