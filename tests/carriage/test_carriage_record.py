@@ -5,8 +5,10 @@ import pytest
 from carts import ROLLER, cart, rollers_below, rollers_between, shuttle
 
 import trackroller as tr
+from trackroller.carriage.example import EXAMPLE
 from trackroller.report.headlines import end_of_carriage, headline_of
 from trackroller.results.carriage_answer import answer_of_carriage
+from trackroller.yaml_file import parse_mapping
 
 POM = ROLLER | {"guide_material": "POM-C", "permissible_wear_depth": 0.2, "guide_overrollings_per_hour": 60}
 LAW = {"radial_force": 90.0, "axial_force": 40.0, "basic_life": 100.0, "law": "lubricated"}
@@ -126,3 +128,11 @@ def test_an_unknown_life_is_bounded_by_its_known_load_cases():
     text = headline_of(answer).text
     assert f"{head['roller']} lasts at most" in text and "ends first" not in text and "pull" in text
     assert end_of_carriage(answer).startswith("The carriage lasts at most")
+
+
+def test_rollers_stand_in_the_order_in_which_they_fail():
+    """The lives of the rollers to their first limits, at their low ends, rise down the table."""
+    ds = tr.carriage(parse_mapping(EXAMPLE, "carriage"))
+    table = answer_of_carriage(ds).table
+    lives = {str(one): float(ds["life_hours_low"].sel(roller=one)) for one in ds["roller"].values}
+    assert sorted(lives, key=lives.get) == table["roller"].tolist() and len(set(lives.values())) > 1

@@ -145,3 +145,18 @@ def test_an_output_of_a_roller_that_skids_everywhere_is_said_by_its_cause(wanted
     assert "not held" in cells and not [one for one in (*cells, *rows.shared, text) if "\u221e" in one]
     shown = re.sub(r"<script.*?</script>", "", (tmp_path / "page.html").read_text(), flags=re.S)
     assert "\u221e N" not in shown and "\u2212\u221e" not in shown
+
+
+def test_a_turning_value_is_that_of_one_form_of_the_worn_groove():
+    """The range of a life by wear is that of the coefficient times that of two forms; a turn moves the first one."""
+    base = WORN | {"permissible_wear_depth": 0.02}
+    results = solved(base, factors=LOADS, outputs=OUTPUTS)
+    by_wear = results.data["life_hours_by_limit_low"].sel(limit="wear", body="roller", roller_profile_radius=-6.3)
+    shortest = float(by_wear.min())
+    asked = solved(base, factors=LOADS, outputs=OUTPUTS, requirement={LIFE: {"min": 3 * shortest}})
+    named = asked.answer.headline["measure"]
+    assert asked.answer.kind == "measure" and named["what"] == "wear_coefficient"
+    longest = float(results.data["life_hours_by_limit_high"].sel(limit="wear", body="roller").max())
+    assert longest / shortest > 1.05 * named["high"] / named["low"], "two forms widen the range of the life"
+    step = (named["high"] / named["low"]) ** (1 / 200)
+    assert named["high"] / 3 / step <= named["turn"] <= named["high"] / 3

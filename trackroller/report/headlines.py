@@ -845,9 +845,8 @@ def spectrum(answer: Answer) -> Headline:
     if answer.kind == "unknown":
         return _joined("The life is not known", [*head["why"][:2], *clauses])
     unsure = _if_model_holds(head)
-    if head["state"]:
-        required = answer.required[0]
-        clauses.append(f"required {_amount(required, required.least)}: {head['state']}")
+    for required, state in zip(answer.required, head["states"], strict=True):
+        clauses.append(f"required {_amount(required, required.least)}: {state}")
     if answer.kind == "unlimited":
         return _joined(capital(f"{unsure}no limit ends this spectrum"), clauses)
     if head["block"]:

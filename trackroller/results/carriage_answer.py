@@ -18,7 +18,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -450,13 +450,21 @@ def _not_given(ds: xr.Dataset) -> Iterator[Caution]:
 
 
 def _table(ds: xr.Dataset) -> pd.DataFrame:
-    """Return one row a roller, the worst one first."""
+    """Return one row a roller in the order in which they fail, those of unknown life last."""
     rows = [_row(ds, str(name)) for name in ds["roller"].values]
     worst = worst_place(ds)[0]
-    rows.sort(key=lambda row: row["roller"] != worst)
+    rows.sort(key=lambda row: (row["roller"] != worst, _life_or_never(row)))
     return pd.DataFrame(
         rows, columns=[name for one in COLUMNS for name in (one.name, one.until) if name]
     )
+
+
+def _life_or_never(row: Mapping[str, Any]) -> float:
+    """Return the low end of the life of a roller [h]; infinity where it is not known."""
+    low = float(row["low"])
+    if math.isnan(low):
+        return math.inf
+    return low
 
 
 def _row(ds: xr.Dataset, roller: str) -> dict[str, Any]:

@@ -25,6 +25,7 @@ from trackroller.parameters import BODIES, PARAMETERS
 from trackroller.roller.case import Case, to_table
 from trackroller.roller.doubts import doubts
 from trackroller.roller.duty import OVERROLLINGS, with_duty
+from trackroller.roller.requirement import KEY
 from trackroller.roller.run_in import groups_for_run_in, with_run_in
 from trackroller.roller.stored_inputs import DOUBTS, NOT_GIVEN, material_values, plain_inputs
 from trackroller.roller.temperature import temperatures_of
@@ -318,6 +319,7 @@ def _labelled(
         f"D = {spectrum.critical_damage:g}",
         "critical_damage": spectrum.critical_damage,
         "period": spectrum.period,
+        KEY: json.dumps({name: {"min": hours} for name, hours in spectrum.required.items()}),
     }
     ds = xr.Dataset(variables, coords=coords, attrs=attrs)
     if spectrum.by_share:  # a shift of these blocks is an hour of travel
