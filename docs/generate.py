@@ -41,7 +41,7 @@ NOUNS = {  # what a stranger must know: the word, and the class whose docstring 
     "ledger": "study.store.ledger.Ledger",
     "spectrum": "study.spectrum.file.Spectrum",
     "carriage": "carriage.file.Carriage",
-    "fit": "fit.fitted.Fit",
+    "fit": "fit.material_fit.MaterialFit",
     "results": "results.results.Results",
     "candidates": "results.candidates.Candidates",
     "answer": "results.answer.Answer",

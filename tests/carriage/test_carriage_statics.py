@@ -13,7 +13,7 @@ from scipy.optimize import lsq_linear, minimize
 from trackroller.carriage import statics
 from trackroller.carriage.file import load_carriage
 from trackroller.carriage.files import study_of
-from trackroller.carriage.loads import GRAVITY, loads_of
+from trackroller.carriage.loads import GRAVITY, wrenches_of
 from trackroller.carriage.solve import forces_of, solve_carriage, springs_of
 from trackroller.carriage.statics import equilibrium
 from trackroller.errors import InputError
@@ -71,7 +71,7 @@ def sums(values):
     whole, ds = load_carriage(values), solved(values)
     left = []
     for i, case in enumerate(whole.cases):
-        rest = loads_of(whole, case).all
+        rest = wrenches_of(whole, case).all
         for j, roller in enumerate(whole.rollers):
             force = roller.pushes * float(ds.radial_force[i, j]) - roller.axis * float(ds.axial_force[i, j])
             rest = rest + np.concatenate([force, np.cross(roller.at, force)])
@@ -145,7 +145,7 @@ def test_a_tilted_mass_has_its_horizontal_radius():
     """A mass 500 mm above the origin moves inward by 500 sin(cant)."""
     curve = {"name": "curve", "speed": 1, "curve_radius": "2 m", "cant": "30 deg", "share": 1}
     whole = load_carriage(cart(cases=[curve], mass={"value": 1, "at": [0, 0, 500]}))
-    force = loads_of(whole, whole.cases[0]).all[:3]
+    force = wrenches_of(whole, whole.cases[0]).all[:3]
     sideways = (2 - 0.25) / 2**2
     across, up = G / 2 - sideways * math.cos(math.pi / 6), -G * math.cos(math.pi / 6) - sideways / 2
     assert force == pytest.approx([0, across, up], abs=1e-12)
@@ -234,7 +234,7 @@ def test_one_sided_contact_has_the_least_energy(lateral, more):
     mass = {"value": 40, "at": [100, 0, 60]}
     whole = load_carriage(cart(mass=mass, rollers=rollers, cases=[{"name": "push", "forces": [force]}]))
     springs = springs_of(whole)
-    wrench = loads_of(whole, whole.cases[0]).all
+    wrench = wrenches_of(whole, whole.cases[0]).all
     reduced = np.concatenate([wrench[1:3], wrench[3:] / springs.length])
     found = equilibrium(springs, reduced)
 
@@ -261,7 +261,7 @@ def sharing(lateral=0.0, structure=None):
 @pytest.mark.parametrize("lateral", [0.0, 900.0, 3000.0])
 def test_axial_stiffness_belongs_to_the_radial_force(lateral, structure):
     whole = load_carriage(sharing(lateral, structure))
-    springs, wrench = springs_of(whole), loads_of(whole, whole.cases[0]).all
+    springs, wrench = springs_of(whole), wrenches_of(whole, whole.cases[0]).all
     found = equilibrium(springs, np.concatenate([wrench[1:3], wrench[3:] / springs.length]))
     assert found.converged
     radial, _ = springs.force(springs.offset + springs.radial @ found.start)
@@ -454,7 +454,7 @@ def carrying_sets(springs, wrench):
 
 
 def reduced(whole, springs):
-    wrench = loads_of(whole, whole.cases[0]).all
+    wrench = wrenches_of(whole, whole.cases[0]).all
     return np.concatenate([wrench[1:3], wrench[3:] / springs.length])
 
 

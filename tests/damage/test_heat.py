@@ -130,3 +130,25 @@ def test_the_drive_turns_the_roller_against_hysteresis():
     unknown = tr.Case(motor_force=0, roller_material={"like": "1.7225-normalised", "loss_fraction": None}, **COOLED)
     alone, with_heat = (tr.solve(unknown, ("forces", *more), contact_model="sliding") for more in ((), ("heat",)))
     assert float(alone.drive_torque) <= float(with_heat.drive_torque) < np.inf
+
+
+def test_the_smaller_of_both_permissible_temperatures_counts():
+    """The use is the rise over what the smaller temperature leaves above 20 degC."""
+    plain = solved(motor_force=0)
+    rise = (plain.flash_temperature_rise + plain.bulk_temperature_rise).max("contact").values
+    for permitted, counts in ((60, 60), (400, 150)):
+        used = solved(motor_force=0, permissible_temperature=permitted).utilisation.sel(limit="heat").values
+        assert used == pytest.approx(rise / (counts - 20), rel=1e-12)
+
+
+def test_a_permissible_temperature_takes_the_place_of_one_that_the_material_lacks():
+    bare = {key: value for key, value in STEEL.items() if key not in ("like", "temperature_limit")}
+    bare |= {"youngs_modulus": 210000, "poisson_ratio": 0.3, "tensile_strength": 800, "fatigue_limit": 300}
+    bare |= {"cycles_at_tensile_strength": 1e3, "cycles_at_fatigue_limit": 1e6}
+    unknown = solved(motor_force=0, roller_material=bare, guide_material=bare)
+    assert "has no temperature_limit" in unknown.attrs["limits_notes"]
+    ds = solved(motor_force=0, roller_material=bare, guide_material=bare, permissible_temperature=60)
+    own = bare | {"temperature_limit": 150}
+    full = solved(motor_force=0, roller_material=own, guide_material=own, permissible_temperature=60)
+    assert ds.utilisation.sel(limit="heat").values == pytest.approx(full.utilisation.sel(limit="heat").values)
+    assert "temperature_limit" not in ds.attrs.get("limits_notes", "")

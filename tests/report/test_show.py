@@ -72,9 +72,9 @@ def test_only_a_result_is_shown(tmp_path):
 def test_results_and_fits_are_there_without_pages(module):
     """No module of a page is imported with them, yet the methods that show them are there."""
     code = (
-        f"import sys, {module}, trackroller.results.results as r, trackroller.fit.fitted as f\n"
+        f"import sys, {module}, trackroller.results.results as r, trackroller.fit.material_fit as f\n"
         "print([m for m in sys.modules if m.startswith('trackroller.report') or m == 'matplotlib'])\n"
-        "print(callable(r.Results.report), callable(r.Results.explore), callable(f.Fit.report))"
+        "print(callable(r.Results.report), callable(r.Results.explore), callable(f.MaterialFit.report))"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.splitlines() == ["[]", "True True True"]

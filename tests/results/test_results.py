@@ -5,11 +5,13 @@ from __future__ import annotations
 import shutil
 from pathlib import Path
 
+import netCDF4
 import numpy as np
 import pytest
 import xarray as xr
 
 import trackroller as tr
+from trackroller.parameters import PARAMETERS
 from trackroller.results.lives_by_tests import beyond_sn_data
 from trackroller.study.file.load import parse_study
 from trackroller.study.run import run_study
@@ -83,6 +85,42 @@ def test_rows_that_are_not_those_of_the_design_are_refused():
         tr.open_study(ds.assign_coords(axial_force=ds["axial_force"] * 1.01))
     with pytest.raises(tr.InputError, match="results with their study file"):
         tr.open_study(ds.drop_attrs())
+
+
+CONSTANTS = {
+    "grid": {"factors": {"friction_coefficient": {"values": ["dry"]}, "axial_force": {"values": [10, 20]}}},
+    "lhs": {
+        "method": "lhs",
+        "samples": 4,
+        "factors": {"axial_force": {"uniform": [10, 40]}, "velocity": {"expression": "60 + 0*axial_force"}},
+    },
+}
+
+
+@pytest.mark.parametrize("kind", CONSTANTS)
+def test_what_all_cases_share_is_an_attribute_with_its_unit(kind, tmp_path):
+    given = {"name": kind, "contact_model": "sliding", "accuracy": "preview", "base": {"axis_distance": 24}}
+    study = parse_study(given | CONSTANTS[kind])
+    folder = run_study(study, tmp_path).folder
+    cases = study.design()  # the columns of the cases, which the solver takes
+    with netCDF4.Dataset(folder.gathered) as file:
+        assert not [name for name, variable in file.variables.items() if not variable.dimensions]
+        attrs = {name: file.getncattr(name) for name in file.ncattrs()}
+    if kind == "grid":  # the number of a word
+        assert attrs["friction_coefficient"] == 0.5
+    for name in PARAMETERS.keys() - {"axial_force"}:
+        values = np.unique(cases[name].values)
+        assert len(values) == 1
+        np.testing.assert_equal(attrs[name], values[0])
+        assert attrs[f"{name}_units"] == PARAMETERS[name].units
+    opened = tr.open_study(folder.root)
+    for again in (opened, tr.open_study(opened.data), tr.open_study(tr.solve(cases))):
+        assert again.base["axis_distance"] == 24.0 and again.base["velocity"] == 60.0
+        assert again.data.attrs["axis_distance_units"] == "mm"
+        assert again.data.attrs["roller_material"] == cases["roller_material"].values[0]
+        np.testing.assert_array_equal(again.design.unit, opened.design.unit)
+        assert not [name for name in again.data.coords if not again.data[name].ndim]
+    assert len(repr(opened).splitlines()) <= 10
 
 
 LOADS = {"axial_force": {"uniform": [10, 40]}, "velocity": {"uniform": [20, 60]}}

@@ -72,7 +72,8 @@ def test_gathered_grid_has_its_factors_as_labelled_dimensions(tmp_path):
     )
     for name in ("study", "versions", "git_commit", "seed", "accuracy", "materials"):
         assert name in ds.attrs
-    assert all("units" in ds[name].attrs for name in ("normal_force", "axial_force", "radial_force"))
+    assert all("units" in ds[name].attrs for name in ("normal_force", "axial_force"))
+    assert (ds.attrs["radial_force"], ds.attrs["radial_force_units"]) == (-200.0, "N")
 
 
 def test_files_carry_their_conventions_and_coordinates_have_no_fill_value(tmp_path):

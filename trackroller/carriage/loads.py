@@ -49,9 +49,9 @@ def force_on(mass: PointMass, case: LoadCase) -> np.ndarray:
 
 
 @dataclass(frozen=True)
-class Loads:
-    """Wrenches (6,) of a load case, each with its drive: of the payloads, and of everything else;
-    and the drive [N].
+class Wrenches:
+    """Wrenches (6,) of a load case [N, N mm] and its drive [N]: one of the payloads, and one of
+    everything else, each with its part of the drive.
     """
 
     payload: np.ndarray
@@ -124,8 +124,8 @@ def _turned(force: np.ndarray, angle: float) -> np.ndarray:
     )
 
 
-def loads_of(carriage: Carriage, case: LoadCase, swing: float = 0.0) -> Loads:
-    """Return the loads of a load case, balanced along the track by the drive.
+def wrenches_of(carriage: Carriage, case: LoadCase, swing: float = 0.0) -> Wrenches:
+    """Return the wrenches of a load case, balanced along the track by the drive.
 
     Parameters
     ----------
@@ -157,8 +157,8 @@ def loads_of(carriage: Carriage, case: LoadCase, swing: float = 0.0) -> Loads:
         if abs(drive) > NEGLIGIBLE:
             allowed = f"the point at which the drive pulls with {drive:.4g} N in case '{case.name}'"
             raise InputError("drive.at", None, allowed, "Add drive: {at: [0, 0, -20]}.")
-        return Loads(payload, other, 0.0)
+        return Wrenches(payload, other, 0.0)
     payload, other = (
         part - wrench_at(np.array([part[0], 0.0, 0.0]), carriage.drive) for part in (payload, other)
     )
-    return Loads(payload, other, drive)
+    return Wrenches(payload, other, drive)

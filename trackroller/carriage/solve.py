@@ -23,7 +23,7 @@ from trackroller.carriage.file import (
     load_carriage,
 )
 from trackroller.carriage.lives import Lives, hours_per_km
-from trackroller.carriage.loads import Loads, loads_of, swing_of
+from trackroller.carriage.loads import Wrenches, swing_of, wrenches_of
 from trackroller.carriage.statics import (
     MOTIONS,
     Equilibrium,
@@ -148,8 +148,10 @@ def solve_carriage(
     else:
         whole = load_carriage(source)
     springs = springs_of(whole)
-    loads, swings = _loads(whole, springs)
-    ds = _solution(whole, springs, loads, swings).assign(_margins(whole, springs, loads, advanced))
+    wrenches, swings = _wrenches(whole, springs)
+    ds = _solution(whole, springs, wrenches, swings).assign(
+        _margins(whole, springs, wrenches, advanced)
+    )
     ds.attrs[DOUBTS] = json.dumps(doubts_of_rollers(whole, ds))
     without_case = [roller.name for roller in whole.rollers if roller.case is None]
     if not lives:
@@ -164,15 +166,15 @@ def forces_of(whole: Carriage) -> xr.Dataset:
     `solve_carriage`.
     """
     springs = springs_of(whole)
-    return _solution(whole, springs, *_loads(whole, springs))
+    return _solution(whole, springs, *_wrenches(whole, springs))
 
 
-def _loads(whole: Carriage, springs: Springs) -> tuple[list[Loads], np.ndarray]:
-    """Return the loads of each load case, and the angles [rad] to which they swing a carriage on a
-    line of rollers.
+def _wrenches(whole: Carriage, springs: Springs) -> tuple[list[Wrenches], np.ndarray]:
+    """Return the wrenches of each load case, and the angles [rad] to which they swing a carriage on
+    a line of rollers.
     """
     if springs.hinge is None:
-        return [loads_of(whole, case) for case in whole.cases], np.full(len(whole.cases), np.nan)
+        return [wrenches_of(whole, case) for case in whole.cases], np.full(len(whole.cases), np.nan)
     swings = []
     for case in whole.cases:
         swing = swing_of(whole, case, springs.hinge)
@@ -185,18 +187,18 @@ def _loads(whole: Carriage, springs: Springs) -> tuple[list[Loads], np.ndarray]:
             raise _free(whole, wrong)
         swings.append(swing)
     pairs = zip(whole.cases, swings, strict=True)
-    return [loads_of(whole, case, swing) for case, swing in pairs], np.array(swings)
+    return [wrenches_of(whole, case, swing) for case, swing in pairs], np.array(swings)
 
 
 def _solution(
-    whole: Carriage, springs: Springs, loads: list[Loads], swings: np.ndarray
+    whole: Carriage, springs: Springs, wrenches: list[Wrenches], swings: np.ndarray
 ) -> xr.Dataset:
     """Return the forces of the rollers as a data set with places, load cases and conventions."""
     states = [
         _equilibrium(whole, springs, one, case.name)
-        for one, case in zip(loads, whole.cases, strict=True)
+        for one, case in zip(wrenches, whole.cases, strict=True)
     ]
-    variables = _forces(whole, states, loads)
+    variables = _forces(whole, states, wrenches)
     variables |= _of_catalogue(whole, variables) | _places(whole)
     if springs.hinge is not None:
         long_name = (
@@ -339,10 +341,10 @@ def _reduced(wrench: np.ndarray, springs: Springs) -> np.ndarray:
     return springs.basis.T @ np.concatenate([wrench[1:3], wrench[3:] / springs.length])
 
 
-def _equilibrium(whole: Carriage, springs: Springs, loads: Loads, name: str) -> Equilibrium:
+def _equilibrium(whole: Carriage, springs: Springs, wrenches: Wrenches, name: str) -> Equilibrium:
     """Return the forces of the rollers in a load case; an error names the case."""
     try:
-        state = equilibrium(springs, _reduced(loads.all, springs))
+        state = equilibrium(springs, _reduced(wrenches.all, springs))
     except Moves as error:
         allowed = "loads that rollers which only press can carry"
         tips = "does not hold"
@@ -357,7 +359,7 @@ def _equilibrium(whole: Carriage, springs: Springs, loads: Loads, name: str) -> 
             "case", name, allowed, remedy, f"{tips} the carriage: it {error.motion}"
         ) from None
     unknown = _unknown(whole)
-    if unknown and not (is_determinate(springs, state) and _decided(whole, loads, state)):
+    if unknown and not (is_determinate(springs, state) and _decided(whole, wrenches, state)):
         needs = (
             f"the stiffness, because the statics alone does not decide the forces in case '{name}'"
         )
@@ -375,7 +377,7 @@ def _unknown(whole: Carriage) -> list[int]:
     ]
 
 
-def _decided(whole: Carriage, loads: Loads, state: Equilibrium) -> bool:
+def _decided(whole: Carriage, wrenches: Wrenches, state: Equilibrium) -> bool:
     """Return whether other values of the unknown stiffnesses give the same forces, and lift the
     same rollers.
     """
@@ -383,7 +385,7 @@ def _decided(whole: Carriage, loads: Loads, state: Equilibrium) -> bool:
     for compliance in (1e-5 * steps, 1e-5 * steps[::-1]):
         springs = springs_of(whole, compliance.tolist())
         try:
-            other = equilibrium(springs, _reduced(loads.all, springs))
+            other = equilibrium(springs, _reduced(wrenches.all, springs))
         except Moves:
             return False
         near = 1e-6 * float(state.radial.max(initial=0.0))
@@ -399,7 +401,7 @@ def _attrs(units: str, long_name: str, symbol: str = "") -> dict[str, str]:
     return {"units": units, "long_name": long_name, "symbol": symbol}
 
 
-def _forces(whole: Carriage, states: list[Equilibrium], loads: list[Loads]) -> dict[str, Any]:
+def _forces(whole: Carriage, states: list[Equilibrium], wrenches: list[Wrenches]) -> dict[str, Any]:
     """Return the forces of rollers and drive, and what the file says of the load cases, as
     variables.
     """
@@ -424,7 +426,7 @@ def _forces(whole: Carriage, states: list[Equilibrium], loads: list[Loads]) -> d
         ),
         "drive_force": (
             _C,
-            np.array([state.drive for state in loads]),
+            np.array([own.drive for own in wrenches]),
             _attrs("N", "force of the drive along the track"),
         ),
         "converged": (
@@ -474,7 +476,7 @@ def _places(whole: Carriage) -> dict[str, Any]:
 
 
 def _margins(
-    whole: Carriage, springs: Springs, loads: list[Loads], advanced: Callable[[int], object]
+    whole: Carriage, springs: Springs, wrenches: list[Wrenches], advanced: Callable[[int], object]
 ) -> dict[str, Any]:
     """Return the multipliers of payload and of all loads to one contact, to lift-off and to
     tipping.
@@ -485,7 +487,7 @@ def _margins(
             angles[j] = roller.case.contact_angle
     tangent = np.tan(np.radians(angles))
     out: dict[str, list[float]] = {}
-    for one in loads:
+    for one in wrenches:
         payload, other = (_reduced(part, springs) for part in (one.payload, one.other))
         for name, fixed, varying in (
             ("payload", other, payload),
@@ -505,14 +507,14 @@ def _margins(
     return {name: (_C, np.array(out[name]), _attrs("1", long)) for name, long in names.items()}
 
 
-def _swings_further(springs: Springs, loads: Loads) -> bool:
+def _swings_further(springs: Springs, wrenches: Wrenches) -> bool:
     """Return whether another payload swings a carriage on a line of rollers, so that no margin of
     it is known.
     """
     if springs.hinge is None:
         return False
-    force = loads.payload[1:3]
-    moment = loads.payload[3]
+    force = wrenches.payload[1:3]
+    moment = wrenches.payload[3]
     about = moment - float(springs.hinge[0] * force[1] - springs.hinge[1] * force[0])
     return abs(about) > 1e-9 * springs.length * float(np.linalg.norm(force))
 

@@ -10,7 +10,7 @@ import typer
 from trackroller.errors import escaped
 
 if TYPE_CHECKING:
-    from trackroller.fit.fitted import Fit
+    from trackroller.fit.material_fit import MaterialFit
 
 fit = typer.Typer(no_args_is_help=True, help="Values of materials from tests, and the next test.")
 
@@ -68,7 +68,7 @@ def fit_sn(  # noqa: PLR0913 - one argument for each option of the command
     _finish(fit, file, replace, report)
 
 
-def _finish(fit: Fit, file: Path, replace: bool, page: Path | None) -> None:
+def _finish(fit: MaterialFit, file: Path, replace: bool, page: Path | None) -> None:
     """Print what was fitted, and write material, posterior and page."""
     from trackroller.cli.case import writable_page
     from trackroller.files import all_or_none

@@ -65,7 +65,7 @@ class Run(NamedTuple):
     off: float
 
 
-class Findings(NamedTuple):
+class PointFaults(NamedTuple):
     """What is wrong with points in increasing order of x.
 
     Attributes
@@ -207,7 +207,7 @@ def in_order(points: np.ndarray) -> np.ndarray:
     return order[np.concatenate([[True], ~again])]
 
 
-def examined(x: np.ndarray, z: np.ndarray) -> Findings:
+def examined(x: np.ndarray, z: np.ndarray) -> PointFaults:
     """Return what is wrong with points.
 
     Parameters
@@ -228,14 +228,14 @@ def examined(x: np.ndarray, z: np.ndarray) -> Findings:
 
 
 @lru_cache(maxsize=64)  # a case is checked, asked about and solved with the same points
-def _examined(x_bytes: bytes, z_bytes: bytes) -> Findings:
+def _examined(x_bytes: bytes, z_bytes: bytes) -> PointFaults:
     """Examine points whose coordinates are given as bytes, by which the results are kept; see
     `examined`.
     """
     x, z = np.frombuffer(x_bytes), np.frombuffer(z_bytes)
     spacing = float(np.median(np.diff(x)))
     if x.size < FEWEST:
-        return Findings((), (), 0.0, spacing)
+        return PointFaults((), (), 0.0, spacing)
     grain = rounding_of(x, z)
     noise = max(_deviation(_differences(x, z, 4)), grain)
     fits = [_Fits(x, z, degree, count) for degree, count in _FITS if x.size >= 2 * count]
@@ -251,7 +251,7 @@ def _examined(x_bytes: bytes, z_bytes: bytes) -> Findings:
         *(place for place in _steps(x, z, noise, fits) if place not in inside),
     }
     scatter = max(_random_scatter(x, z), grain)
-    return Findings(
+    return PointFaults(
         tuple(sorted(runs)), tuple(sorted(jumps)), scatter, spacing, _runs_at_ends(x, z, noise)
     )
 

@@ -31,7 +31,7 @@ from trackroller.contact.measured_points import (
     FARTHEST,
     MISLEADING,
     TOLD,
-    Findings,
+    PointFaults,
     examined,
     in_order,
 )
@@ -205,15 +205,15 @@ def _shape(
         allowed = "the standard deviation of the noise >= 0 [mm], or 'auto'"
         smooth = number_in(smooth, f"{field}.smooth", allowed, 0.0, LARGEST, unit="mm")
     order = _checked_order(points, given, f"{field}.{form}")
-    found = examined(*points[order].T)
+    faults = examined(*points[order].T)
     meant = "smooth" in value and not smooth
     if not meant:
-        _check_curve(found, points, order, given, f"{field}.{form}")
-    if "smooth" not in value and found.roughness >= MISLEADING:
-        error = _unsmoothed(found, field)
+        _check_curve(faults, points, order, given, f"{field}.{form}")
+    if "smooth" not in value and faults.roughness >= MISLEADING:
+        error = _unsmoothed(faults, field)
         error.file = None if given.path is None else str(given.path)
         raise error
-    if smooth or (meant and (found.runs or found.jumps or found.roughness >= TOLD)):
+    if smooth or (meant and (faults.runs or faults.jumps or faults.roughness >= TOLD)):
         out["smooth"] = smooth
     return out
 
@@ -310,9 +310,9 @@ def _checked_order(points: np.ndarray, given: PointRows, field: str) -> np.ndarr
 
 
 def _check_curve(
-    found: Findings, points: np.ndarray, order: np.ndarray, given: PointRows, field: str
+    faults: PointFaults, points: np.ndarray, order: np.ndarray, given: PointRows, field: str
 ) -> None:
-    """Refuse points off the curve through their neighbours, and jumps; `found` counts in
+    """Refuse points off the curve through their neighbours, and jumps; `faults` counts in
     `order`.
     """
     wrong = Collector()
@@ -322,7 +322,7 @@ def _check_curve(
         wrong.errors.append(given.at(row, error))
 
     near: set[int] = set()
-    for run in found.runs:
+    for run in faults.runs:
         rows = sorted(order[run.first : run.last + 1].tolist())
         near |= set(range(run.first - 1, run.last + 1))
         lies = (
@@ -333,7 +333,7 @@ def _check_curve(
             "points, or give smooth: 0."
         )
         refuse(rows, rows[0], f"{'lies' if len(rows) == 1 else 'lie'} {lies}", remedy)
-    for k in (k for k in found.jumps if k not in near):
+    for k in (k for k in faults.jumps if k not in near):
         (x, z), (to_x, to_z) = points[order[k]], points[order[k + 1]]
         rows = sorted((int(order[k]), int(order[k + 1])))
         lies = (
@@ -360,9 +360,9 @@ def _length(size: float) -> str:
     return f"{size:.3g} mm" if size >= 0.1 else f"{1e3 * size:.2g} µm"
 
 
-def _unsmoothed(found: Findings, field: str) -> InputError:
+def _unsmoothed(faults: PointFaults, field: str) -> InputError:
     """Return the error for points whose scatter would count as shape."""
-    noise = f"{1e3 * found.scatter:.2g} um"
+    noise = f"{1e3 * faults.scatter:.2g} um"
     wrong = (
         f"is missing, and the points scatter by {noise} (noise or rounding), which can raise "
         "the pressure by "
@@ -371,7 +371,7 @@ def _unsmoothed(found: Findings, field: str) -> InputError:
     # the scatter found here is no advice: a curve smoothed by slightly less than the noise follows
     # it
     remedy = "Give smooth: auto. Give smooth: 0 if the scatter is the shape."
-    return InputError(f"{field}.smooth", None, allowed, remedy, wrong + found.pressure_rise)
+    return InputError(f"{field}.smooth", None, allowed, remedy, wrong + faults.pressure_rise)
 
 
 def _edge(value: Any, field: str) -> dict[str, float]:

@@ -212,7 +212,7 @@ def deep_planes(loads: PatchLoads, poisson_ratio: np.ndarray) -> np.ndarray:
     return np.asarray(planes_of_patch(own, kernels, ratio, ladder))
 
 
-class Loads(NamedTuple):
+class LoadedPatches(NamedTuple):
     """Loads of m patches, q_x, q_y, p (m, ny, nx) each [MPa]; spacings (m, 2) [mm]; nu (m, body)
     [1]; bodies that are asked for (m, body).
     """
@@ -263,12 +263,12 @@ def _write_shears(patches, loads, kernels, ladder, log_depth, out):  # pragma: n
                 out[m, body] = top_of_depths(shear[k, body], log_depth)
 
 
-def shakedown_shears(loads: Loads) -> np.ndarray:
+def shakedown_shears(loads: LoadedPatches) -> np.ndarray:
     """Return the shear yield stress at which the stresses below patches just shake down.
 
     Parameters
     ----------
-    loads : Loads
+    loads : LoadedPatches
         The patches and the bodies that are asked for.
 
     Returns

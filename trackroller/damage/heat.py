@@ -135,7 +135,8 @@ def evaluate(solved: SolvedRollers) -> Values:
     bulk = power / (1e-6 * c["heat_transfer_coefficient"] * c["cooled_area"])
     flashes = whole * np.stack([partition, 1.0 - partition], axis=2)
     bulks = np.stack([bulk[:, None] + 0.0 * partition, 0.0 * partition], axis=2)
-    room = (m["temperature_limit"] - c["ambient_temperature"][:, None])[:, None, :]
+    allowed = np.fmin(m["temperature_limit"], c["permissible_temperature"][:, None])
+    room = (allowed - c["ambient_temperature"][:, None])[:, None, :]
     rise = flashes + bulks
     # a body whose surroundings are too hot is over its limit without any heat of its own
     used = np.where(
@@ -197,7 +198,7 @@ LIMIT = Limit(
             _CB,
             "1",
             "",
-            "temperature rise over what the material's limit leaves",
+            "temperature rise over what the permissible temperature leaves",
             LARGEST,
         ),
         ("heat_partition", _C, "1", "beta", "share of the heat that flows into the roller"),
@@ -227,6 +228,14 @@ LIMIT = Limit(
             0.0,
         ),
         optional("cooled_area", "A_c", "mm2", "surface from which the roller loses heat", 0.0),
+        optional(
+            "permissible_temperature",
+            "theta_zul",
+            "degC",
+            "permissible temperature of roller and guide; that of their materials counts too",
+            -100.0,
+            4e3,
+        ),
         Parameter(
             "ambient_temperature",
             "theta_0",
@@ -264,7 +273,8 @@ LIMIT = Limit(
         "heat_transfer_coefficient",
         "cooled_area",
     ),
-    compares=("heat_utilisation", "temperature rise that the material allows"),
+    or_field={"temperature_limit": "permissible_temperature"},
+    compares=("heat_utilisation", "temperature rise that is permitted"),
     assumes=(
         "Heat: friction and values of materials do not depend on temperature, but E and R_m "
         "where a table is given.",

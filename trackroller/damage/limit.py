@@ -216,6 +216,9 @@ class Limit:
     instead : mapping of str to tuple of str
         By a required value of a material, the mark and the value that takes its place where the
         mark is 1.
+    or_field : mapping of str to str
+        By a required value of a material, the field of a case that bounds the same. The material
+        may lack its value where the case gives this field; otherwise both count.
     bodies : tuple of str
         Bodies that the limit concerns.
     bounded : bool
@@ -260,6 +263,7 @@ class Limit:
     requires: tuple[str, ...] = ()
     requires_by: Mapping[str, Mapping[str, tuple[str, ...]]] = field(default_factory=dict)
     instead: Mapping[str, tuple[str, str]] = field(default_factory=dict)
+    or_field: Mapping[str, str] = field(default_factory=dict)
     bodies: tuple[str, ...] = BODIES
     bounded: bool = True
     beside: bool = False
@@ -297,7 +301,11 @@ class Limit:
             if name in solved.materials:
                 mark, other = self.instead.get(name, (name, ""))
                 marked = (solved.materials[mark] == 1.0) & (other != "")
-                yield from ((name, ~marked), *(((other, marked),) if other else ()))
+                counts = ~marked
+                if name in self.or_field:
+                    given = ~missing(solved.cases[self.or_field[name]])[:, None]
+                    counts &= ~(given & np.isnan(solved.materials[name]))
+                yield from ((name, counts), *(((other, marked),) if other else ()))
 
     def lacking(self, solved: SolvedRollers) -> np.ndarray:
         """Return where a value that a verdict on a body requires is not given, (n, body) bool."""

@@ -50,7 +50,7 @@ def shears(
         k, (n, contact, body) [MPa]; NaN where no number is wanted.
     """
     # numba compiles on import, and planning needs none of it
-    from trackroller.damage.deep_planes import Loads, shakedown_shears
+    from trackroller.damage.deep_planes import LoadedPatches, shakedown_shears
 
     case, contact = t.solved_patches
     wanted = np.ones((case.size, len(BODIES)), dtype=bool)
@@ -62,7 +62,7 @@ def shears(
         field[at] for field in (t.shear_lateral, t.shear_rolling, t.pressure)
     )
     steps = np.stack(t.steps, axis=2)[at]
-    own = Loads(lateral, rolling, pressure, steps, poisson_ratio[at[0]], wanted[some])
+    own = LoadedPatches(lateral, rolling, pressure, steps, poisson_ratio[at[0]], wanted[some])
     surface = np.sqrt(np.max(lateral**2 + rolling**2, axis=(1, 2)))
     out = np.full(wanted.shape, np.nan)
     out[some] = np.maximum(shakedown_shears(own), surface[:, None])

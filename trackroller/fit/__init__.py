@@ -5,5 +5,5 @@ and the next test.
 from collections.abc import Callable
 from typing import Any
 
-# methods of `Fit`; trackroller/__init__ adds what shows it
+# methods of `MaterialFit`; trackroller/__init__ adds what shows it
 SHOWN: dict[str, Callable[..., Any]] = {}

@@ -28,8 +28,8 @@ from trackroller.damage.wear import KM_PER_HOUR
 from trackroller.errors import Collector, InputError, check_names, listing
 from trackroller.files import files_beside, find_beside
 from trackroller.fit.coupons import check_falls, check_held, deviation_of, priors_of
-from trackroller.fit.fitted import Fit, Group, check_texts
 from trackroller.fit.line import Line, Tests, log_or_end
+from trackroller.fit.material_fit import Group, MaterialFit, check_texts
 from trackroller.fit.posterior import ln_range
 from trackroller.fit.solved_rollers import DEFAULTS, Solved, solved_rollers
 from trackroller.fit.table import LEAST, TestTable, read_tests
@@ -86,7 +86,7 @@ def fit_bench(  # noqa: PLR0913 - one argument for each choice of a fit
     like: str | None = None,
     base: Mapping[str, Any] | None = None,
     prior: Mapping[str, Sequence[float]] | None = None,
-) -> Fit:
+) -> MaterialFit:
     """Fit values of a material to rollers that ran on a bench.
 
     Parameters
@@ -117,7 +117,7 @@ def fit_bench(  # noqa: PLR0913 - one argument for each choice of a fit
 
     Returns
     -------
-    Fit
+    MaterialFit
         `.material`, `.data`, `.interval(...)` and `.report(path)`. The values hold for the contact
         model, the life criterion and the accuracy of the fit.
 
@@ -198,7 +198,7 @@ def fit_bench(  # noqa: PLR0913 - one argument for each choice of a fit
         )
     notes += _outside(rows, solved, tested)
     name = name or f"{material.name} fitted"
-    return Fit(
+    return MaterialFit(
         "bench",
         name,
         tuple(groups),

@@ -20,9 +20,9 @@ from scipy.special import stdtrit
 
 from trackroller.damage.catalogue import LAWS, OFFSETS, POWERS, travel_km
 from trackroller.errors import InputError, listing
-from trackroller.fit.fitted import CONFIDENCE
 from trackroller.fit.heads import NAMES_OF_TESTS
 from trackroller.fit.line import Interval
+from trackroller.fit.material_fit import CONFIDENCE
 from trackroller.fit.table import LEAST, TestTable, read_tests
 from trackroller.numerics.numbers import finite_number
 

@@ -20,9 +20,9 @@ from typing import Any
 import numpy as np
 
 from trackroller.errors import InputError, check_names, listing
-from trackroller.fit.fitted import Fit, Group, check_texts
 from trackroller.fit.heads import OF_COUPONS, has_failed, only_marks, says_how, told_heads
 from trackroller.fit.line import BOUNDS, Line, Tests
+from trackroller.fit.material_fit import Group, MaterialFit, check_texts
 from trackroller.fit.posterior import Normal, ln_range
 from trackroller.fit.table import (
     LEAST,
@@ -77,7 +77,7 @@ def fit_sn(  # noqa: PLR0913 - one argument for each choice of a fit
     knee: bool | None = None,
     like: str | None = None,
     prior: Mapping[str, Sequence[float]] | None = None,
-) -> Fit:
+) -> MaterialFit:
     """Fit an S-N line with its scatter, and with its fatigue limit if specimens ran out, to a table
     of coupons.
 
@@ -111,7 +111,7 @@ def fit_sn(  # noqa: PLR0913 - one argument for each choice of a fit
 
     Returns
     -------
-    Fit
+    MaterialFit
         `.material`, `.data`, `.interval(...)` and `.report(path)`.
 
     Raises
@@ -172,7 +172,7 @@ def fit_sn(  # noqa: PLR0913 - one argument for each choice of a fit
         line, sentences = _decided(line)
         notes += sentences
     fatigue = Group("fatigue", line, priors, at=_stated_at(line))
-    return Fit("sn", name or "fitted material", (fatigue,), tests, like, given, notes)
+    return MaterialFit("sn", name or "fitted material", (fatigue,), tests, like, given, notes)
 
 
 def _check_number(tests: TestTable, line: Line) -> None:

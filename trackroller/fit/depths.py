@@ -12,7 +12,7 @@ import numpy as np
 
 from trackroller.errors import InputError, check_names
 from trackroller.fit.bench import DEEPEST, check_base, not_given_notes, wear_group, worn_alone
-from trackroller.fit.fitted import Fit, check_texts
+from trackroller.fit.material_fit import MaterialFit, check_texts
 from trackroller.fit.solved_rollers import DEFAULTS
 from trackroller.fit.table import LEAST, read_tests
 from trackroller.parameters import BODIES
@@ -32,7 +32,7 @@ def fit_wear(
     body: str = "roller",
     name: str = "",
     like: str | None = None,
-) -> Fit:
+) -> MaterialFit:
     """Fit the wear coefficient of a body to depths of one groove that were measured over its
     travel.
 
@@ -51,7 +51,7 @@ def fit_wear(
 
     Returns
     -------
-    Fit
+    MaterialFit
         With `wear_coefficient` and its interval.
 
     Raises
@@ -116,7 +116,7 @@ def fit_wear(
         base_name = material
     given |= {"body": body}
     not_given = not_given_notes([case])
-    return Fit(
+    return MaterialFit(
         "wear",
         name or f"{base_name} worn",
         (group,),

@@ -20,8 +20,8 @@ import xarray as xr
 from scipy.special import log_ndtr
 
 from trackroller.errors import InputError
-from trackroller.fit.fitted import Fit, Group, share
 from trackroller.fit.line import Line, Tests, Values
+from trackroller.fit.material_fit import Group, MaterialFit, share
 from trackroller.fit.posterior import Posterior
 from trackroller.fit.solved_rollers import check_same, fields_of, solved_rollers
 from trackroller.numerics.numbers import finite_number, number_or_nan
@@ -38,7 +38,7 @@ MOST_TESTS = 128  # of a simulated campaign
 
 
 def next_tests(
-    fit: Fit,
+    fit: MaterialFit,
     candidates: Any,
     design: Any,
     tests: int = 3,
@@ -51,7 +51,7 @@ def next_tests(
 
     Parameters
     ----------
-    fit : Fit
+    fit : MaterialFit
         Result of `trackroller.fit_bench` or `trackroller.fit_sn` so far.
     candidates : list of cases, or xarray.Dataset along `case`
         Rollers that could be tested, such as `load_study(file).design()`.
@@ -381,13 +381,13 @@ def _ranked(
 
 
 def tests_until(
-    fit: Fit, plan: xr.Dataset, factor: float, *, campaigns: int = CAMPAIGNS, seed: int = 1
+    fit: MaterialFit, plan: xr.Dataset, factor: float, *, campaigns: int = CAMPAIGNS, seed: int = 1
 ) -> xr.Dataset:
     """Simulate how many more tests narrow the interval of B10 of a design to a factor.
 
     Parameters
     ----------
-    fit : Fit
+    fit : MaterialFit
         The fit so far.
     plan : xarray.Dataset
         What `next_tests` returned for it; a campaign repeats its `chosen` tests in their order.

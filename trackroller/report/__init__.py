@@ -19,16 +19,16 @@ if TYPE_CHECKING:
     import xarray as xr
 
     from trackroller.fit.catalogue import CatalogueFit
-    from trackroller.fit.fitted import Fit
+    from trackroller.fit.material_fit import MaterialFit
     from trackroller.results.results import Results
 
 
-def write(result: xr.Dataset | Results | Fit | CatalogueFit, path: Path | str) -> Path:
+def write(result: xr.Dataset | Results | MaterialFit | CatalogueFit, path: Path | str) -> Path:
     """Write the page of a result as HTML or PDF.
 
     Parameters
     ----------
-    result : xarray.Dataset, Results, Fit or CatalogueFit
+    result : xarray.Dataset, Results, MaterialFit or CatalogueFit
         Results of a study, its data set in `study.nc`, or what `trackroller.solve` returned for its
         design: the report. The data set of one case: its sheet. What `solve_spectrum`,
         `trackroller.carriage`, `trackroller.wear`, `trackroller.patch`, `trackroller.fit_sn`,
@@ -64,12 +64,12 @@ def write(result: xr.Dataset | Results | Fit | CatalogueFit, path: Path | str) -
         return _write_without_study(result, path)
 
     from trackroller.fit.catalogue import CatalogueFit
-    from trackroller.fit.fitted import Fit
+    from trackroller.fit.material_fit import MaterialFit
     from trackroller.report.pages.fit import write_fit
     from trackroller.report.pages.life_rule import write_rule
     from trackroller.report.show import results_of, write_report  # heavy: pandas, SciPy and SALib
 
-    if isinstance(result, Fit):
+    if isinstance(result, MaterialFit):
         return write_fit(result, path)
     if isinstance(result, CatalogueFit):
         return write_rule(result, path)
@@ -98,7 +98,9 @@ def _write_without_study(ds: xr.Dataset, path: Path | str) -> Path:
 
 
 class _CallableModule(ModuleType):
-    def __call__(self, result: xr.Dataset | Results | Fit | CatalogueFit, path: Path | str) -> Path:
+    def __call__(
+        self, result: xr.Dataset | Results | MaterialFit | CatalogueFit, path: Path | str
+    ) -> Path:
         return write(result, path)
 
 

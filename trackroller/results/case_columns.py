@@ -14,7 +14,7 @@ from trackroller.parameters import MAPPING_FIELDS, MATERIAL_FIELDS, PARAMETERS
 from trackroller.roller.dataset import shown
 from trackroller.study.design.build import OF_SHELF
 from trackroller.study.design.levels import OF_MATERIALS
-from trackroller.study.outputs import flat
+from trackroller.study.outputs import OF_WORD, constant, flat
 
 CONTACT_RESULTS = shown("contact")
 WHOLE_RESULTS = shown()
@@ -61,7 +61,7 @@ def input_columns(ds: xr.Dataset, dims: Sequence[str]) -> dict[str, np.ndarray]:
     ]
     own += [n for n, v in ds.coords.items() if OF_SHELF in v.attrs and n not in MAPPING_FIELDS]
     # numbers that belong to a friction coefficient given as a word
-    words = [f"{n}_value" for n in PARAMETERS]
+    words = [f"{n}{OF_WORD}" for n in PARAMETERS]
     return _columns(
         ds,
         dims,
@@ -147,10 +147,8 @@ def factor_names(
 def base_values(ds: xr.Dataset, base: Mapping[str, Any]) -> dict[str, Any]:
     """Return the values of the parameters that are the same in all cases."""
     values = {name: parameter.default for name, parameter in PARAMETERS.items()} | dict(base)
-    for name in (*PARAMETERS, *OF_MATERIALS):
-        if name in ds.variables and ds[name].ndim == 0:
-            values[name] = ds[name].item()
-    return values
+    shared = {name: constant(ds, name) for name in (*PARAMETERS, *OF_MATERIALS)}
+    return values | {name: value for name, value in shared.items() if value is not None}
 
 
 def codes(table: pd.DataFrame, names: Iterable[Any]) -> np.ndarray:

@@ -15,7 +15,7 @@ from trackroller.methods.factor import readable
 from trackroller.parameters import MATERIAL_FIELDS, PARAMETERS, REGIMES
 from trackroller.parameters.carriage_fields import parameter_of
 from trackroller.parameters.expressions import condition
-from trackroller.study.outputs import flat, outputs, regimes
+from trackroller.study.outputs import constant, flat, outputs, regimes
 
 Column = tuple[np.ndarray, str, str]  # values (n,), units, long name
 
@@ -47,7 +47,7 @@ def quantity_of(
     """
     if name == "regime":
         return np.array(REGIMES, dtype=object)[regimes(ds, dims)], "", "regime"
-    given = name in ds.variables
+    given = name in ds.variables or constant(ds, name) is not None
     if (
         name in PARAMETERS
         or name in MATERIAL_FIELDS

@@ -40,7 +40,9 @@ class Results(SolvedCases):
     design : Design
         The rows of the design with their places and the groups of factors, as they were drawn.
     data : xarray.Dataset
-        The results, over the factors of a grid or along `case`, with every input as a coordinate.
+        The results, over the factors of a grid or along `case`. An input that varies is a
+        coordinate; one that all cases share is an attribute, such as `axis_distance`, with its unit
+        beside it (`axis_distance_units`), NaN where no case gives it.
     known_indices : xarray.Dataset, optional
         Sensitivity indices that were computed before. A data set without variables stands for a
         study that has none. By default they are computed when they are needed.

@@ -28,7 +28,15 @@ from trackroller.results.targets import at_points, scattering_body
 from trackroller.roller.output_names import body_of, is_life
 from trackroller.study.design.levels import in_words
 from trackroller.study.file.goals import statistic
-from trackroller.study.outputs import Output, default_names, flat, of_first_limit, outputs, regimes
+from trackroller.study.outputs import (
+    Output,
+    constant,
+    default_names,
+    flat,
+    of_first_limit,
+    outputs,
+    regimes,
+)
 
 PERCENTILES = (1.0, 5.0, 10.0, 50.0, 90.0, 95.0, 99.0)
 
@@ -162,7 +170,7 @@ def material_deviations(results: SolvedCases) -> dict[str, np.ndarray]:
                 int(np.prod([ds.sizes[d] for d in dims])),
                 math.log10(float(scatter_by_body)) / DEVIATES_10_TO_90,
             )
-        elif field in ds.variables:
+        elif field in ds.variables or constant(ds, field) is not None:
             names = flat(ds, field, dims)
             of = {
                 str(n): float(SNCurve.of(known[str(n)]).log_life_deviation)

@@ -107,6 +107,9 @@ class Case(_Numbers):
     heat_transfer_coefficient, cooled_area, ambient_temperature : float or None
         Heat transfer of the roller [W/(m2 K)], the surface that loses heat [mm2] and the
         temperature of the air [degC], for the limit `heat`.
+    permissible_temperature : float or None
+        Permissible temperature of roller and guide [degC], for the limit `heat`; the smaller one of
+        it and the `temperature_limit` of a material counts.
     permissible_wear_depth : float or None
         Wear depth that ends the life [mm], for the limit `wear`.
     travel : float

@@ -15,7 +15,7 @@ from trackroller.contact.drawn_profiles import touching_place
 from trackroller.contact.measured_points import (
     MISLEADING,
     TOLD,
-    Findings,
+    PointFaults,
     examined,
     gap,
     in_order,
@@ -44,6 +44,7 @@ USUAL: dict[str, tuple[float, float]] = {
     "friction_coefficient": (0.0, 1.0),
     "ambient_temperature": (0.0, 200.0),
     "cooled_area": (100.0, 1e7),
+    "permissible_temperature": (0.0, 250.0),
     "permissible_wear_depth": (1e-4, 10.0),
 }
 # small values are usual beside larger ones: only the largest counts
@@ -288,7 +289,7 @@ def _of_points(name: str, profile: Mapping[str, Any], guide_radius: float) -> li
         return []
     points = np.asarray(profile["points"], dtype=float)
     order = in_order(points)
-    findings = examined(*points[order].T)
+    faults = examined(*points[order].T)
     steps = np.sign(np.diff(points[:, 0]))
     sentences = []
     width = float(np.ptp(points[:, 0]))
@@ -308,8 +309,8 @@ def _of_points(name: str, profile: Mapping[str, Any], guide_radius: float) -> li
         sentences.append(f"{name}: its points run from large to small x; they were sorted by x.")
     elif np.any(steps < 0):
         sentences.append(f"{name}: its points do not run in one direction; they were sorted by x.")
-    sentences += [f"{name}: {text}" for text in _gaps_and_waves(points[order], findings)]
-    for run in findings.at_ends:
+    sentences += [f"{name}: {text}" for text in _gaps_and_waves(points[order], faults)]
+    for run in faults.at_ends:
         ends = " to ".join(
             f"({px:.4g}, {pz:.4g})" for px, pz in points[order][[run.first, run.last]]
         )
@@ -319,29 +320,29 @@ def _of_points(name: str, profile: Mapping[str, Any], guide_radius: float) -> li
             "if they are a speck, leave them out."
         )
     if profile.get("smooth"):
-        return sentences + _error_of_smoothing(name, findings)
-    return sentences + _scatter_as_shape(name, findings, "smooth" in profile)
+        return sentences + _error_of_smoothing(name, faults)
+    return sentences + _scatter_as_shape(name, faults, "smooth" in profile)
 
 
-def _error_of_smoothing(name: str, findings: Findings) -> list[str]:
+def _error_of_smoothing(name: str, faults: PointFaults) -> list[str]:
     """Return a sentence about points that scatter too much to be smoothed."""
-    if findings.error_if_smoothed < UNSURE:
+    if faults.error_if_smoothed < UNSURE:
         return []
     return [
-        f"{name}: its points scatter by {1e3 * findings.scatter:.2g} µm at distances of "
-        f"{findings.spacing:.2g} mm; "
-        f"after smoothing, the pressure is wrong by about {100 * findings.error_if_smoothed:.0f} "
+        f"{name}: its points scatter by {1e3 * faults.scatter:.2g} µm at distances of "
+        f"{faults.spacing:.2g} mm; "
+        f"after smoothing, the pressure is wrong by about {100 * faults.error_if_smoothed:.0f} "
         "%. Measure with "
         "less noise, or describe the shape by its radii (arc, arcs)."
     ]
 
 
-def _scatter_as_shape(name: str, findings: Findings, meant: bool) -> list[str]:
+def _scatter_as_shape(name: str, faults: PointFaults, meant: bool) -> list[str]:
     """Return sentences about scatter that counts as shape; `meant` says that the profile has
     `smooth: 0`.
     """
     sentences = []
-    if findings.runs or findings.jumps:
+    if faults.runs or faults.jumps:
         sentences.append(
             f"{name}: points lie off their neighbours, and smooth: 0 takes them as shape."
         )
@@ -350,17 +351,17 @@ def _scatter_as_shape(name: str, findings: Findings, meant: bool) -> list[str]:
     if meant:
         least = MISLEADING
         remedy = "add smooth: auto"
-    if findings.roughness >= least:
-        noise = f"{1e3 * findings.scatter:.2g}"
+    if faults.roughness >= least:
+        noise = f"{1e3 * faults.scatter:.2g}"
         sentences.append(
             f"{name}: its points scatter by {noise} µm (noise or rounding) and are not smoothed, "
             "so that the scatter "
-            f"counts as shape and can raise the pressure by {findings.pressure_rise}; {remedy}."
+            f"counts as shape and can raise the pressure by {faults.pressure_rise}; {remedy}."
         )
     return sentences
 
 
-def _gaps_and_waves(points: np.ndarray, findings: Findings) -> list[str]:
+def _gaps_and_waves(points: np.ndarray, faults: PointFaults) -> list[str]:
     """Return sentences about a length without points, and about waves that count as shape."""
     sentences = []
     x, z = points.T
@@ -369,11 +370,11 @@ def _gaps_and_waves(points: np.ndarray, findings: Findings) -> list[str]:
         sentences.append(
             f"no points lie between x = {x[place]:.4g} and {x[place + 1]:.4g} mm, and their usual "
             "distance is "
-            f"{findings.spacing:.2g} mm; the curve there is only guessed. Measure this part if "
+            f"{faults.spacing:.2g} mm; the curve there is only guessed. Measure this part if "
             "the bodies touch there."
         )
-    wave = waves(x, z, findings.scatter)
-    if wave is not None and not findings.runs:
+    wave = waves(x, z, faults.scatter)
+    if wave is not None and not faults.runs:
         height = f"{1e3 * wave.height:.2g}"
         sentences.append(
             f"its curvature goes to and fro {wave.turns} times, as waves of ± {height} µm and "

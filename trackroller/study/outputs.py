@@ -15,20 +15,20 @@ from trackroller.errors import InputError, unknown_name
 from trackroller.parameters import (
     BODIES,
     LIMITS,
-    MAPPING_FIELDS,
-    MATERIAL_FIELDS,
-    PARAMETERS,
     REGIME_LABELS,
     REGIMES,
 )
 from trackroller.roller.dataset import FLAGS, VARIABLES
 from trackroller.roller.output_names import PARTS, Part, declared, parts_of
+from trackroller.study.design.entries import CASE_FIELDS
 
 BOOKKEEPING = {  # variables that describe how a case was solved; an analysis compares other results
     *(*FLAGS, "validity", "validity_body", "reason", "material_pair", "residual"),
     *(name for name, variable in VARIABLES.items() if variable.estimate),
 }
 FIELDS = {"x", "y", "z", "grid"}
+OF_WORD = "_value"  # ends the name of the number beside a friction that is given as a word
+OF_UNITS = "_units"  # ends the name of the attribute with the unit of a constant
 
 USUAL = (  # outputs that are analysed by default, as far as the study has them
     "pair_life_to_first_limit_hours",
@@ -92,9 +92,44 @@ def case_dims(ds: xr.Dataset, factors: Iterable[str]) -> tuple[str, ...]:
     return tuple(name for name in factors if name in ds.dims)
 
 
+def constant(ds: xr.Dataset, name: str) -> float | str | None:
+    """Return an input that all cases of a study share, NaN if no case gives it, None if it varies.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        A gathered study. A constant is an attribute, with its unit in the attribute `NAME_units`.
+        A factor of which somebody selected one level is a coordinate without a dimension.
+    name : str
+        Name of the input, such as `axis_distance` [mm].
+    """
+    value: float | str | None = None
+    if name in ds.variables:
+        if not ds[name].ndim:
+            value = ds[name].item()
+    elif is_constant_field(name):
+        value = ds.attrs.get(name)
+    return value
+
+
+def is_constant_field(name: str) -> bool:
+    """Return whether an input of this name is an attribute if all cases share it.
+
+    These are the fields of a case, and the number of a friction that is given as a word. A name
+    that the user chose stays a coordinate: it may be that of another attribute.
+    """
+    return name.removesuffix(OF_WORD) in CASE_FIELDS
+
+
 def flat(ds: xr.Dataset, name: str, dims: tuple[str, ...]) -> np.ndarray:
-    """Return a variable as an array (rows, ...), with the case dimensions joined in their order."""
-    var = ds[name]
+    """Return a variable, or a constant of the study, as an array (rows, ...), with the case
+    dimensions joined in their order.
+    """
+    shared = constant(ds, name)
+    if name in ds.variables or shared is None:
+        var = ds[name]
+    else:
+        var = xr.DataArray(shared)
     missing = [d for d in dims if d not in var.dims]
     if missing:
         var = var.expand_dims({d: ds.sizes[d] for d in missing})
@@ -107,9 +142,7 @@ def available(ds: xr.Dataset, factors: Iterable[str], dims: tuple[str, ...]) -> 
     """Return the variables that hold results with one number a case, or a contact, body or limit of
     it.
     """
-    known = (
-        set(factors) | set(PARAMETERS) | set(MATERIAL_FIELDS) | set(MAPPING_FIELDS) | BOOKKEEPING
-    )
+    known = set(factors) | set(CASE_FIELDS) | BOOKKEEPING
     return [
         str(name)
         for name, var in ds.data_vars.items()

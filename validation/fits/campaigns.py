@@ -9,8 +9,8 @@ from __future__ import annotations
 import numpy as np
 from scipy import stats
 
-from trackroller.fit.fitted import Group
 from trackroller.fit.line import Line, Tests
+from trackroller.fit.material_fit import Group
 from trackroller.fit.next_tests import ranked
 from validation.fits.coverage import LEVEL, MIDDLE, bench, usable
 

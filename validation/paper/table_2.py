@@ -46,7 +46,7 @@ def cpu(work: Any, *arguments: Any, **options: Any) -> tuple[Any, float]:
 
 
 @dataclass(frozen=True)
-class Patches:
+class RollingPatches:
     """Contact 1 of n rolling designs: arrays (n,), rows for the stress kernels, and the whole solution."""
 
     ellipse: Ellipse
@@ -60,7 +60,7 @@ class Patches:
         return len(self.friction)
 
 
-def patches_of(cases: Sequence[Case]) -> Patches:
+def patches_of(cases: Sequence[Case]) -> RollingPatches:
     """Return the patches of contact 1 of those designs that roll."""
     ds = solve(list(cases), outputs=OUTPUTS, contact_model="sliding", accuracy=FINEST)
     rolls = np.flatnonzero(ds.regime.values == 0)
@@ -71,7 +71,7 @@ def patches_of(cases: Sequence[Case]) -> Patches:
     ellipse = Ellipse(*(first[q].values for q in ("semi_axis_lateral", "semi_axis_rolling", "max_pressure")))
     slip = Slip(np.sin(alpha), np.cos(alpha), table.guide_profile_radius, radius, ds["rolling_radius_shift"].values)
     rows = patch_rows(ellipse, slip, table.friction_coefficient, spin_model_index("skewed"))
-    return Patches(ellipse, slip, table.friction_coefficient, table.roller.poisson_ratio, rows, ds)
+    return RollingPatches(ellipse, slip, table.friction_coefficient, table.roller.poisson_ratio, rows, ds)
 
 
 def paper_table() -> list[dict[str, Any]]:
@@ -131,7 +131,7 @@ def paper_table() -> list[dict[str, Any]]:
     return rows
 
 
-def _inner(patches: Patches) -> float:
+def _inner(patches: RollingPatches) -> float:
     """Return the highest local maximum below the surface in contact 1 of the roller [MPa]."""
 
     e, nu = patches.ellipse, float(patches.poisson[0])
@@ -150,7 +150,7 @@ def _inner(patches: Patches) -> float:
     return -float(found.fun)
 
 
-def grid_peak(patches: Patches, i: int, count: int, depths: int, start: float, stride: int = 1) -> float:
+def grid_peak(patches: RollingPatches, i: int, count: int, depths: int, start: float, stride: int = 1) -> float:
     """Return the largest von Mises stress [MPa] of the roller over some depths of a grid.
 
     Of count x count points on the surface every `stride`-th is taken.

@@ -36,7 +36,15 @@ from trackroller.roller.output_names import body_of, declared, is_life
 from trackroller.roller.stored_inputs import setting_text
 from trackroller.study.design.levels import NAMED
 from trackroller.study.file import goals
-from trackroller.study.outputs import Output, default_names, flat, outputs, parts_in
+from trackroller.study.outputs import (
+    OF_WORD,
+    Output,
+    constant,
+    default_names,
+    flat,
+    outputs,
+    parts_in,
+)
 
 # cases; a larger study shows only its factors and outputs, so that the file can be sent
 MOST_DETAILED = 20_000
@@ -347,8 +355,8 @@ def solve_inputs(
     columns = []
     for key in (*PARAMETERS, *MATERIAL_FIELDS, *MAPPING_FIELDS, *OPTIONS):
         name = key
-        if f"{key}_value" in ds.variables:
-            name = f"{key}_value"
+        if f"{key}{OF_WORD}" in {*ds.variables, *ds.attrs}:
+            name = f"{key}{OF_WORD}"
         if name in ds.variables and set(ds[name].dims) & set(dims):
             if name not in known:
                 columns.append(_input(name, flat(ds, name, dims)))
@@ -370,8 +378,9 @@ def _input(name: str, values: np.ndarray) -> Column:
 
 def _fixed(ds: xr.Dataset, results: Results, name: str) -> Any:
     """Return a setting that is the same in all cases, None if it is not given."""
-    if name in ds.variables and not ds[name].ndim:
-        return ds[name].item()
+    shared = constant(ds, name)
+    if shared is not None:
+        return shared
     if name in OPTIONS:
         stated = getattr(results.config, name, None)
         if stated is None:

@@ -10,7 +10,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from scipy.interpolate import PchipInterpolator
 
-from trackroller.fit.fitted import Fit, Group
+from trackroller.fit.material_fit import Group, MaterialFit
 from trackroller.report.figures import style
 from trackroller.report.figures.panels import legend
 from trackroller.report.numbers import rounded
@@ -20,7 +20,7 @@ MOST_DRAWN = 1500  # points of a posterior
 UP, DOWN = style.PAIR
 
 
-def sn_line(fit: Fit) -> style.Drawn:
+def sn_line(fit: MaterialFit) -> style.Drawn:
     """Draw stress over life: failures, run-outs as arrows, the line, and its 90 % band for 50 and
     10 % failures.
     """
@@ -86,7 +86,7 @@ def _marks(axes: Axes, x: np.ndarray, y: np.ndarray, failed: np.ndarray) -> None
     )
 
 
-def predicted(fit: Fit) -> style.Drawn:
+def predicted(fit: MaterialFit) -> style.Drawn:
     """Draw the observed over the predicted value of each test, with arrows for suspensions, one
     panel a kind of end.
     """
@@ -131,7 +131,7 @@ def _against(axes: Axes, own: Group) -> None:
     axes.set_title(own.kind.capitalize())
 
 
-def pairs(fit: Fit) -> style.Drawn:
+def pairs(fit: MaterialFit) -> style.Drawn:
     """Draw pairs of fitted values by points of the posterior."""
     own = fit.of_life
     if own is None or not own.line.tests.failed.any():

@@ -13,7 +13,7 @@ import xarray as xr
 
 from trackroller.errors import listing
 from trackroller.fit.catalogue import CatalogueFit
-from trackroller.fit.fitted import WORDS, Fit, Group
+from trackroller.fit.material_fit import WORDS, Group, MaterialFit
 from trackroller.report import html
 from trackroller.report.numbers import capital, rounded, with_unit
 from trackroller.report.pages.record import pictures, versions_text
@@ -35,7 +35,7 @@ WIDE = 5.0  # times that an interval of a life spans, above which the page says 
 SYNTHETIC = "synthetic"  # in the name of a table of tests
 
 
-def value_table(fit: Fit) -> Table:
+def value_table(fit: MaterialFit) -> Table:
     """List the fitted values: estimate, 90 % interval, posterior, prior."""
     rows = []
     for own in fit.groups:
@@ -96,7 +96,7 @@ def _ends(low: float, high: float) -> str:
     return f"{cell(low)} to {cell(high)}"
 
 
-def sentences(fit: Fit) -> list[str]:
+def sentences(fit: MaterialFit) -> list[str]:
     """Return the statements at the head of the page: what was fitted, and what is not
     identified.
     """
@@ -140,7 +140,7 @@ def _short(name: str) -> str:
     }.get(name, name.replace("_", " "))
 
 
-def cannot_tell(fit: Fit) -> list[str]:
+def cannot_tell(fit: MaterialFit) -> list[str]:
     """Return sentences on what the tests do not tell."""
     texts = []
     for name in fit.unidentified:
@@ -189,7 +189,7 @@ def _of_line(own: Group, knee: float) -> list[str]:
     return texts
 
 
-def table_of_tests(fit: Fit | CatalogueFit) -> Table:
+def table_of_tests(fit: MaterialFit | CatalogueFit) -> Table:
     """List the tests as they were given."""
     names = list(dict.fromkeys(name for row in fit.tests.rows for name in row))
     rows = [
@@ -198,13 +198,13 @@ def table_of_tests(fit: Fit | CatalogueFit) -> Table:
     return Table("fit_tests", "Tests", ["Row", *names], rows)
 
 
-def write_fit(fit: Fit, path: Path | str) -> Path:
+def write_fit(fit: MaterialFit, path: Path | str) -> Path:
     """Write the page of a fit as one HTML file that stands alone, or as PDF by the name of the
     file.
 
     Parameters
     ----------
-    fit : Fit
+    fit : MaterialFit
         Result of `trackroller.fit_sn`, `trackroller.fit_bench` or
         `trackroller.fit.depths.fit_wear`.
     path : Path or str

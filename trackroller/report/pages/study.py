@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -34,6 +35,7 @@ from trackroller.results.search_fitness import OPTIMUM
 from trackroller.roller.dataset import solved_by
 from trackroller.roller.doubts import doubts
 from trackroller.roller.stored_inputs import NOT_GIVEN, as_material
+from trackroller.study.outputs import OF_UNITS, is_constant_field
 from trackroller.study.store.put import put_text, replacing
 
 OPTIONS = tuple(option.name for option in parameters.OPTIONS.values() if option.recorded)
@@ -112,7 +114,7 @@ def proof_of(results: Results) -> dict[str, Any]:
         "used": defaultdict(str, merged),
         "design_reference": METHODS[results.config.method_name].reference,
         "results": set(map(str, results.data.data_vars)),
-        "record": inputs.record_rows(attrs, _NO_RECORD),
+        "record": inputs.record_rows(attrs, _NO_RECORD | _constants_of(attrs)),
         "study_text": str(attrs.get("study", "")),
     }
 
@@ -123,6 +125,13 @@ def tables_of(results: Results) -> list[Table]:
     if results.analysis is not None:
         tables += index_tables(results.analysis)
     return [table for table in tables if table]
+
+
+def _constants_of(attrs: Mapping[str, Any]) -> set[str]:
+    """Return the attributes that hold the inputs that all cases share, and their units: the page
+    has a table of them.
+    """
+    return {name for name in attrs if is_constant_field(name.removesuffix(OF_UNITS))}
 
 
 def _doubts(results: Results) -> list[str]:

@@ -21,7 +21,7 @@ from trackroller.methods.factor import Factor
 from trackroller.methods.grid import cells
 from trackroller.methods.table import of_columns
 from trackroller.study.design.sampling import columns_of_rows
-from trackroller.study.outputs import flat
+from trackroller.study.outputs import constant, flat
 
 PLACE = "design_place"
 FACTOR = "design_factor"
@@ -131,8 +131,12 @@ def _check_values(
 ) -> None:
     """Refuse rows whose numbers are not those that the design draws."""
     for name, values in levels.items():
-        number = name in ds.variables and free[name].ordered and ds[name].dtype.kind in "fiu"
-        if number and not np.allclose(flat(ds, name, dims), values, rtol=1e-6, atol=1e-12):
+        known = name in ds.variables or constant(ds, name) is not None
+        if not known or not free[name].ordered:
+            continue
+        rows = flat(ds, name, dims)
+        number = rows.dtype.kind in "fiu"
+        if number and not np.allclose(rows, values, rtol=1e-6, atol=1e-12):
             raise InputError("study", name, "the values of its design", REMEDY)
 
 
@@ -158,7 +162,7 @@ def solved_part(design: Design, rows: np.ndarray) -> Design:
 
 def _column(ds: xr.Dataset, name: str, dims: tuple[str, ...]) -> np.ndarray:
     """Return a column of a design: numbers as floats, texts as objects."""
-    if name not in ds.variables:
+    if name not in ds.variables and constant(ds, name) is None:
         raise InputError("study", name, "a column of the results", "Gather the study again.")
     values = flat(ds, name, dims)
     if values.dtype.kind in "fiu":

@@ -18,6 +18,7 @@ from trackroller.parameters import FRICTION_LEVELS, MATERIAL_FIELDS
 from trackroller.roller.stored_inputs import MATERIALS, materials_of_design
 from trackroller.study.design.carriage_cases import of_worst_rollers
 from trackroller.study.design.stored import FACTOR, META, PLACE
+from trackroller.study.outputs import OF_UNITS, OF_WORD, is_constant_field
 from trackroller.study.store import provenance
 
 if TYPE_CHECKING:
@@ -45,8 +46,9 @@ def labelled(study: Study, plan: Design, cases: xr.Dataset, solved: xr.Dataset) 
     Returns
     -------
     xarray.Dataset
-        Results with parameters, factors and the places of the design as coordinates. The attributes
-        hold what is needed to repeat the study, and the study file itself.
+        Results with factors, parameters that vary and the places of the design as coordinates. The
+        attributes hold the parameters that all cases share, what is needed to repeat the study, and
+        the study file itself.
     """
     if study.carriage is not None:
         cases, solved = of_worst_rollers(study.config, plan, study.materials, cases, solved)
@@ -64,7 +66,28 @@ def labelled(study: Study, plan: Design, cases: xr.Dataset, solved: xr.Dataset) 
     for name, v in solved.coords.items():
         if "case" not in v.dims:
             coords.setdefault(name, _variable(v.dims, v.values, v.attrs, coordinate=True))
-    return xr.Dataset(unstacked, coords, _attributes(study, cases, solved.attrs))
+    shared = {name: label for name, label in coords.items() if _is_shared(name, label[0])}
+    coords = {name: label for name, label in coords.items() if name not in shared}
+    attrs = _attributes(study, cases, solved.attrs) | _constants(shared)
+    return xr.Dataset(unstacked, coords, attrs)
+
+
+def _is_shared(name: Hashable, dims: tuple[Hashable, ...]) -> bool:
+    """Return whether a label is an input that all cases share."""
+    return not dims and is_constant_field(str(name))
+
+
+def _constants(shared: Variables) -> dict[str, float | str]:
+    """Return the inputs that all cases share as attributes, each number with its unit beside it.
+
+    A number that no case gives is NaN.
+    """
+    attrs: dict[str, float | str] = {}
+    for name, (_, values, words, _) in shared.items():
+        attrs[str(name)] = values.item()
+        if "units" in words:
+            attrs[f"{name}{OF_UNITS}"] = words["units"]
+    return attrs
 
 
 def _attributes(study: Study, design: xr.Dataset, attrs: Mapping[str, Any]) -> dict[str, Any]:
@@ -92,7 +115,7 @@ def _labels(design: xr.Dataset, sizes: dict[str, int], grid: dict[str, Factor]) 
 
     def add(name: str, dims: tuple[str, ...], values: np.ndarray) -> None:
         attrs = {"long_name": name.replace("_", " ")}
-        column = design.get(name.removesuffix("_value"))
+        column = design.get(name.removesuffix(OF_WORD))
         if column is not None:
             attrs = column.attrs
         labels.setdefault(name, _variable(dims, values, attrs, coordinate=True))
@@ -111,7 +134,7 @@ def _labels(design: xr.Dataset, sizes: dict[str, int], grid: dict[str, Factor]) 
     }
     for name, values in columns.items():
         if name in grid and set(grid[name].levels) & {*FRICTION_LEVELS, None}:
-            name = f"{name}_value"
+            name = f"{name}{OF_WORD}"
         add(name, *_varying(values.reshape(*sizes.values()), list(sizes)))
     for name in (PLACE, FACTOR):
         if name in design.variables:

@@ -185,7 +185,7 @@ class Group:
 
 
 @dataclass(frozen=True)
-class Fit:
+class MaterialFit:
     """Values of a material from tests; `trackroller.fit_sn` and `trackroller.fit_bench` make it.
 
     `trackroller.report(fit, path)` writes its page; `fit.report(path)` is the same.
@@ -578,7 +578,7 @@ class Fit:
 
 
 for _name, _method in SHOWN.items():
-    setattr(Fit, _name, _method)
+    setattr(MaterialFit, _name, _method)
 
 
 def share(field: str, value: Any) -> float:
