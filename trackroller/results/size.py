@@ -592,13 +592,18 @@ def _with_life(table: pd.DataFrame, results: Results) -> pd.DataFrame:
     words = {"met": VERDICTS[0], "open": VERDICTS[1]}
     table["verdict"] = [words.get(str(state), VERDICTS[2]) for state in rows["state"]]
     why = []
-    shown = rows[["state", "low", "ends", "exceeded", "error"]]
-    for state, low, ends, exceeded, error in shown.itertuples(index=False):
+    shown = rows[["state", "low", "high", "ends", "exceeded", "error", "line", "line_alone"]]
+    for state, low, high, ends, exceeded, error, line, alone in shown.itertuples(index=False):
         text = ""
+        span = f"{low:.4g} h"
+        if high > low:
+            span = f"{low:.4g} to {high:.4g} h"
+        if not alone:
+            span += f" ({line})"
         if state == "missed":
             text = f"life: {ends} after {low:.4g} h"
         elif state == "open":
-            text = f"open: {ends} after {low:.4g} h, with a told error of {100 * error:.0f} %"
+            text = f"open: {ends} after {span}, with a told error of {100 * error:.0f} %"
         elif state != "met":
             text = str(exceeded or ends or "no condition is held")
         why.append(text)
