@@ -198,7 +198,7 @@ def studies() -> dict[str, dict[str, Any]]:
         "lhs": {"factors": mixed, "samples": 64},
         "sobol": {"factors": ranges, "samples": 64},
         "morris": {"factors": ranges, "samples": 8},
-        "saltelli": {"factors": ranges, "samples": 16},
+        "saltelli": {"factors": ranges, "samples": 32},
         "inner_outer": {
             "factors": outer | {"friction_coefficient": ranges["friction_coefficient"]},
             "samples": 16,

@@ -195,7 +195,7 @@ def test_curves_are_medians_of_like_cases(grooves):
 def test_the_record_is_json(grooves):
     text = json.dumps(grooves.answer.to_dict())
     record = json.loads(text)
-    assert record["version"] == 2
+    assert record["version"] == 3
     assert len(record["rows"]) == 3
     assert {"question", "kind", "headline", "columns", "warnings", "not_checked"} <= set(record)
 

@@ -126,3 +126,55 @@ def test_cases_that_meet_the_requirement_are_counted(grouped):
     assert 0 < head["meets"] == int((power <= 0.6).sum()) == head["perhaps"] < head["of"] == power.size
     assert f"{head['meets']} of {power.size} stay within 0.6 W" in headline_of(grouped.answer).text
     assert len(headline_of(grouped.answer).text.split()) <= 40
+
+
+def test_a_value_of_an_output_is_not_given_for_nothing(tmp_path):
+    """The bulk temperature rises with the cooled area that is given, though no limit is asked for."""
+    results = solved(
+        tmp_path,
+        base=BASE
+        | {"motor_force": 0, "axial_force": 5, "heat_transfer_coefficient": 20, "cooled_area": 5000}
+        | dict.fromkeys(("roller_material", "guide_material"), "42CrMo4+QT-40"),
+        factors={"radial_force": {"values": [-80, -160]}},
+        outputs=["forces", "contact", "heat"],
+        analysis={"outputs": ["bulk_temperature_rise_roller"]},
+    )
+    assert np.isfinite(results.data["bulk_temperature_rise"]).all()
+    assert (results.data["bulk_temperature_rise"].sel(body="roller") > 0).any()
+    assert "cooled_area" not in results.answer.not_used
+    assert "heat_transfer_coefficient" not in results.answer.not_used
+
+
+def test_few_base_samples_rank_factors_without_their_total_index(tmp_path):
+    """16 base samples of five factors: the load is the largest, as its power law in closed form says."""
+    factors = {
+        "motor_force": {"uniform": [-18, 18]},
+        "radial_force": {"uniform": [-420, -180]},
+        "friction_coefficient": {"uniform": [0.12, 0.3]},
+        "roller_profile_radius": {"uniform": [-10, -8.3]},
+        "contact_angle": {"uniform": [44, 46]},
+    }
+    rail = {"guide_profile_radius": 8, "axis_distance": 28, "axial_force": 0}
+    outputs = ["forces", "contact", "friction_work"]
+    analysis = {"outputs": ["friction_power"]}
+    few = solved(
+        tmp_path,
+        base=BASE | rail,
+        factors=factors,
+        method="saltelli",
+        samples=16,
+        outputs=outputs,
+        analysis=analysis,
+    )
+    table = few.table
+    power = few.data["friction_power"].sum("contact").to_numpy()
+    columns = [np.log(np.abs(table[name])) for name in ("radial_force", "friction_coefficient")]
+    rows = np.column_stack([*columns, table["roller_profile_radius"], np.ones(len(table))])
+    exponents = np.linalg.lstsq(rows, np.log(power), rcond=None)[0]
+    shares = [abs(exponents[i]) * np.std(rows[:, i]) for i in range(3)]
+    assert shares[0] > shares[1] > shares[2]
+    answer = few.answer
+    named = [factor["name"] for factor in answer.headline["factors"]]
+    assert named == ["radial_force", "friction_coefficient"]
+    first = answer.headline["factors"][0]
+    assert first["index_low"] <= 0.64 <= first["index_high"], "the index of 512 base samples"

@@ -47,7 +47,9 @@ from trackroller.methods.method import (
 from trackroller.methods.replicates import in_turn, jackknife, left_out
 from trackroller.methods.sample import GIVEN_DATA
 
-MIN_BLOCKS = 8
+MIN_BLOCKS = (
+    32  # from which on the intervals of an index hold 89 % or more, see the notes of `sobol`
+)
 DRAWN_AT_ONCE = 4_000_000  # weights of the bootstrap that are held in memory
 
 
@@ -317,14 +319,17 @@ def sobol(
     Returns
     -------
     S1, ST, shape (k,), and S2, shape (k, k), with NaN on and below the diagonal, each with _low and
-    _high; blocks_used, blocks. NaN if fewer than 8 blocks are complete or the output is constant.
+    _high; blocks_used, blocks. NaN if fewer than 32 blocks are complete or the output is constant.
 
     Notes
     -----
     Valid for independent factors. A block with an unusable row is left out, because the rows of A,
     B and their mixtures belong together; the indices then describe the remaining rows (see
     `given_data`). The intervals treat the blocks as random. The blocks of a Sobol sequence have
-    smaller errors, so the intervals are conservative.
+    smaller errors, so the intervals are conservative from 32 blocks on: they hold 89 to 100 % of
+    the total indices of a sum and of Sobol's g-function with 3, 5 and 8 factors. Of fewer blocks
+    the rows of A and B may depend on each other. With 5 factors the intervals of 16 blocks hold 46
+    %, and the indices are off by 0.3.
     """
     # a set of factors is a number with a bit for each of them
     single = [1 << j for j in range(count)]
@@ -374,7 +379,7 @@ def closed_indices(
 
     Returns
     -------
-    Shape (1 + resamples, sets): the estimates, then the resamples. NaN if there are fewer than 8
+    Shape (1 + resamples, sets): the estimates, then the resamples. NaN if there are fewer than 32
     clusters or the output is constant.
     """
     if cluster is None:

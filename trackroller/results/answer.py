@@ -19,7 +19,7 @@ from trackroller.study.file.questions import QUESTIONS as QUESTIONS
 
 # of the keys of `Answer.to_dict`; a key that is new or renamed, or that changes its meaning,
 # raises it
-VERSION = 2
+VERSION = 3
 WARNINGS = {  # code -> what it means
     "not_held": "cases that skid, lift off, break, or exceed a limit",
     "not_judged": "cases that the model cannot judge",
@@ -33,7 +33,7 @@ WARNINGS = {  # code -> what it means
     "doubtful": "values that are unusual, or that tests contradict",
     "flagged": "an assumption of the model or an accuracy is not kept",
 }
-# of a candidate; a limit has those of `trackroller.damage.verdict.STATES`
+# of a candidate; a limit has those of `trackroller.damage.first_limit.STATES`
 STATES = ("met", "open", "missed", "none")
 
 
@@ -102,8 +102,8 @@ class Curve:
     factor, title, units : the factor with its words and unit
     role : `choice`, `condition` or ''
     levels : values of the factor, shape (k,)
-    middle, low, high : of the output at each level: the fit, or the median of like cases, and the
-        tenth and the ninetieth hundredth of the cases, shape (k,) each [unit of the output]
+    middle, low, high : of the output at each level, and the tenth and the ninetieth hundredth of
+        the cases, shape (k,) each [unit of the output]
     logarithmic : whether the levels stand on a logarithmic axis
     ordered : whether the levels have an order
     height : largest over smallest middle [1]; of an output that is not above 0 everywhere largest
@@ -112,6 +112,9 @@ class Curve:
     rows : cases that it rests on
     left_out : valid cases that lack a partner at some level
     by_ratio : whether `height` is a ratio; otherwise it is a difference
+    by : what it is made of: `like cases` that are there at all levels, a `fit`, `changes` between
+        cases that differ in this factor alone, or `drawn cases` at each level, which differ in all
+        factors
     """
 
     factor: str
@@ -129,6 +132,7 @@ class Curve:
     rows: int
     left_out: int = 0
     by_ratio: bool = True
+    by: str = "like cases"
 
 
 @dataclass(frozen=True)
@@ -155,7 +159,7 @@ class Required:
 
 
 @dataclass(frozen=True, eq=False)
-class Part:
+class FurtherTable:
     """A further table of an answer, such as the forces of both contacts or the blocks of a
     spectrum.
 
@@ -215,7 +219,7 @@ class Answer:
     curves: tuple[Curve, ...] = ()
     ends: pd.DataFrame = field(default_factory=pd.DataFrame)
     outputs: pd.DataFrame = field(default_factory=pd.DataFrame)
-    parts: tuple[Part, ...] = ()
+    parts: tuple[FurtherTable, ...] = ()
     picture: Mapping[str, Any] = field(default_factory=dict)
     not_checked: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     not_used: Mapping[str, str] = field(default_factory=dict)
@@ -265,7 +269,7 @@ class Answer:
         return plain
 
 
-def _part(part: Part) -> dict[str, Any]:
+def _part(part: FurtherTable) -> dict[str, Any]:
     """Return a further table as plain values."""
     columns = [vars(column) for column in part.columns]
     return {

@@ -1,5 +1,5 @@
-"""How an output changes with each factor of a study: one curve a factor, by like cases or by a fit
-of a sample.
+"""How an output changes with each factor of a study: one curve a factor, by like cases, by a fit,
+by the changes between like cases, or by classes of drawn cases.
 """
 
 from __future__ import annotations
@@ -19,9 +19,10 @@ from trackroller.results.answer import Curve
 from trackroller.results.case_columns import codes
 from trackroller.results.case_ranges import CaseRanges
 from trackroller.results.factor_levels import BINS, MOST_LEVELS, groups, spaced_by_ratio
+from trackroller.results.like_changes import effect_of_changes
 from trackroller.results.solved_cases import SolvedCases
 from trackroller.results.subgroups import plain
-from trackroller.study.design.entries import OPTION_FACTORS
+from trackroller.study.design.factor_names import OPTION_FACTORS
 
 FEWEST_ROWS = 30  # smallest number of cases that are fitted
 TOLD = 0.9  # share of the variance that a fit must predict before its effects are told
@@ -92,7 +93,12 @@ class Effects:
         for name in self.results.factors:
             if name in OPTION_FACTORS or name in self.results.labels:
                 continue
-            curve = self._by_pairs(name) or self._by_fit(name) or self._by_classes(name)
+            curve = (
+                self._by_pairs(name)
+                or self._by_fit(name)
+                or self._by_changes(name)
+                or self._by_classes(name)
+            )
             if curve is not None:
                 curves.append(curve)
         return tuple(sorted(curves, key=lambda curve: -_size(curve.height, self.by_ratio)))
@@ -105,10 +111,9 @@ class Effects:
         levels = self.results.levels(name)
         if len(levels) > MOST_LEVELS and not self.results.grid:
             return None
-        others = [factor for factor in self.results.factors if factor != name]
         rows = np.flatnonzero(self.rows)
         table = self.results.table.iloc[rows]
-        key = codes(table, others)
+        key = codes(table, self._others(name))
         place = pd.Index(levels).get_indexer(table[name])
         matrix = np.full((int(key.max(initial=-1)) + 1, len(levels)), np.nan)
         matrix[key, place] = self.y[rows]
@@ -127,7 +132,13 @@ class Effects:
         ends = np.quantile(full, BAND, axis=0)
         shape = self._shape(name, np.median(full, axis=0), full)
         left = len(rows) - int(whole.sum() * known.sum())
-        return self._curve(name, counted, np.median(full, axis=0), ends, shape, full.size, left)
+        middle = np.median(full, axis=0)
+        return self._curve(name, counted, middle, ends, shape, full.size, left, "like cases")
+
+    def _others(self, name: str) -> list[str]:
+        """Return the factors in which like cases agree; a label of a table changes no case."""
+        labels = self.results.labels
+        return [one for one in self.results.factors if one != name and one not in labels]
 
     def _by_fit(self, name: str) -> Curve | None:
         """Return the curve of a factor by the fit of the sample; None where the fit predicts too
@@ -150,13 +161,39 @@ class Effects:
         levels = [own[i] for i in at]
         curve = part[at] + middle
         band = np.stack([part[at] + end for end in ends])
-        return self._curve(name, levels, curve, band, self._shape(name, curve, None), len(own), 0)
+        shape = self._shape(name, curve, None)
+        return self._curve(name, levels, curve, band, shape, len(own), 0, "fit")
+
+    def _by_changes(self, name: str) -> Curve | None:
+        """Return the curve by the changes between cases that differ in this factor alone; None
+        where too few do.
+        """
+        rows = np.flatnonzero(self.rows)
+        table = self.results.table.iloc[rows]
+        levels = [level for level in self.results.levels(name) if (table[name] == level).any()]
+        if len(levels) < 2 or len(levels) > MOST_LEVELS:
+            return None
+        place = pd.Index(levels).get_indexer(table[name])
+        group = np.unique(codes(table, self._others(name)), return_inverse=True)[1]
+        values = None
+        if self.results.numeric(name):
+            values = np.array(levels, dtype=float)
+        known = effect_of_changes(self.y[rows], place, group, values)
+        if known is None:
+            return None
+        effect, beside = known
+        middle = effect + np.median(beside)
+        ends = effect + np.quantile(beside, BAND)[:, None]
+        shape = self._shape(name, middle, None)
+        return self._curve(name, levels, middle, ends, shape, len(rows), 0, "changes")
 
     def _by_classes(self, name: str) -> Curve | None:
-        """Return the median of the cases in each level, or in classes of equally many cases; None
-        of single cases.
+        """Return the median of drawn cases in each level, or in classes of equally many cases; None
+        of single cases, and where the other factors are not drawn independently of this one.
         """
-        if self.rows.sum() < 2:
+        method = self.results.config.method
+        drawn = method.sampled and not method.effects and not method.proposes
+        if self.rows.sum() < 2 or not drawn:
             return None
         parts = groups(self.results.table, name, self.rows, BINS)
         inside = [self.y[self.rows][parts.index == k] for k in range(len(parts))]
@@ -168,9 +205,9 @@ class Effects:
         levels = [
             parts.low[k] if parts.low[k] == parts.high[k] else float(parts.at[k]) for k in counted
         ]
-        return self._curve(
-            name, levels, middle, ends, self._shape(name, middle, None), int(self.rows.sum()), 0
-        )
+        shape = self._shape(name, middle, None)
+        rows = int(self.rows.sum())
+        return self._curve(name, levels, middle, ends, shape, rows, 0, "drawn cases")
 
     def _curve(
         self,
@@ -181,6 +218,7 @@ class Effects:
         shape: str,
         rows: int,
         left: int,
+        by: str,
     ) -> Curve:
         known = parameter_of(name)
         numbers = self.results.numeric(name)
@@ -210,6 +248,7 @@ class Effects:
             rows=rows,
             left_out=max(left, 0),
             by_ratio=self.by_ratio,
+            by=by,
         )
 
     def _shape(self, name: str, middle: np.ndarray, pairs: np.ndarray | None) -> str:

@@ -11,9 +11,9 @@ from trackroller.roller.requirement import LIVES_OF_PAIR
 
 # limits that stand beside the verdict: second models of an end that another limit has, and those
 # without a verdict
-BESIDE = tuple(name for name, limit in LIMITS.items() if limit.beside or limit.verdict is None)
+BESIDE = tuple(name for name, limit in LIMITS.items() if limit.beside or limit.use is None)
 # second models that may turn a verdict
-RIVALS = tuple(name for name, limit in LIMITS.items() if limit.rivals or limit.verdict is None)
+RIVALS = tuple(name for name, limit in LIMITS.items() if limit.rivals or limit.use is None)
 # limits that know the end of another one by other tests
 EVIDENCE = tuple(name for name, limit in LIMITS.items() if limit.evidence_of)
 

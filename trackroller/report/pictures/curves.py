@@ -191,13 +191,30 @@ def _posts(curve: Curve, axis: Axis, places: Sequence[float]) -> list[Markup]:
     ]
 
 
+MADE_OF = {  # `Curve.by`
+    "like cases": "median of like cases at each level",
+    "fit": "fit of all cases",
+    "changes": "changes between cases that differ in this factor alone",
+    "drawn cases": "median of the drawn cases at each level",
+}
+
+
+def _made_of(answer: Answer) -> str:
+    """Return what the curves are made of; where they differ, each kind with its factors."""
+    kinds = list(dict.fromkeys(curve.by for curve in answer.curves))
+    if len(kinds) == 1:
+        return MADE_OF[kinds[0]]
+    texts = []
+    for kind in kinds:
+        titles = [curve.title for curve in answer.curves if curve.by == kind]
+        texts.append(f"{MADE_OF[kind]} ({', '.join(titles)})")
+    return "; ".join(texts)
+
+
 def caption(answer: Answer) -> str:
     """Return what the pictures of effects draw."""
     title = with_unit(capital(answer.output[1]), answer.output[2])
-    text = (
-        f"{title}: fit or median of like cases at each level; band from the 10th to the 90th "
-        "hundredth of the cases"
-    )
+    text = f"{title}: {_made_of(answer)}; band from the 10th to the 90th hundredth of the cases"
     if any(math.isfinite(end) for one in answer.required for end in (one.least, one.most)):
         text += "; dashed: required"
     ratios = all(curve.by_ratio for curve in answer.curves)
