@@ -188,7 +188,7 @@ class Lives:
                 if limit.name == "fatigue" and "life_hours" in solved
             ):
                 lives[:, i] = self._fatigue(solved[f"life_hours_by_limit{end}"].values[:, i])
-            first, which = first_limit.first_of(lives, used, timed, limits, broken, state == 0)
+            first, which = first_limit.first_of(lives, used, timed, limits, broken, state == 0, end)
             new |= {f"life_hours_by_limit{end}": lives, f"life_to_first_limit_hours{end}": first}
             new[f"pair_life_to_first_limit_hours{end}"] = first_failure(*first.T)[0]
             if not end:

@@ -19,6 +19,8 @@ Keys of `Answer.headline`; a key that is missing, None, NaN or empty is left out
 `worst`            levels of that condition in words (stands in the table)
 `ends`, `ends_high`  limit that ends it, in words that follow "then": "fatigue", "wear"
 `body`             `roller`, `guide` or ''
+`line_low`, `line_high`  tests that both ends of its life by fatigue follow from: "bending line",
+                   "rolling-contact line"; '' where its material has no others
 `error`            told error of the leader's output [1]
 `extrapolated`     whether the leader's life lies beyond its data
 `not_held`         {count, of, where}: conditions in which the model judges all candidates and none
@@ -44,14 +46,15 @@ Keys of `Answer.headline`; a key that is missing, None, NaN or empty is left out
                    requirement
 `share`, `share_low`, `share_high`  share of the drawn conditions that meets it, Wilson's interval
                    [1]
+`share_short`, `share_long`  the same share by both ends of each life, with its error [1]; said
+                   where the ends follow from different tests
 `wanted`, `n`, `judged`  share that is wanted [1]; drawn conditions; those that the model judges
 =================  =================================================================================
 
 `how sure`, by `Answer.kind` (`share`, `count`, `cannot_tell` with `why`): `share`, `share_low`,
 `share_high`, `wanted`, `n` of drawn conditions, or `meets`, `of` of listed loads, and `judged` of
-both; and `low`,
-`high`, `ends`, `ends_high`, `body`, `error`, `extrapolated`, `exceeded`, `second`, `not_held` as
-above.
+both; and `low`, `high`, `ends`, `ends_high`, `body`, `line_low`, `line_high`, `error`,
+`extrapolated`, `exceeded`, `second`, `not_held` as above.
 
 `what matters`: `factors`, a list of at most two dicts, the largest first: `title`, `units`,
 `index`, `index_low`, `index_high` [1] (NaN without indices), `height` (as a factor), `from`, `to`
@@ -155,7 +158,8 @@ def decide(answer: Answer) -> Headline:
     lost = _lost(head)
     if lost and head.get("elsewhere") and answer.kind in ELSEWHERE:
         lead = capital(f"{listing(lost)}; elsewhere {ELSEWHERE[answer.kind](answer)}")
-        clauses = [_value_said(answer), *_goal_clauses(head), *_other_rules(head)]
+        value = f"{_value_said(answer)}{_lines(head)}"
+        clauses = [value, *_goal_clauses(head), *_other_rules(head)]
         return Headline(lead, f": {'; '.join(clauses)}.")
     shares = _known(head, "share") and bool(answer.required)
     if shares and answer.kind != "none":
@@ -734,7 +738,24 @@ def _first_limits(head: Mapping[str, Any]) -> str:
         body = ""
     else:
         body = f" of the {head['body']}"
-    return f", then {' or '.join(head['ends'])}{body}"
+    return f", then {' or '.join(head['ends'])}{body}{_lines(head)}"
+
+
+def _lines(head: Mapping[str, Any]) -> str:
+    """Return the tests that both ends of a life by fatigue follow from, in brackets; '' where these
+    are the only ones.
+    """
+    low = head.get("line_low")
+    high = head.get("line_high")
+    if low and high and low != high:
+        return f" ({low} to {high})"
+    if low and high:
+        return f" (by the {low})"
+    if low:
+        return f" (low end by the {low})"
+    if high:
+        return f" (high end by the {high})"
+    return ""
 
 
 def _limit_of(one: Mapping[str, Any]) -> str:
@@ -926,7 +947,7 @@ def _carriage_lasts(answer: Answer, margins: Sequence[str]) -> Headline:
         lasts = f"roller {head['roller']} ends first: {life}, {grouped(head['km'], 3)} km"
     lasts = f"{_if_model_holds(head)}{lasts}"
     if head["limit"]:
-        clauses.append(f"then {head['limit']} of the {head['body']}")
+        clauses.append(f"then {head['limit']} of the {head['body']}{_lines(head)}")
     if _known(head, "part"):
         clauses.append(f"{percent(head['part'])} of it by {head['case']}")
     if head["unknown"]:
@@ -1231,7 +1252,7 @@ def _then(head: Mapping[str, Any]) -> str:
     if not head.get("ends") or not head.get("body"):
         return ""
     limits = dict.fromkeys([head["ends"], head.get("ends_high") or head["ends"]])
-    return f", then {' or '.join(limits)} of the {head['body']}"
+    return f", then {' or '.join(limits)} of the {head['body']}{_lines(head)}"
 
 
 def _other_rules(head: Mapping[str, Any]) -> list[str]:
@@ -1321,6 +1342,8 @@ def _verb_of_requirement(required: Sequence[Required]) -> str:
 
 
 def _share(head: Mapping[str, Any]) -> str:
+    if head.get("line_low") != head.get("line_high"):  # the ends of each life decide
+        return f"{100 * head['share_short']:.0f} to {percent(head['share_long'])}"
     text = percent(head["share"])
     if not _known(head, "share_low"):
         return text

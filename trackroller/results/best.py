@@ -705,7 +705,7 @@ def _second_life(outcome: _Outcome, number: int) -> tuple[str, float, str] | Non
     for place, limit in enumerate(limits):
         if (
             limit not in LIMITS
-            or not LIMITS[limit].beside
+            or not LIMITS[limit].rivals
             or lacks_a_body(hours[valid], limits, limit).any()
         ):
             continue

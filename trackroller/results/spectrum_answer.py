@@ -2,7 +2,8 @@
 blocks.
 
 Keys of `Answer.headline`: `low`, `high` [h], `km_low`, `km_high` [km], `ends` (words of the limits
-that may come first), `body`, `extrapolated`, `guessed`, `block` (with the largest part of the
+that may come first), `body`, `line_low` and `line_high` (tests that both ends of a life by fatigue
+follow from), `extrapolated`, `guessed`, `block` (with the largest part of the
 damage of the first limit), `share` (this part [1]), `unknown` (bodies whose life is not known),
 `broken` and `exceeded` (lists of {limit, body, use [1], hours, blocks}), `open` (list of {limit,
 body}), `not_judged` and `why` (reasons), `states` (of each requirement, the travel first: `met`,
@@ -28,9 +29,10 @@ from trackroller.parameters import BODIES, PARAMETERS, REGIME_LABELS, REGIMES
 from trackroller.parameters.carriage_fields import long_name_of
 from trackroller.parameters.example import drive_question, is_absent
 from trackroller.results.answer import Answer, Caution, Column, FurtherTable, Required, yes_or_blank
+from trackroller.results.fatigue_lines import lines_text
 from trackroller.results.friction import friction_cautions
 from trackroller.results.life_columns import FIRST_LIMIT, past_data
-from trackroller.results.margins import First, Margin, is_guessed
+from trackroller.results.margins import First, Margin, is_guessed, with_lines
 from trackroller.results.placeholders import guess_cautions, placeholders_part
 from trackroller.results.roller_answer import (
     CODES,
@@ -193,7 +195,9 @@ def _margins(ds: xr.Dataset) -> list[Margin]:
     """Return the limits of both bodies in the order in which they are reached; without limits
     fatigue alone.
     """
-    listed = [*_of_limits(ds), *_of_pressure(ds)]
+    stored = json.loads(str(ds.attrs.get("materials", "{}")))
+    materials = {body: stored.get(f"{body}_material", {}) for body in BODIES}
+    listed = [*with_lines(list(_of_limits(ds)), materials), *_of_pressure(ds)]
     return sorted(
         listed,
         key=lambda one: (
@@ -310,6 +314,8 @@ def _headline(
         "km_high": math.nan,
         "ends": [],
         "body": "",
+        "line_low": "",
+        "line_high": "",
         "extrapolated": False,
         "guessed": False,
         "block": "",
@@ -338,6 +344,7 @@ def _headline(
         "km_high": first.high * rate,
     }
     head |= {"ends": list(first.words), "body": first.body, "extrapolated": first.beyond}
+    head |= dict(zip(("line_low", "line_high"), first.lines, strict=True))
     head["guessed"] = any(margin.guessed for margin in first.margins) and first.low < first.high
     block, share = _worst_block(ds, first.margins[0])
     return head | {"block": block, "share": share}
@@ -424,6 +431,7 @@ def _row(ds: xr.Dataset, margin: Margin) -> dict[str, Any]:
         "extrapolated": yes_or_blank(margin.beyond),
         "guessed": yes_or_blank(margin.guessed),
         "model": model,
+        "line": lines_text(*margin.lines, margin.alone),
         "blocks": ", ".join(_blocks_of(ds, margin)),
         "name": margin.name,
     }

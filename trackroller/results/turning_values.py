@@ -22,6 +22,9 @@ from trackroller.roller.limit_notes import Placeholder, placeholders_of
 from trackroller.study.outputs import flat
 
 STEPS = np.linspace(0.0, 1.0, 201)  # places of a placeholder in its range, on a logarithmic scale
+LINE = (
+    "fatigue in rolling contact"  # what a life between a bending and a rolling-contact line lacks
+)
 # of the leader's range over which a rival must lead before the placeholder is worth a measurement
 LEAST = 0.1
 
@@ -49,9 +52,7 @@ class Turning:
         ends = []
         for end in ("_low", "_high"):
             moved = self.own.ranges.hours_at(end)
-            if moved is None:
-                moved = reached_by_body(self.own.results, end)
-            ends.append(moved)
+            ends.append(reached_by_body(self.own.results, end, moved))
         return ends[0], ends[1]
 
     @cached_property
@@ -65,7 +66,8 @@ class Turning:
             one for one in placeholders_of(self.own.results.data) if one.limit not in BESIDE
         ]
         tests = [Placeholder("fatigue", name, "tests") for name in self.own.ranges.tested]
-        return placeholders + tests
+        lines = [Placeholder("fatigue", name, LINE) for name in self.own.ranges.between_lines]
+        return placeholders + tests + lines
 
     def moves(self, one: Placeholder, rows: np.ndarray) -> np.ndarray:
         """Return which limits and bodies of some cases rest on a placeholder, (rows, limit, 2)

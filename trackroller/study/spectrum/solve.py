@@ -423,7 +423,9 @@ def by_limit(
         shifts = critical * miner.repetitions_to_failure(damage.sum(axis=0))
         first, which = (
             one[0]
-            for one in first_limit.first_of(shifts[None], most[None], timed, limits, broken[None])
+            for one in first_limit.first_of(
+                shifts[None], most[None], timed, limits, broken[None], end=end
+            )
         )
         head = {"": "", "_low": "low end of the ", "_high": "high end of the "}[end]
         for name, dims, values, meaning in (
