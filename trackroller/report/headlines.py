@@ -58,7 +58,8 @@ it, cases that may, all cases.
 
 `which model`: `changes`: ``, `verdict`, `order` or `verdict and order`; `models`: list of dict
 `model`, `verdict`, `low`, `high`, `error`, `leader` (a dict as one of `names`); `smallest`,
-`largest` ratio on like rows to the model `base`.
+`largest` ratio on like rows to the model `base`; `base_by`: models that solved its cases, where
+they are others.
 
 `best`, by `Answer.kind` (`one`, `front`, `front_required`; `solve_finer`, `open`, `none` with
 `nearest`): `designs`, a list of dict: `name` (as one of `names`), `at` (`corner`, `knee` or ''),
@@ -479,7 +480,10 @@ def which_model(answer: Answer) -> Headline:
     clauses = []
     if _known(head, "smallest"):
         ratio = carried_range(head["smallest"], head["largest"])
-        clauses.append(f"{lowered(answer.output[1])} {ratio} times that of {head['base']}")
+        by = ""
+        if head.get("base_by"):
+            by = f" (solved by {head['base_by']})"
+        clauses.append(f"{lowered(answer.output[1])} {ratio} times that of {head['base']}{by}")
     return _joined(lead, clauses)
 
 
@@ -1096,12 +1100,11 @@ def _notes(head: Mapping[str, Any]) -> list[str]:
     """Return what stands in brackets behind a value: why nothing lasts, and whether the value is
     extrapolated.
     """
-    reason = []
     if head.get("ends") and not head.get("body"):
-        reason = [str(head["ends"])]
+        return [str(head["ends"])]
     if head.get("extrapolated"):
-        return [*reason, "extrapolated"]
-    return reason
+        return ["extrapolated"]
+    return []
 
 
 def _output(

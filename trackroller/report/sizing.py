@@ -32,6 +32,8 @@ def lead_of(sizing: Sizing) -> str:
         parts.append("within all limits at the forces times the safety")
     if math.isfinite(row.get("load_ratio", math.nan)):
         parts.append(f"{row['load_ends']} at {row['load_ratio']:.3g} times the forces")
+    if row.get("second_model"):
+        parts.append(f"but the {row['second_model']}")
     number = int((sizing.table["verdict"] == "enough").sum())
     return f"{sizing.least} is the least of {number} that are enough: {', '.join(parts)}."
 

@@ -68,7 +68,8 @@ class Sizing:
     table : pandas.DataFrame
         One row a roller, the least one that is enough first: `roller`, `verdict` (one of
         `VERDICTS`), the columns of the shelf, `life_hours` (low end of the life to the first limit,
-        worst condition), `life_ratio` (over the required life), `ends` (what ends it), `overload`
+        worst condition), `life_ratio` (over the required life), `ends` (what ends it),
+        `second_model` (a second model that turns the verdict, with its life), `overload`
         (held, exceeded or not judged), `load_ratio` (all forces times it reach the first limit),
         `load_ends` (that limit) and `excluded_by`.
     least : str
@@ -602,7 +603,21 @@ def _with_life(table: pd.DataFrame, results: Results) -> pd.DataFrame:
         elif state != "met":
             text = str(exceeded or ends or "no condition is held")
         why.append(text)
+    second = [_turned_by(row) for _, row in rows.iterrows()]
+    if any(second):
+        table = table.assign(second_model=second)
     return _without_unknown_lives(table.assign(excluded_by=why), results)
+
+
+def _turned_by(row: pd.Series) -> str:
+    """Return the second model of an end, such as a catalogue, that turns the verdict of a roller,
+    with its life; '' where none does.
+    """
+    state = str(row["second_state"])
+    if state in ("", str(row["state"])):
+        return ""
+    verbs = {"met": "meets", "open": "leaves open", "missed": "misses"}
+    return f"{row['second']} {verbs[state]} the life: {row['second_low']:.3g} h"
 
 
 def _without_unknown_lives(table: pd.DataFrame, results: Results) -> pd.DataFrame:
