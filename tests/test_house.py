@@ -124,6 +124,23 @@ def test_a_name_of_a_file_is_there_once_in_its_room():
     assert repeated(ROOT) == {}
 
 
+def classes_of_several_files(root: Path) -> dict[str, list[str]]:
+    """Return the public classes whose name stands in several files of the package, with these files."""
+    places: dict[str, list[str]] = {}
+    for path in sorted((root / PACKAGE).rglob("*.py")):
+        tree = ast.parse(path.read_text(encoding="utf-8"))
+        names = [node.name for node in tree.body if isinstance(node, ast.ClassDef)]
+        for name in names:
+            if not name.startswith("_"):
+                places.setdefault(name, []).append(path.relative_to(root / PACKAGE).as_posix())
+    return {name: files for name, files in places.items() if len(files) > 1}
+
+
+def test_a_class_has_a_name_of_its_own():
+    """One word, one meaning: no two files of the package name a public class alike."""
+    assert classes_of_several_files(ROOT) == {}
+
+
 def test_the_survey_finds_what_it_looks_for(tmp_path):
     """A made-up package breaks each rule once."""
     lower, upper = tmp_path / "trackroller" / "contact", tmp_path / "trackroller" / "roller"
@@ -141,6 +158,9 @@ def test_the_survey_finds_what_it_looks_for(tmp_path):
     (upper / "stages").mkdir()
     (upper / "stages" / "case.py").write_text("")
     assert repeated(tmp_path) == {"case.py": ["roller/case.py", "roller/stages/case.py"]}
+    (upper / "stages" / "case.py").write_text("class Load: pass\nclass _Load: pass\n")
+    (lower / "load.py").write_text("class Load: pass\nclass _Load: pass\n")
+    assert classes_of_several_files(tmp_path) == {"Load": ["contact/load.py", "roller/stages/case.py"]}
 
 
 def crowded(tree: ast.AST) -> list[int]:

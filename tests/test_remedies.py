@@ -293,7 +293,7 @@ REMEDIES: dict[str, tuple[Any, dict[str, Any], str, dict[str, Any]]] = {
     "an expression beside a table": (
         study,
         {"table": "cases.csv", "method": "table", "factors": {"motor_force": {"values": [0, 1]}}},
-        "Only expressions may stand beside a table.",
+        "Only expressions and shelves may stand beside a table.",
         {"table": "cases.csv", "method": "table", "factors": {"motor_force": {"expression": "0.1 * axial_force"}}},
     ),
     "a column without a blank in its name": (

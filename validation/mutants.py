@@ -136,8 +136,8 @@ DECISIONS = {
     "requirement-error": ("results/case_ranges.py", "_shrunk(self.low, error)", "_grown(self.low, error)", ANSWER),
     "curve-of-like-cases": (
         "results/effect_curves.py",
-        "np.median(full, axis=0), ends",
-        "np.max(full, axis=0), ends",
+        "middle = np.median(full, axis=0)",
+        "middle = np.max(full, axis=0)",
         ANSWER,
     ),
     "fewest-conditions": ("results/candidates.py", "self.size.min() >= FEWEST", "self.size.max() >= FEWEST", DESIGNS),

@@ -373,6 +373,7 @@ def sized(page, folder=None):
         ("Shelf: a table of rollers", "shelf-of-a-test.csv"),
         ("Life", "5000"),
         ("Safety against overload", "1.5"),
+        ("Permissible wear depth [mm]", "900"),
         ("Least", "price"),
     ):
         page.run(f"({fill})({json.dumps(label)}, {json.dumps(value)})")
@@ -399,6 +400,10 @@ def test_a_requirement_finds_the_least_roller_first_in_preview(page):
         "[...document.querySelectorAll('.cards .exceeded')].map((c) => c.parentElement.cells[0].textContent)"
     )
     assert cells == ["soft"]
+    heads = page.run(
+        "[...document.querySelectorAll('.cards')[0].querySelectorAll('thead th')].map((c) => c.textContent)"
+    )
+    assert "wear ratio" in heads
 
 
 def test_rollers_are_cards_on_a_phone(page):

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import os
-import subprocess
-import sys
 
 import pytest
 from command_line import trackroller, trackroller_process
@@ -153,7 +151,6 @@ LONG = "n" * 300
     ],
 )
 def test_a_name_that_is_too_long_is_named_as_such(tmp_path, words):
-    line = [sys.executable, "-m", "trackroller.cli", *words]
-    done = subprocess.run(line, cwd=tmp_path, capture_output=True, text=True, check=False)
-    assert done.returncode == 2 and len(done.stderr.splitlines()) == 1, done.stderr
-    assert "is too long: a name in it has 30" in done.stderr and "Give a shorter name." in done.stderr
+    line = trackroller(*words, cwd=tmp_path, code=2).stderr
+    assert len(line.splitlines()) == 1, line
+    assert "is too long: a name in it has 30" in line and "Give a shorter name." in line

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import trackroller as tr
-from trackroller.damage.verdict import STATES
+from trackroller.damage.first_limit import STATES
 from validation.benchmarks.samples import random_designs
 
 OUTPUTS = ("forces", "peak_stress", "life", "limits")

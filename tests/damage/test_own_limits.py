@@ -128,7 +128,7 @@ def test_a_file_may_import_parameters_from_the_catalogue_and_must_not_take_a_nam
         ("def evaluate", "1 / 0\ndef evaluate", "stops with ZeroDivisionError"),
         ('"max_pressure"', '"max_presure"', "stops with KeyError: 'max_presure'"),
         ("    pressure = solved", "    raise SystemExit(0)\n    pressure = solved", "stops with SystemExit: 0"),
-        ('worst(found["lining_utilisation"])', 'worst(found["lining"])', "stops with KeyError: 'lining'"),
+        ('worst(results["lining_utilisation"])', 'worst(results["lining"])', "stops with KeyError: 'lining'"),
     ],
 )
 def test_an_error_of_a_file_names_the_file_and_its_line(place, old, new, why):

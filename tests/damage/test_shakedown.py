@@ -8,7 +8,7 @@ import trackroller as tr
 from trackroller.damage.ball import GAP, ball_of_plane, smallest_ball, top_of_depths
 from trackroller.damage.deep_planes import BESIDE, deep_planes, ladder_of, loads_on_ladder, steps_on_ladder
 from trackroller.damage.histories import DEPTHS, RollerTractions, planes
-from trackroller.damage.shakedown import shears
+from trackroller.damage.shakedown import largest_shears, shears
 from trackroller.halfspace.stress import stress_from_tractions, stress_on_grid, von_mises
 
 
@@ -37,6 +37,46 @@ def test_limits_of_ellipses(a, b, mu, expected):
     limits = 1 / shears(ellipse(a, b, mu), np.array([[0.3, 0.3]]))[0, 0]
     assert limits[0] == pytest.approx(expected, rel=0.015)
     assert limits[1] == pytest.approx(limits[0], rel=2e-3)  # mirrored along y
+
+
+def sliding_ellipses(ratios, frictions, angles, nodes=24):
+    """Ellipses of all ratios, frictions and directions of sliding, each as contact 1 of a roller."""
+    unit = (2 * np.arange(nodes) + 1) / nodes - 1
+    ratio, mu, angle = (part.ravel() for part in np.meshgrid(ratios, frictions, angles, indexing="ij"))
+    p = np.sqrt(np.maximum(1 - unit[None, :] ** 2 - unit[:, None] ** 2, 0))[None, None]
+    p = np.concatenate([p + np.zeros((ratio.size, 1, 1, 1)), np.full((ratio.size, 1, nodes, nodes), np.nan)], axis=1)
+    x = np.stack([ratio[:, None] * unit, np.full((ratio.size, nodes), np.nan)], axis=1)
+    y = np.stack([unit + np.zeros((ratio.size, 1)), np.full((ratio.size, nodes), np.nan)], axis=1)
+    share = mu[:, None, None, None]
+    across, along = (share * turned(angle)[:, None, None, None] * p for turned in (np.sin, np.cos))
+    return RollerTractions(x, y, p, across, along, 0 * p, 0 * p, np.zeros(ratio.size, bool))
+
+
+def test_the_depths_around_the_summit_are_enough_below_ellipses():
+    """Line-like and round ellipses, without and with high friction in any direction; the same bits as of all depths."""
+    t = sliding_ellipses(np.geomspace(0.03, 30, 9), (0.0, 0.1, 0.2, 0.28, 0.32, 0.36, 0.5, 1.0), (0.0, 0.6, 1.5708))
+    ratio = np.tile([0.3, 0.42], (len(t.x), 1))
+    every = shears(t, ratio)
+    np.testing.assert_array_equal(shears(t, ratio, hertzian=True), every)
+    assert np.isfinite(every[:, 0]).all() and np.isnan(every[:, 1]).all()
+
+
+def test_the_contact_that_decides_has_its_number():
+    """Both contacts, loaded more or less unequally: the largest is that of all numbers, and bounds stand beside it."""
+    t = sliding_ellipses((0.5, 1.0, 2.0), (0.05, 0.3), (0.0,))
+    for name in ("x", "y"):
+        getattr(t, name)[:, 1] = getattr(t, name)[:, 0]
+    for name in ("pressure", "shear_lateral", "shear_rolling"):
+        getattr(t, name)[:, 1] = np.array([0.0, 0.5, 0.99, 1.0, 1.01, 2.0])[:, None, None] * getattr(t, name)[:, 0]
+    ratio, bounded = np.full((6, 2), 0.3), np.zeros((6, 2), bool)
+    bounded[3, 0] = True
+    every = shears(t, ratio)
+    most = 1.2 * every
+    most[4] = np.nan
+    found = largest_shears(t, ratio, most, bounded)
+    np.testing.assert_array_equal(found.max(axis=1), np.where(bounded, np.nan, every.max(axis=1)))
+    np.testing.assert_array_equal(found[1, 1], most[1, 1])
+    np.testing.assert_array_equal(found[[2, 4]], every[[2, 4]])
 
 
 @pytest.mark.parametrize("seed", range(3))

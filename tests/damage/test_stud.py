@@ -116,6 +116,46 @@ def test_the_results_of_a_case_by_hand():
     assert 0 < ds["stud_deflection"].item() < 0.1 and np.isnan(ds["utilisation"].sel(limit="stud", body="guide"))
 
 
+@pytest.mark.parametrize("chance, deviates", [(0.1, -1.2815515655446004), (0.01, -2.3263478740408408)])
+def test_failures_shift_the_life_of_a_stud_by_its_scatter(chance, deviates):
+    """T_N is N_90/N_10, 2.563 standard deviations: the life moves by T_N^(u/2.563) as the line is straight."""
+    median, own = (
+        tr.solve(CASE | {"stud": ENDURING | {"scatter_in_cycles": 6}}, outputs=GROUPS, failure_probability=p, **QUICK)
+        for p in (0.5, chance)
+    )
+    row = {"limit": "stud", "body": "roller"}
+    expected = median["life_hours_by_limit"].sel(row).item() * 6 ** (deviates / 2.5631031310892007)
+    for end in ("", "_low", "_high"):
+        assert own[f"life_hours_by_limit{end}"].sel(row).item() == pytest.approx(expected, rel=1e-12)
+    assert own["stud_life_hours"].item() == median["stud_life_hours"].item()  # the median one, as of the others
+
+
+def test_a_stud_without_scatter_takes_the_typical_one_with_its_range():
+    """From 10 to 50 % failed lie half of T_N in logarithms: 5.2, 10 and 16.1."""
+    ds = tr.solve(CASE | {"stud": ENDURING}, outputs=GROUPS, failure_probability=0.1, **QUICK)
+    median = ds["stud_life_hours"].item()
+    for end, scatter in (("", 10.0), ("_low", 16.1), ("_high", 5.2)):
+        life = ds[f"life_hours_by_limit{end}"].sel(limit="stud", body="roller").item()
+        assert life == pytest.approx(median / scatter**0.5, rel=1e-12)
+    note = f"stud: placeholders of material '{STEEL}': scatter_in_cycles"
+    assert note in ds.attrs["limits_notes"]
+    with_scatter = ENDURING | {"scatter_in_cycles": 4}
+    other = tr.solve(CASE | {"stud": with_scatter}, outputs=GROUPS, failure_probability=0.1, **QUICK)
+    assert note not in other.attrs["limits_notes"]
+
+
+def test_failures_shift_the_fatigue_limit_of_a_stud_with_a_line():
+    """T_S = T_N^(1/k) of the line through (N_Rm, R_m) and (N_k, sigma_D)."""
+    line = {"tensile_strength": 800, "fatigue_limit": 200, "cycles_at_tensile_strength": 1e4}
+    stud = {"diameter": 10, "length": 18, "yield_strength": 640, "load_ratio": 0, "notch_factor": 2}
+    stud |= line | {"cycles_at_fatigue_limit": 2e6, "scatter_in_cycles": 9}
+    median, own = (tr.solve(CASE | {"stud": stud}, outputs=GROUPS, failure_probability=p, **QUICK) for p in (0.5, 0.1))
+    exponent = math.log(200) / math.log(4)
+    used = [ds["utilisation"].sel(limit="stud", body="roller").item() for ds in (median, own)]
+    assert used[0] == median["stud_endurance_utilisation"].item()
+    assert used[1] == pytest.approx(used[0] * 3 ** (1 / exponent), rel=1e-9)
+
+
 def test_an_endurance_without_cycles_is_a_utilisation():
     stud = {name: value for name, value in ENDURING.items() if name != "cycles_per_hour"} | {"fatigue_limit": 40}
     ds = tr.solve(CASE | {"stud": stud}, outputs=GROUPS, **QUICK)

@@ -257,7 +257,7 @@ def test_the_groove_wears_away_within_the_life_of_a_body_whose_own_life_is_longe
     lives, run_in = ds.life_to_first_limit_hours, float(ds.run_in_distance) / 3.6  # 60 m/min
     assert float(lives.sel(body="roller")) < run_in < float(lives.sel(body="guide"))
     assert worn(ds) == {"roller": False, "guide": True}
-    # without the verdict the life follows from the limits that are computed
+    # without the checked limits the life follows from the limits that are computed
     assert worn(solved(("forces", "wear"), **UNLIKE)) == {"roller": False, "guide": True}
 
 

@@ -65,6 +65,39 @@ def test_a_second_exponent_takes_the_place_of_the_rule_below_the_limit(rule, sec
         assert float(curve.allowable_stress(1e9)) == 300.0
 
 
+@pytest.mark.parametrize(("second", "rule"), [(3.0, "elementary"), (3.0, "haibach"), (7.9, "elementary")])
+@pytest.mark.parametrize("scatter", [{"scatter_in_cycles": 8.0}, {"scatter_in_stress": 1.3}])
+def test_no_life_below_the_knee_scatters_less_than_above_it(second, rule, scatter):
+    """With a smaller exponent below sigma_D the life scatters by T_N at all stresses, without a jump at the knee."""
+    median = SNCurve.of(material(**FREE, second_exponent=second, **scatter), rule)
+    early, late = (median.changed(failure_probability=p) for p in (0.1, 0.9))
+    stress = np.geomspace(100.0, 900.0, 61)
+    t_n = 8.0 if "scatter_in_cycles" in scatter else 1.3**8
+    assert np.allclose(late.life_cycles(stress) / early.life_cycles(stress), t_n, rtol=1e-12)
+    assert np.allclose(early.life_cycles(stress) * np.sqrt(t_n), median.life_cycles(stress), rtol=1e-12)
+    assert np.allclose(early.allowable_stress(early.life_cycles(stress)), stress, rtol=1e-12)
+
+
+@pytest.mark.parametrize(("second", "rule"), [(15.0, "elementary"), (None, "haibach"), (None, "elementary")])
+def test_a_larger_exponent_below_the_knee_keeps_the_scatter_of_the_strength(second, rule):
+    """The life scatters by T_N T_S^(k_2 - k) there, by the numbers of pyLife's formula."""
+    median = SNCurve.of(material(**FREE, second_exponent=second, scatter_in_cycles=8.0), rule)
+    early = median.changed(failure_probability=0.1)
+    below = second or {"haibach": 15.0, "elementary": 8.0}[rule]
+    t_s = 8.0 ** (1 / 8)
+    assert float(median.life_cycles(200.0) / early.life_cycles(200.0)) == pytest.approx(
+        math.sqrt(8.0 * t_s ** (below - 8.0)), rel=1e-12
+    )
+    assert float(median.life_cycles(600.0) / early.life_cycles(600.0)) == pytest.approx(math.sqrt(8.0), rel=1e-12)
+
+
+def test_an_unlimited_life_keeps_the_scatter_of_the_fatigue_limit():
+    median = SNCurve.of(material(**FREE, second_exponent=3.0, scatter_in_stress=1.3), "unlimited")
+    early = median.changed(failure_probability=0.1)
+    assert float(early.knee[0]) == pytest.approx(300.0 / math.sqrt(1.3), rel=1e-12)
+    assert float(early.life_cycles(299.0 / math.sqrt(1.3))) == math.inf
+
+
 @pytest.mark.parametrize("strength", [20.0, 299.9, 300.0, 300.1, 900.0, 1e5])
 def test_a_line_by_limit_cycles_and_exponent_is_free_of_the_tensile_strength(strength):
     stress = np.array([1.0, 100.0, 299.0, 301.0, 800.0])

@@ -10,7 +10,7 @@ from examples import EXAMPLES
 from trackroller.numerics.numbers import number_or_nan
 from trackroller.numerics.table_cells import (
     AmbiguousNumber,
-    Refused,
+    RefusedCell,
     Stored,
     decimal_signs,
     plain_cell,
@@ -58,7 +58,7 @@ def test_a_number_that_other_cells_do_not_decide_is_refused(cell, signs):
     with pytest.raises(AmbiguousNumber, match="other cells do not tell"):
         plain_cell(cell, signs)
     (read,) = plain_column([cell], signs)
-    assert isinstance(read, Refused) and read == cell and read.message[1].startswith("Write ")
+    assert isinstance(read, RefusedCell) and read == cell and read.message[1].startswith("Write ")
 
 
 @pytest.mark.parametrize(
@@ -90,7 +90,7 @@ def test_the_other_numbers_of_a_file_decide():
         (["1,5", "2"], True),
         ([Stored("1e+20"), Stored("3")], True),
         ([Stored("3"), "x"], False),
-        ([Refused("12", "", "")], False),
+        ([RefusedCell("12", "", "")], False),
     ],
 )
 def test_a_column_of_labels_holds_numbers_only_if_each_is_written_as_its_number(column, numbers):

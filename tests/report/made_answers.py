@@ -323,6 +323,8 @@ def best(kind: str = "front") -> Answer:
     if kind in ("none", "open", "solve_finer"):
         near = {"name": {"axis_distance": 18.9}, "holds": 12, "meets": 9, "of": 12, "low": 850.0}
         head = {"designs": [], "nearest": near}
+    if kind == "open":
+        head["measure"] = WEAR
     return Answer(
         "best", kind, head, LIFE, table if kind == "front" else table[1:2], columns, picture=picture,
         required=() if kind == "front" else (required(),), curves=CURVES[:2], not_checked=NOT_CHECKED,
@@ -406,8 +408,18 @@ def nearest(**changes: Any) -> Answer:
     return decide("none", headline={"names": [], "nearest": near | {"fails": "radial force 150 N"}}, **changes)
 
 
+WEAR = {
+    "what": "wear coefficient",
+    "of": "POM",
+    "on": "steel",
+    "turn": 3.1e-6,
+    "units": "mm3/(N m)",
+    "low": 1e-6,
+    "high": 2e-5,
+}
+
+
 def measure() -> Answer:
-    asked = {"what": "wear coefficient", "of": "POM", "on": "steel", "turn": 3.1e-6, "units": "mm3/(N m)"}
     head: dict[str, Any] = {
         "names": [{"roller_material": "POM"}],
         "low": 6.0,
@@ -415,7 +427,7 @@ def measure() -> Answer:
         "ends": "wear",
         "extrapolated": False,
     }
-    return decide("measure", headline=head | {"measure": asked}, columns=(STEEL, *DECIDE), table=_with_steel())
+    return decide("measure", headline=head | {"measure": WEAR}, columns=(STEEL, *DECIDE), table=_with_steel())
 
 
 def _with_steel() -> pd.DataFrame:

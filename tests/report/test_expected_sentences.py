@@ -14,7 +14,7 @@ import pytest
 from synthetic_results import PAIRS, grid_study, sampled_study
 
 from trackroller.report.explorer.pack import pack, sample_rows
-from trackroller.report.explorer.rows import Column
+from trackroller.report.explorer.rows import ExplorerColumn
 from trackroller.report.numbers import shortened
 
 CALM = {"friction_coefficient": [0.2, 0.3, 0.4], "roller_profile_radius": [-9.0, -8.0, -7.0]}  # all of it rolls
@@ -95,7 +95,9 @@ def test_long_lists_say_how_many_names_they_leave_out():
 def test_columns_of_many_levels_survive_packing(count):
     """One byte holds 255 levels and none; the next level needs a second byte."""
     codes = np.arange(-1, count)
-    column = Column("x", "x", "", "factor", codes, tuple(map(float, range(count))), tuple(map(str, range(count))))
+    column = ExplorerColumn(
+        "x", "x", "", "factor", codes, tuple(map(float, range(count))), tuple(map(str, range(count)))
+    )
     (entry,), block = pack([column])
     raw = np.frombuffer(zlib.decompress(base64.b64decode(block)), np.uint8)
     kind = np.dtype("<" + entry["type"])

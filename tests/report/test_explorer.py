@@ -18,10 +18,10 @@ from typer.testing import CliRunner
 
 from trackroller.cli.main import app
 from trackroller.errors import InputError
-from trackroller.report.explorer.designs import design_columns
+from trackroller.report.explorer.candidate_columns import candidate_columns
 from trackroller.report.explorer.pack import MOST_BYTES, MOST_ROWS, RARE, affordable_rows, pack, sample_rows
 from trackroller.report.explorer.page import explorer, pareto_rows, secured, write_explorer
-from trackroller.report.explorer.rows import STATES, Column, collect, flag_text, solve_inputs
+from trackroller.report.explorer.rows import STATES, ExplorerColumn, collect, flag_text, solve_inputs
 from trackroller.report.figures import style
 from trackroller.results.pareto import pareto
 from trackroller.results.stored_study import open_study
@@ -98,8 +98,8 @@ def test_states_tell_every_case_that_is_left_out(study):
 
 
 def test_missing_values_stay_missing():
-    column = Column("x", "x", "", "factor", np.array([-1, 0, 1]), ("a", "b"), ("a", "b"))
-    header, block = pack([column, Column("y", "y", "mm", "output", np.array([np.nan, np.inf, 1.0]))])
+    column = ExplorerColumn("x", "x", "", "factor", np.array([-1, 0, 1]), ("a", "b"), ("a", "b"))
+    header, block = pack([column, ExplorerColumn("y", "y", "mm", "output", np.array([np.nan, np.inf, 1.0]))])
     found = unpacked(header, block)
     assert found["x"].tolist() == [0, 1, 2] and header[0]["type"] == "u1"
     assert np.array_equal(found["y"], [np.nan, np.inf, 1.0], equal_nan=True)
@@ -194,7 +194,7 @@ def test_a_uniform_factor_does_not_stand_on_a_logarithmic_axis():
 
 def test_designs_and_conditions_are_numbered_where_designs_repeat(study):
     results = results_of(study)
-    columns, lists = design_columns(results)
+    columns, lists = candidate_columns(results)
     found = {c.name: c.values for c in columns}
     assert set(found) == {"design", "design_worst", "condition"} and lists["design"]["factors"] == ("material_pair",)
     pair = results.table["material_pair"].to_numpy()
@@ -205,7 +205,7 @@ def test_designs_and_conditions_are_numbered_where_designs_repeat(study):
     assert (np.diff(valid) >= 0).all() and lists["condition"]["of"] == len(valid) == 12
     hard = [row[-3] for row in lists["condition"]["rows"]]
     assert hard == [f"{int(n)} of 2" for n in valid]
-    assert design_columns(results_of(sampled_study(40))) == ([], {})
+    assert candidate_columns(results_of(sampled_study(40))) == ([], {})
 
 
 def test_names_of_users_cannot_end_the_data_and_the_policy_allows_nothing_else(tmp_path):
@@ -275,8 +275,8 @@ def test_a_folder_without_results_is_refused(tmp_path):
 def test_a_page_of_many_cases_and_columns_stays_below_its_size():
     """Random numbers do not compress: 40 such columns leave room for a fifth of 60,000 cases."""
     rng = np.random.default_rng(0)
-    columns = [Column(f"x{i}", "x", "mm", "output", rng.normal(size=60_000)) for i in range(40)]
+    columns = [ExplorerColumn(f"x{i}", "x", "mm", "output", rng.normal(size=60_000)) for i in range(40)]
     rows = affordable_rows(columns)
     _, block = pack([replace(c, values=c.values[:rows]) for c in columns])
     assert 0.97 * MOST_BYTES < len(block) < 1.03 * MOST_BYTES and rows < 15_000
-    assert affordable_rows([Column("x", "x", "mm", "output", np.zeros(60_000))]) == MOST_ROWS
+    assert affordable_rows([ExplorerColumn("x", "x", "mm", "output", np.zeros(60_000))]) == MOST_ROWS

@@ -40,7 +40,7 @@ def test_every_warning_has_one_line():
         ("build", "Build groove 6.2 mm, axis distance 26 mm"),
         ("tie", "Groove 6.2 or 6.3 mm"),
         ("none", "None reaches 20,000 h; nearest groove 6.2 mm"),
-        ("measure", "Measure the wear coefficient of POM on steel"),
+        ("measure", "Measure the wear coefficient of POM on steel (1·10⁻⁶ to 2·10⁻⁵ mm³/(N m))"),
         ("give", "Give the motor force: without it 12 of 54 conditions are lost"),
         ("sure", "82 % (78 to 85) of the 500 drawn conditions reach 5,000 h"),
         ("loads", "Meets 14 of 20 loads"),

@@ -12,7 +12,7 @@ from reference_cases import solve_sliding
 import trackroller as tr
 from trackroller.report.figures import style
 from trackroller.report.figures.contact import friction_energy, shear_arrows
-from trackroller.report.figures.contact_outline import Patch, outline, widths
+from trackroller.report.figures.contact_outline import DrawnPatch, outline, widths
 from trackroller.report.figures.contact_sections import sections, surface_stress
 from trackroller.results.case_columns import at_surface
 
@@ -33,7 +33,7 @@ def loaded_x(ds, contact: int) -> tuple[float, float]:
 
 def test_the_outline_encloses_all_that_bears_and_little_more(edged):
     for contact in (1, 2):
-        patch = Patch(edged, contact)
+        patch = DrawnPatch(edged, contact)
         low, high = loaded_x(edged, contact)
         assert abs(low + high) > 0.1  # far from symmetric
         step = patch.x[1] - patch.x[0]
@@ -89,17 +89,17 @@ def test_the_surface_map_shows_the_peaks_of_solved_patches(edged):
 def test_two_strips_are_drawn_apart(edged):
     ds = edged.copy(deep=True)
     ds["pressure"].values[:, :, 9:12] = 0.0
-    patch = Patch(ds, 1)
+    patch = DrawnPatch(ds, 1)
     assert len(outline(patch).to_polygons()) == 2
     assert len(widths(ds.sel(contact=1), "x")) == 2 and len(widths(ds.sel(contact=1), "y")) == 1
 
 
 def test_the_spin_pole_is_shown_for_the_model_that_has_one(edged):
-    assert Patch(edged, 1).spin_pole is not None
+    assert DrawnPatch(edged, 1).spin_pole is not None
     assert "spin pole" in shear_arrows(edged)[1].caption
     used = edged.contact_model_used
     other = used.copy(data=np.int8(used.attrs["flag_meanings"].split().index("kalker_table")))
     rolling = edged.assign_attrs(contact_model="kalker").assign(contact_model_used=other)
-    assert Patch(rolling, 1).spin_pole is None
+    assert DrawnPatch(rolling, 1).spin_pole is None
     assert "spin pole" not in shear_arrows(rolling)[1].caption
-    assert Patch(edged.assign(contact_model_used=other), 1).spin_pole is None
+    assert DrawnPatch(edged.assign(contact_model_used=other), 1).spin_pole is None

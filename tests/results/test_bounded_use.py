@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import trackroller as tr
-from trackroller.damage.verdict import STATES
+from trackroller.damage.first_limit import STATES
 from trackroller.errors import InputError
 from trackroller.study.outputs import outputs
 

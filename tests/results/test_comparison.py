@@ -37,7 +37,7 @@ def test_errors_that_were_not_measured_count_as_independent(accuracy, stated, fr
 
 def test_a_life_that_fatigue_does_not_end_shares_no_error():
     found = compared(0.2, "preview", True)
-    found.ranges.__dict__["error"] = np.where(found.place == 0, 0.2, 0.0)  # fatigue ends the first candidate only
+    found.ranges.__dict__["error"] = np.where(found.candidate == 0, 0.2, 0.0)  # fatigue ends the first candidate only
     assert found.error_of_ratio(0, 1) == pytest.approx(0.2)
 
 

@@ -15,7 +15,7 @@ from trackroller.methods.optimise import (
     nondominated_ranks,
 )
 from trackroller.results.pareto import pareto_mask
-from trackroller.results.search import cheaper, search_designs
+from trackroller.results.search import cheaper, search_candidates
 from trackroller.results.search_fitness import optimum_of, shortfall
 from trackroller.study.file.load import load_study
 from validation.benchmarks.optimum import hypervolume
@@ -105,7 +105,7 @@ def test_the_hypervolume_of_an_eighth_of_a_sphere():
 
 @pytest.mark.long
 def test_a_search_finds_the_front_of_all_designs(tmp_path):
-    plan = search_designs(changed(budget={"designs": 24, "population": 8}), tmp_path)
+    plan = search_candidates(changed(budget={"designs": 24, "population": 8}), tmp_path)
     solved = tr.open_study(plan.folder.root)
     grid = {**STUDY, "method": "grid", "name": "grid"}
     data = tr.run({k: v for k, v in grid.items() if k not in ("goals", "budget")}, progress=False).data
@@ -121,7 +121,7 @@ def test_a_search_finds_the_front_of_all_designs(tmp_path):
 
 @pytest.mark.long
 def test_a_search_goes_on_where_it_was_stopped(tmp_path):
-    whole = tr.open_study(search_designs(changed(), tmp_path / "whole").folder.root)
+    whole = tr.open_study(search_candidates(changed(), tmp_path / "whole").folder.root)
     calls = []
 
     def stops(cases, **how):
@@ -132,7 +132,7 @@ def test_a_search_goes_on_where_it_was_stopped(tmp_path):
 
     for _ in range(40):
         try:
-            plan = search_designs(changed(), tmp_path / "parts", solver=stops)
+            plan = search_candidates(changed(), tmp_path / "parts", solver=stops)
             break
         except KeyboardInterrupt:
             continue
@@ -145,9 +145,9 @@ def test_a_search_goes_on_where_it_was_stopped(tmp_path):
 def test_hours_add_up_over_runs(tmp_path):
     told = []
     tight = changed(budget={"designs": 12, "population": 4, "hours": 1e-9})
-    search_designs(tight, tmp_path, tell=told.append)
+    search_candidates(tight, tmp_path, tell=told.append)
     assert [line for line in told if line.startswith("generation")][-1].startswith("generation 1:")
-    search_designs(tight, tmp_path, tell=told.append)
+    search_candidates(tight, tmp_path, tell=told.append)
     assert sum(line.startswith("generation") for line in told) == 2
 
 

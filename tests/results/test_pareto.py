@@ -83,7 +83,7 @@ def test_wrong_goals_are_refused(objectives, constraints, says):
 
 def test_figures_of_the_set_are_drawn_in_words():
     from trackroller.report.figures import style
-    from trackroller.report.figures.designs import pareto_front
+    from trackroller.report.figures.pareto_front import pareto_front
 
     ds = trade(lambda a, b: 100 * a * (1.01 - b), lambda a, b: 10 * a * (1 + b))
     front = pareto(results_of(ds), {"roller_life_hours": "max", "friction_power": "min"})

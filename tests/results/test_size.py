@@ -139,7 +139,7 @@ def test_a_shelf_of_one_roller_and_a_study_are_sized_too(shelf):
 @pytest.mark.parametrize(
     ("case", "how", "message"),
     [
-        ({}, {}, "a required life, or a safety"),
+        ({}, {}, "a required life, a safety, a temperature or a wear depth"),
         ({}, {"safety": 0.5}, "safety .*a number >= 1"),
         ({}, {"life": "3 years"}, "^life = '3 years' needs a duty"),
         ({}, {"life": "soon"}, "^life = 'soon'"),
@@ -148,6 +148,9 @@ def test_a_shelf_of_one_roller_and_a_study_are_sized_too(shelf):
         ({}, {"safety": 2, "least": "prize"}, "^least = 'prize'.*Did you mean 'price'"),
         ({}, {"life": 100, "failures": "105 %"}, "^failures = '105 %'.*a number in"),
         ({}, {"life": 100, "failures": "inf"}, "^failures = 'inf'.*a number in"),
+        ({}, {"wear_depth": 0.1}, "^wear_depth = 0.1 .*required_travel"),
+        ({}, {"life": 10, "wear_depth": "0.1 kg"}, "^wear_depth = '0.1 kg'.*converted to mm"),
+        ({}, {"temperature": "hot"}, "^temperature = 'hot'.*degC"),
         ({"failure_probability": 2} | CASE | QUICK, {"life": 100}, "^failure_probability = 2"),
         ({"name": "v", "factors": {"radial_force": {"values": [-1, -2]}}}, {"safety": 2}, "forces under base"),
     ],
@@ -298,3 +301,79 @@ def test_a_catalogue_that_misses_the_life_is_said(tmp_path):
     assert table.loc["large", "second_model"] == ""
     said = lead_of(sizing)
     assert ("but the catalogue misses" in said) == (sizing.least == "small")
+
+
+WARM = CASE | QUICK | {"heat_transfer_coefficient": 20, "cooled_area": 8000}
+
+
+def test_a_temperature_alone_is_a_requirement_by_the_rise_of_single_sheets(shelf):
+    found = tr.size(WARM, shelf, temperature="26 degC").table.set_index("roller")
+    for row in ROWS:
+        name, axis, groove, material, _ = row.split(";")
+        case = WARM | {"axis_distance": axis, "roller_profile_radius": groove, "roller_material": material}
+        options = {key: case.pop(key) for key in QUICK}
+        ds = tr.solve(case, ("heat",), **options)
+        rise = (ds["flash_temperature_rise"] + ds["bulk_temperature_rise"]).max().item()
+        assert found.loc[name, "temperature_ratio"] == pytest.approx(6.0 / rise, rel=1e-12)
+        assert (found.loc[name, "verdict"] == "enough") == (rise <= 6.0)
+    assert "life_hours" not in found and set(found["verdict"]) == {"enough"}
+    hot = tr.size(WARM, shelf, temperature=20.1)
+    assert hot.least == "" and hot.table["excluded_by"].str.startswith("heat of the").all()
+
+
+def test_an_unknown_temperature_is_open_and_the_message_names_what_to_give(shelf):
+    bare = {name: value for name, value in WARM.items() if name != "cooled_area"}
+    found = tr.size(bare, shelf, temperature=60).table
+    assert set(found["verdict"]) == {"open"} and found["temperature_ratio"].isna().all()
+    assert found["excluded_by"].str.contains("temperature is not known: the case gives no cooled_area").all()
+    assert set(tr.size(bare | {"cooled_area": 8000}, shelf, temperature=60).table["verdict"]) == {"enough"}
+
+
+def test_a_wear_depth_ends_the_life_of_single_sheets_and_is_open_by_its_coefficient(shelf):
+    found = tr.size(CASE | QUICK, shelf, life=10, wear_depth="0.05 mm").table.set_index("roller")
+    for row in ROWS:
+        name, axis, groove, material, _ = row.split(";")
+        case = CASE | {"axis_distance": axis, "roller_profile_radius": groove, "roller_material": material}
+        ds = tr.solve(case | {"permissible_wear_depth": 0.05}, **QUICK)
+        wear = ds["life_hours_by_limit_low"].sel(limit="wear").min().item()
+        assert found.loc[name, "wear_ratio"] == wear / 10
+        if wear < 10 < ds["life_hours_by_limit_high"].sel(limit="wear").min().item():
+            assert found.loc[name, "verdict"] == "open"
+            assert f"wear_coefficient of {material} (" in found.loc[name, "excluded_by"]
+    assert "open" in set(found["verdict"])
+    by_travel = tr.size(CASE | QUICK | {"required_travel": "36 km"}, shelf, wear_depth=0.05).table
+    assert by_travel.set_index("roller")["wear_ratio"].to_dict() == pytest.approx(found["wear_ratio"].to_dict())
+
+
+def test_a_column_of_the_shelf_and_the_requirement_do_not_both_permit(shelf):
+    shelf.write_text(shelf.read_text().replace("price [EUR]", "permissible_wear_depth [mm]"))
+    shelf.write_text("\n".join(line for line in shelf.read_text().splitlines() if "no price" not in line) + "\n")
+    with pytest.raises(InputError, match="remove the column permissible_wear_depth of the shelf"):
+        tr.size(CASE | QUICK, shelf, life=10, wear_depth=0.05)
+
+
+def test_what_the_file_requires_counts_too(shelf):
+    case = CASE | QUICK | {"requirement": {"peak_stress_roller": {"max": "400 MPa"}}}
+    found = tr.size(case, shelf).table.set_index("roller")
+    for row in ROWS:
+        stress = alone(row)["peak_stress"].sel(body="roller").max().item()
+        own = found.loc[row.split(";")[0]]
+        assert own["peak_stress_roller"] == stress and own["peak_stress_roller_ratio"] == 400 / stress
+        if abs(stress / 400 - 1) > 0.05:  # beyond the told error
+            assert (own["verdict"] == "enough") == (stress < 400)
+    assert set(found["verdict"]) == {"enough", "not enough"}
+
+
+def test_a_condition_in_which_every_roller_lifts_off_excludes_all(shelf):
+    base = {name: value for name, value in CASE.items() if name != "radial_force"}
+    study = {"name": "two", "base": base, "factors": {"radial_force": {"values": [-150, -3]}}}
+    found = tr.size(study | QUICK, shelf, life=1)
+    assert found.least == "" and found.table["excluded_by"].str.contains("lifts off in 1 of 2 conditions").all()
+
+
+def test_without_a_price_the_larger_load_ratio_leads_and_names_break_ties(shelf):
+    twin = "twin;19;-6.5;1.7225-normalised;10.8"  # a second row like the first one
+    for rows in ((*ROWS, twin), (twin, *ROWS[::-1])):
+        shelf.write_text("\n".join([HEAD, *rows]) + "\n")
+        table = tr.size(CASE | QUICK, shelf, safety=1.1).table
+        assert (table["load_ratio"].diff().dropna() <= 0).all() and table["roller"].tolist()[-2:] == ["soft", "twin"]

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import yaml
 from typer.testing import CliRunner
 
 import trackroller as tr
@@ -13,7 +14,7 @@ from trackroller.carriage.example import EXAMPLE
 from trackroller.carriage.solve import solve_carriage
 from trackroller.cli.main import app
 from trackroller.errors import InputError
-from trackroller.study.spectrum.file import Spectrum
+from trackroller.study.spectrum.file import Spectrum, load_spectrum
 from trackroller.study.spectrum.solve import solve_spectrum
 from trackroller.yaml_file import parse_mapping
 
@@ -152,6 +153,53 @@ def test_the_lives_of_a_spectrum_at_a_probability_take_the_typical_scatter(shelf
         tr.size(SPECTRUM, shelf, life=100, each=True)
     with pytest.raises(InputError, match=r"prize.*Did you mean 'price'"):
         tr.size(SPECTRUM, shelf, life=100, least="prize")
+
+
+def test_the_spectrum_with_the_least_roller_is_written_and_repeats_its_life(shelf, tmp_path):
+    (tmp_path / "loads").mkdir()
+    lines = ["name,distance,radial_force,axial_force"]
+    lines += [",".join(str(value) for value in block.values()) for block in BLOCKS]
+    Path("loads/blocks.csv").write_text("\n".join(lines) + "\n")
+    Path("loads/shift.yaml").write_text(yaml.safe_dump(SPECTRUM | {"blocks": "blocks.csv"}))
+    words = ["size", "loads/shift.yaml", "--shelf", "rollers.csv", "--life", "3 years", "--least", "price", "-q"]
+    done = CliRunner().invoke(app, [*words, "-o", "sized.yaml"])
+    assert done.exit_code == 0 and "the spectrum with mid" in done.output
+    found = tr.size("loads/shift.yaml", shelf, life="3 years", least="price").table.set_index("roller")
+    ds = solve_spectrum(load_spectrum("sized.yaml"))
+    assert ds["pair_life_to_first_limit_hours_low"].item() == found.loc["mid", "life_hours"]
+    then = done.output.rpartition("its page: trackroller ")[2].split()
+    assert CliRunner().invoke(app, then).exit_code == 0 and Path("page.html").is_file()
+    told = CliRunner().invoke(app, words)
+    assert "no study is kept of a spectrum; -o sized.yaml" in told.output
+
+
+COOLED = {"heat_transfer_coefficient": 20, "cooled_area": 8000}
+
+
+def test_a_temperature_of_a_spectrum_is_that_of_its_hottest_block(shelf):
+    warm = SPECTRUM | {"base": BASE | COOLED}
+    table = tr.size(warm, shelf, temperature=60).table.set_index("roller")
+    for name in ROWS:
+        rises = []
+        for block in BLOCKS[:2]:
+            loads = {force: block[force] for force in ("radial_force", "axial_force")}
+            ds = tr.solve(BASE | COOLED | roller(name) | loads, ("heat",), **QUICK)
+            rises.append((ds["flash_temperature_rise"] + ds["bulk_temperature_rise"]).max().item())
+        assert table.loc[name, "temperature_ratio"] == pytest.approx(40 / max(rises), rel=1e-9)
+    bare = tr.size(SPECTRUM, shelf, temperature=60).table.set_index("roller").loc[["mid", "large"]]
+    assert set(bare["verdict"]) == {"open"} and bare["excluded_by"].str.contains("cooled_area").all()
+
+
+def test_a_wear_depth_of_a_carriage_counts_at_each_place_and_everywhere(shelf):
+    found = tr.size(cart(), shelf, life=0.1, wear_depth="0.05 mm", least="price", each=True)
+    assert found.mounting.enough and "wear_ratio" in found.table
+    for entry in found.mounting.carriage["rollers"].values():
+        assert entry["roller"]["permissible_wear_depth"] == 0.05
+    ds = solve_carriage(found.mounting.carriage)
+    wear = ds["life_hours_by_limit"].sel(limit="wear", body="roller")
+    assert (wear > 0.1).all() and np.isfinite(wear).all()
+    unknown = tr.size(cart(), shelf, temperature=60, each=True)
+    assert not unknown.mounting.enough and "enough" not in set(unknown.table["verdict"])
 
 
 def test_the_command_writes_the_carriage_of_its_places(shelf, tmp_path):

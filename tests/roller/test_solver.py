@@ -6,7 +6,7 @@ from reference_cases import solve_sliding
 
 import trackroller as tr
 from trackroller import parameters
-from trackroller.roller.block_results import Block, join
+from trackroller.roller.block_results import BlockResults, join
 from trackroller.roller.dataset import VARIABLES, validity_bit
 
 
@@ -161,8 +161,10 @@ def test_blocks_keep_the_flags_of_each_body():
     """Rows that are taken from joined blocks keep the validity flags of roller and guide."""
     n = 3
     plain = {name: np.arange(n) for name in ("regime", "converged", "bits", "model", "rung", "stopped")}
-    blocks = [Block({"force": np.arange(n) + k}, **plain, bodies=np.arange(2 * n).reshape(n, 2) + k) for k in (0, 10)]
+    blocks = [
+        BlockResults({"force": np.arange(n) + k}, **plain, bodies=np.arange(2 * n).reshape(n, 2) + k) for k in (0, 10)
+    ]
     found = join(blocks).take(np.array([4, 0]))
     assert found.bodies.tolist() == [[12, 13], [0, 1]]
     assert found.values["force"].tolist() == [11, 0]
-    assert join([blocks[0], Block({}, **plain)]).take(np.array([0])).bodies is None
+    assert join([blocks[0], BlockResults({}, **plain)]).take(np.array([0])).bodies is None

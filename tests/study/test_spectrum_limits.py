@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from limit_rows import headline, limit_row
 
-from trackroller.damage.verdict import ENDS, STATES
+from trackroller.damage.first_limit import ENDS, STATES
 from trackroller.errors import InputError
 from trackroller.results.spectrum_answer import answer_of_spectrum
 from trackroller.study.spectrum.file import Spectrum

@@ -22,7 +22,7 @@ import xarray as xr
 from trackroller.app.tables import limits_on_page, part_on_page
 from trackroller.damage import LIMITS
 from trackroller.errors import InputError
-from trackroller.report.figures.contact_outline import Patch, patches_of
+from trackroller.report.figures.contact_outline import DrawnPatch, patches_of
 from trackroller.report.figures.roller_section import drawing
 from trackroller.report.headlines import headline_of
 from trackroller.report.numbers import head_unit, lives_in_years, on_duty, rounded
@@ -44,9 +44,7 @@ from trackroller.yaml_file import parse_yaml, write_yaml
 Values = dict[str, Any]
 POINTS = 21  # cases of a curve
 LIVE = ("forces", "contact", "friction_work", "peak_stress", "life", "tractions")
-_JUDGED = tuple(
-    dict.fromkeys(limit.group for limit in LIMITS.values() if limit.verdict is not None)
-)
+_JUDGED = tuple(dict.fromkeys(limit.group for limit in LIMITS.values() if limit.use is not None))
 # not searched, which takes up to 1 s
 _UNKNOWN = Limits((math.nan, math.nan), (math.nan, math.nan), math.nan)
 STILL = 0.01  # of the largest local creepage: elements that creep less count as adhering
@@ -161,7 +159,7 @@ def _field(values: np.ndarray, words: str, unit: str) -> dict[str, Any]:
     return {"words": words, "unit": unit, "top": top, "data": _bytes(values, top)}
 
 
-def _patch(patch: Patch) -> dict[str, Any]:
+def _patch(patch: DrawnPatch) -> dict[str, Any]:
     """Return the fields of one patch as bytes, its ends [mm], its edge, the adhesion area and the
     spin pole.
     """

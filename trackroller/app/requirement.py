@@ -11,12 +11,11 @@ from trackroller.app.picture import Values, read
 from trackroller.damage import limit_word
 from trackroller.errors import InputError, check_names
 from trackroller.report.sizing import head_of, lead_of, notes_of, shown
-from trackroller.results.size import Sizing, size
+from trackroller.results.size import REQUIRED, Sizing, size
 from trackroller.roller.stored_inputs import given_inputs
 from trackroller.study.file.shelf import ROLLER
 from trackroller.yaml_file import read_mapping
 
-REQUIRED = ("life", "failures", "safety", "least")  # what the page may ask for
 STATES = {"enough": "kept", "open": "open", "not enough": "exceeded"}
 
 
@@ -38,7 +37,7 @@ def sized(
     shelf : str
         Name of the table of rollers.
     required : dict of str to str
-        `life`, `failures`, `safety` and `least` as texts; an empty one is not required.
+        Texts by the names of `trackroller.results.size.REQUIRED`; an empty one is not required.
     accuracy : str
         Accuracy of the solution; a carriage has that of its rollers' files.
 
@@ -61,7 +60,7 @@ def sized(
         case = given_inputs(own) | options | beside | {"accuracy": accuracy}
         case.pop("outputs", None)
     check_names("requirement", required, REQUIRED)
-    limits: dict[str, Any] = {name: text.strip() or None for name, text in required.items()}
+    limits: dict[str, Any] = {name: str(text).strip() or None for name, text in required.items()}
     return _on_page(size(case, table, **limits))
 
 

@@ -65,7 +65,7 @@ MAPPING = pydantic.TypeAdapter(dict[str, Any])  # what every request holds as JS
 STATUS = {InputError: 422, WorkError: 409, pydantic.ValidationError: 400}
 
 
-class Refused(tornado.web.HTTPError):
+class RefusedRequest(tornado.web.HTTPError):
     """A request that is not answered, with its HTTP status and the reason in words."""
 
     def __init__(self, status: int, words: str) -> None:
@@ -154,9 +154,11 @@ class _Handler(tornado.web.RequestHandler):
                 "Forward the same port number, or start the page with --allow-host and the host "
                 "of the address line"
             )
-            raise Refused(403, f"This server answers at {where} only, not at {host[:80]}. {way}.")
+            raise RefusedRequest(
+                403, f"This server answers at {where} only, not at {host[:80]}. {way}."
+            )
         if not hmac.compare_digest(str(self.path_args[0]).encode(), server.token.encode()):
-            raise Refused(
+            raise RefusedRequest(
                 403,
                 "The token in the address is missing or wrong. Open the address that the terminal "
                 "shows.",
@@ -166,7 +168,7 @@ class _Handler(tornado.web.RequestHandler):
         if self.request.method == "POST" and (
             foreign or headers.get("Origin", f"http://{host}").lower() not in own
         ):
-            raise Refused(403, "Another site asked. Only the page of this server may.")
+            raise RefusedRequest(403, "Another site asked. Only the page of this server may.")
 
     async def answered(self, question: str, newest_of: str = "", /, **arguments: Any) -> Any:
         """Answer in the thread of the solver or of the files; `newest_of` names a page that needs
@@ -214,22 +216,22 @@ class _Page(_Handler):
 
     def get(self, token: str, name: str) -> None:
         if name not in ASSETS:
-            raise Refused(404, "There is no such page.")
+            raise RefusedRequest(404, "There is no such page.")
         file, kind = ASSETS[name]
         self.set_header("Content-Type", f"{kind}; charset=utf-8")
         self.finish((resources.files("trackroller.app") / "assets" / file).read_bytes())
 
 
-class _Answer(_Handler):
+class _AnswerHandler(_Handler):
     """Answers to the script of the page: JSON in, JSON out."""
 
     async def post(self, token: str, name: str) -> None:
         if name not in SOLVING | FILES or name in PAGES:
-            raise Refused(404, f"The page cannot ask for '{name}'.")
+            raise RefusedRequest(404, f"The page cannot ask for '{name}'.")
         if self.request.headers.get("Content-Type", "").partition(";")[0] != "application/json":
-            raise Refused(415, "The request is not of the type application/json.")
+            raise RefusedRequest(415, "The request is not of the type application/json.")
         if len(self.request.body) > LARGEST:
-            raise Refused(413, f"The request is larger than {LARGEST // 1000} kB.")
+            raise RefusedRequest(413, f"The request is larger than {LARGEST // 1000} kB.")
         body = MAPPING.validate_json(self.request.body)
         answer = await self.answered(name, str(body.pop("page", "")), **body)
         self.set_header("Content-Type", "application/json")
@@ -320,7 +322,7 @@ class Server:
                 (r"/([^/]*)/(sheet\.pdf|roller\.xlsx)", _File),
                 (r"/([^/]*)/results/([^/]+)/(report\.pdf|cases\.xlsx)", _File),
                 (r"/([^/]*)/results/([^/]+)/([^/]+)", _Result),
-                (r"/([^/]*)/api/(\w+)", _Answer),
+                (r"/([^/]*)/api/(\w+)", _AnswerHandler),
                 (r"/([^/]*)/?(.*)", _Page),
             ],
             server=self,

@@ -10,8 +10,8 @@ from typing import Any
 
 from trackroller.report.pages.blocks import part_rows
 from trackroller.report.pictures.uses import UseBars
-from trackroller.report.tables.rows import Rows, rows_of
-from trackroller.results.answer import Answer, Part
+from trackroller.report.tables.rows import ShownTable, rows_of
+from trackroller.results.answer import Answer, FurtherTable
 
 # columns of the limits on the page
 SHOWN = ("limit", "body", "state", "value", "used_low", "low", "block")
@@ -30,7 +30,7 @@ def limits_on_page(answer: Answer, shown: Sequence[str] = SHOWN) -> dict[str, An
     return {"name": "limits", "title": "Limits", **_texts(rows), **shown_bars, "note": ""}
 
 
-def part_on_page(answer: Answer, part: Part) -> dict[str, Any]:
+def part_on_page(answer: Answer, part: FurtherTable) -> dict[str, Any]:
     """Return a further table with its heads and cells as texts."""
     return {
         "name": part.name,
@@ -40,7 +40,7 @@ def part_on_page(answer: Answer, part: Part) -> dict[str, Any]:
     }
 
 
-def _texts(rows: Rows) -> dict[str, Any]:
+def _texts(rows: ShownTable) -> dict[str, Any]:
     cells = [[asdict(cell) for cell in row] for row in rows.cells]
     return {
         "heads": [asdict(head) for head in rows.heads],

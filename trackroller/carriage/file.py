@@ -373,23 +373,7 @@ def carriage_of(values: Mapping[str, Any]) -> Carriage:
         values = with_options(values)
     with wrong.part():
         check_names("carriage: key", values, (*FILE_FIELDS, *OTHER_OPTIONS))
-    for key, read in (
-        ("mass", lambda value: _mass(value, "mass")),
-        (
-            "payloads",
-            lambda value: tuple(
-                _mass(mass, f"payloads[{i + 1}]") for i, mass in enumerate(_list(value, "payloads"))
-            ),
-        ),
-        ("drive", _drive),
-        ("rollers", _rollers),
-        ("cases", _cases),
-        (
-            "distance",
-            lambda value: _number(value, "distance", "m", "a distance > 0 per shift", lower=1e-9),
-        ),
-        ("duty", checked_duty),
-    ):
+    for key, read in _READERS.items():
         with wrong.part():
             if values.get(key) is not None:
                 fields[key] = read(values[key])
@@ -415,6 +399,15 @@ def carriage_of(values: Mapping[str, Any]) -> Carriage:
         fields["description"] = text_of(values.get("description"), "description", lines=True)
     wrong.check()
     return Carriage(**fields)
+
+
+def _payloads(value: Any) -> tuple[PointMass, ...]:
+    masses = _list(value, "payloads")
+    return tuple(_mass(mass, f"payloads[{i}]") for i, mass in enumerate(masses, 1))
+
+
+def _distance(value: Any) -> float:
+    return _number(value, "distance", "m", "a distance > 0 per shift", lower=1e-9)
 
 
 def _with_chance(rollers: Sequence[MountedRoller], value: Any) -> tuple[MountedRoller, ...]:
@@ -580,63 +573,71 @@ def _rollers(value: Any) -> tuple[MountedRoller, ...]:
 
 
 def _roller(name: str, value: Any, files: dict[object, Any]) -> MountedRoller:
+    """Return a roller of the entry under its name; raise all errors of the entry together."""
     where = f"rollers.{name}"
-    entry = _entries(
-        value,
-        where,
-        ROLLER_FIELDS,
-        "{at: [150, 40, 0], pushes: [0, -1, 0], x_R: [0, 0, 1], roller: r.yaml}",
-    )
+    example = "{at: [150, 40, 0], pushes: [0, -1, 0], x_R: [0, 0, 1], roller: r.yaml}"
+    entry = _entries(value, where, ROLLER_FIELDS, example)
     wrong = Collector()
-    fields: dict[str, Any] = {}
+    vectors: dict[str, np.ndarray] = {}
     for key in ("at", "pushes", "x_R"):
         with wrong.part():
-            allowed = "a direction [x, y, z]"
-            if key == "at":
-                allowed = _POINT
-            if entry.get(key) is None:
-                raise InputError(f"{where}.{key}", None, allowed, "Add it.")
-            if key == "at":
-                fields[key] = _vector(entry[key], f"{where}.{key}", "mm", _POINT, _AT)
-            else:
-                fields[key] = _direction(entry[key], f"{where}.{key}")
+            vectors[key] = _vector_of_roller(key, entry.get(key), f"{where}.{key}")
     with wrong.part():
         kind = entry.get("kind", KINDS[0])
         if kind not in KINDS:
             raise unknown_name(f"{where}.kind", str(kind), KINDS)
+    of_file: dict[str, Any] = {}
     with wrong.part():
-        fields["roller"] = {}
         if entry.get("roller") is not None:
-            fields["roller"] = _case(entry["roller"], f"{where}.roller", files)
+            of_file = _case(entry["roller"], f"{where}.roller", files)
+    optional: dict[str, Any] = {}
     with wrong.part():
-        fields["stiffness"] = None
-        if "stiffness" in entry:
-            fields["stiffness"] = _stiffness(entry["stiffness"], f"{where}.stiffness")
-        series = [
-            _stiffness(entry[key], f"{where}.{key}")
-            for key in ("bearing", "structure")
-            if key in entry
-        ]
-        fields["compliance"] = tuple(sum(1 / one[i] for one in series) for i in (0, 1))
+        optional |= _stiffness_of_roller(entry, where)
     with wrong.part():
-        fields["catalogue"] = None
         if "catalogue" in entry:
-            fields["catalogue"] = _catalogue(entry["catalogue"], f"{where}.catalogue")
+            optional["catalogue"] = _catalogue(entry["catalogue"], f"{where}.catalogue")
     wrong.check()
-    _check_directions(where, fields["pushes"], fields["x_R"])
-    case = fields["roller"].get("case")
-    if fields["catalogue"] is not None and case is not None and case.catalogue is not None:
+    _check_directions(where, vectors["pushes"], vectors["x_R"])
+    case = of_file.get("case")
+    if "catalogue" in optional and case is not None and case.catalogue is not None:
         allowed = "the catalogue once"
         remedy = "Remove it here: the one in the file of the roller counts its moment, too."
         raise InputError(
             f"{where}.catalogue", entry["catalogue"], allowed, remedy, "stands in both places"
         )
-    optional = {key: fields[key] for key in ("stiffness", "compliance", "catalogue")} | fields[
-        "roller"
-    ]
     return MountedRoller(
-        name, fields["at"], fields["pushes"], fields["x_R"], kind == KINDS[0], **optional
+        name,
+        vectors["at"],
+        vectors["pushes"],
+        vectors["x_R"],
+        kind == KINDS[0],
+        **(optional | of_file),
     )
+
+
+def _vector_of_roller(key: str, value: Any, where: str) -> np.ndarray:
+    """Return the place of a roller [mm], or one of its directions."""
+    allowed = "a direction [x, y, z]"
+    if key == "at":
+        allowed = _POINT
+    if value is None:
+        raise InputError(where, None, allowed, "Add it.")
+    if key == "at":
+        return _vector(value, where, "mm", _POINT, _AT)
+    return _direction(value, where)
+
+
+def _stiffness_of_roller(entry: Mapping[str, Any], where: str) -> dict[str, Any]:
+    """Return the stiffness that an entry states, and the compliance [mm/N] of bearing and
+    structure in series.
+    """
+    stated = {}
+    if "stiffness" in entry:
+        stated["stiffness"] = _stiffness(entry["stiffness"], f"{where}.stiffness")
+    series = [
+        _stiffness(entry[key], f"{where}.{key}") for key in ("bearing", "structure") if key in entry
+    ]
+    return stated | {"compliance": tuple(sum(1 / one[i] for one in series) for i in (0, 1))}
 
 
 def _check_directions(where: str, pushes: np.ndarray, axis: np.ndarray) -> None:
@@ -930,3 +931,14 @@ def check_curves(cases: Sequence[LoadCase], rollers: Sequence[MountedRoller]) ->
             raise InputError(
                 f"case '{case.name}'.curve_radius", f"{case.curve_radius:g} mm", allowed, remedy
             )
+
+
+_READERS: Mapping[str, Callable[[Any], Any]] = {  # keys that are read by themselves
+    "mass": lambda value: _mass(value, "mass"),
+    "payloads": _payloads,
+    "drive": _drive,
+    "rollers": _rollers,
+    "cases": _cases,
+    "distance": _distance,
+    "duty": checked_duty,
+}

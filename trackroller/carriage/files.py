@@ -9,17 +9,18 @@ import io
 import math
 import re
 import unicodedata
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import xarray as xr
 
-from trackroller.carriage.file import OF_LOADS, Carriage
+from trackroller.carriage.file import OF_LOADS, Carriage, MountedRoller
 from trackroller.carriage.solve import cases_of
 from trackroller.carriage.strokes import passes_per_km
 from trackroller.errors import InputError, check_names
 from trackroller.files import inert_cell
 from trackroller.parameters import MAPPING_FIELDS, OPTIONS, PARAMETERS
+from trackroller.roller.case import Case
 from trackroller.roller.duty import OVERROLLINGS
 from trackroller.roller.settings import LOADS, parts_for_spectrum
 
@@ -53,44 +54,19 @@ def spectrum_of(whole: Carriage, ds: xr.Dataset, name: str) -> dict[str, Any]:
     check_names("--spectrum", [name], [roller.name for roller in whole.rollers])
     j = [roller.name for roller in whole.rollers].index(name)
     roller = whole.rollers[j]
-    if roller.case is None:
-        raise InputError(
-            f"rollers.{name}.roller", None, "the file of the roller", "Add roller: FILE."
-        )
+    _check_has_file(roller)
     _check_settled(ds)
     cases = {i: case for (i, own), case in cases_of(whole, ds).items() if own == j}
     if not cases:
         raise InputError(
             "--spectrum", name, "a roller that carries load in a load case", "Name another roller."
         )
-    blocks: list[dict[str, Any]] = [
-        {
-            "name": whole.cases[i].name,
-            "distance": _short(whole.cases[i].share * whole.distance),
-            "velocity": _short(case.velocity),
-            **{load: _short(getattr(case, load)) for load in LOADS},
-        }
-        for i, case in cases.items()
-    ]
-    passes = float(passes_per_km(whole)[j])
-    if math.isfinite(passes):
-        for block in blocks:
-            block["guide_overrollings"] = _short(passes * block["distance"] / 1000)
-    lifted = [case for i, case in enumerate(whole.cases) if i not in cases]
-    share = sum(case.share for case in lifted)
-    text = f"Roller {name} of {whole.name}, {whole.distance:g} m of travel per shift."
-    if lifted:
-        named = ", ".join(case.name for case in lifted)
-        text += (
-            f" No block holds {100 * share:.4g} % of the travel, in which the roller is "
-            f"lifted: {named}."
-        )
     base, options = parts_for_spectrum(roller.given)
     head = {
         "name": name_of_study(f"{whole.name}-{name}"),
-        "description": text,
+        "description": _description_of_roller(whole, name, cases),
         "base": base,
-        "blocks": blocks,
+        "blocks": _blocks(whole, cases, float(passes_per_km(whole)[j])),
     }
     duty = whole.duty
     if duty is None:
@@ -98,6 +74,38 @@ def spectrum_of(whole: Carriage, ds: xr.Dataset, name: str) -> dict[str, Any]:
     if isinstance(duty, Mapping):
         head["duty"] = dict(duty)
     return head | options
+
+
+def _blocks(whole: Carriage, cases: Mapping[int, Case], passes: float) -> list[dict[str, Any]]:
+    """Return a block for each load case of a roller, by its number; `passes` are those of the guide
+    per km of travel, infinite without strokes.
+    """
+    blocks: list[dict[str, Any]] = []
+    for i, case in cases.items():
+        block: dict[str, Any] = {
+            "name": whole.cases[i].name,
+            "distance": _short(whole.cases[i].share * whole.distance),
+            "velocity": _short(case.velocity),
+            **{load: _short(getattr(case, load)) for load in LOADS},
+        }
+        if math.isfinite(passes):
+            block["guide_overrollings"] = _short(passes * block["distance"] / 1000)
+        blocks.append(block)
+    return blocks
+
+
+def _description_of_roller(whole: Carriage, name: str, cases: Mapping[int, Case]) -> str:
+    """Say of which roller a spectrum is, and which share of the travel it leaves out."""
+    text = f"Roller {name} of {whole.name}, {whole.distance:g} m of travel per shift."
+    lifted = [case for i, case in enumerate(whole.cases) if i not in cases]
+    if not lifted:
+        return text
+    share = sum(case.share for case in lifted)
+    named = ", ".join(case.name for case in lifted)
+    return (
+        f"{text} No block holds {100 * share:.4g} % of the travel, in which the roller is "
+        f"lifted: {named}."
+    )
 
 
 def study_of(whole: Carriage, ds: xr.Dataset, table: str) -> tuple[dict[str, Any], str]:
@@ -127,51 +135,67 @@ def study_of(whole: Carriage, ds: xr.Dataset, table: str) -> tuple[dict[str, Any
         names.
     """
     for roller in whole.rollers:
-        if roller.case is None:
-            raise InputError(
-                f"rollers.{roller.name}.roller", None, "the file of the roller", "Add roller: FILE."
-            )
+        _check_has_file(roller)
     _check_settled(ds)
     _check_same_options(whole)
     base, varying = _shared(whole)
     of_travel: tuple[str, ...] = OF_LOADS
     if math.isfinite(whole.stroke):
         of_travel = (*OF_LOADS, OVERROLLINGS)
-    units = {name: PARAMETERS[name].unit for name in (*varying, *of_travel) if name in PARAMETERS}
     heads = [*HEADS.split(","), *of_travel, *varying]
-    rows: list[list[Any]] = [[_head(name, units.get(name, "-")) for name in heads]]
-    for (i, j), case in sorted(cases_of(whole, ds).items()):
-        fields = [getattr(case, name) for name in (*of_travel, *varying)]
-        shown = [_cell(value) for value in fields]
-        names = (whole.cases[i].name, whole.rollers[j].name)
-        rows.append([inert_cell(cell) for cell in (*names, f"{whole.cases[i].share:.10g}", *shown)])
-    out = io.StringIO()
-    csv.writer(out, lineterminator="\n").writerows(rows)
-    lifted = ds["radial_force"].size - (len(rows) - 1)
+    rows = _rows(whole, ds, [*of_travel, *varying])
     text = f"Loads of the rollers of {whole.name} by load case."
+    lifted = ds["radial_force"].size - len(rows)
     if lifted:
         text += f" Rollers that are lifted carry no load and have no row, {lifted} in all."
+    columns = zip(heads, zip(*rows, strict=True), strict=True)
+    varies = [name for name, column in columns if name not in OF_LOADS and len({*column}) > 1]
     study = {
         "name": name_of_study(f"{whole.name}-loads"),
         "description": text,
         "base": base,
         "method": "table",
         "table": table,
+        "roles": dict.fromkeys(varies, "condition"),  # all cases are conditions of one design
     }
-    columns = zip(heads, zip(*rows[1:], strict=True), strict=True)
-    varies = [name for name, column in columns if name not in OF_LOADS and len({*column}) > 1]
-    study["roles"] = dict.fromkeys(varies, "condition")  # all cases are conditions of one design
-    if whole.duty is None:
-        duty = {}
-    else:
-        duty = {"duty": dict(whole.duty)}
-    given = whole.rollers[0].options
+    if whole.duty is not None:
+        study["duty"] = dict(whole.duty)
     options = {
         key: value
-        for key, value in given.items()
+        for key, value in whole.rollers[0].options.items()
         if "study" in OPTIONS[key].files and key != "outputs"
     }
-    return study | duty | options, out.getvalue()
+    return study | options, _csv([_heads_with_units(heads), *rows])
+
+
+def _rows(whole: Carriage, ds: xr.Dataset, fields: Sequence[str]) -> list[list[Any]]:
+    """Return the row of each load case and roller that carries load: names, share, and fields."""
+    rows = []
+    for (i, j), case in sorted(cases_of(whole, ds).items()):
+        names = (whole.cases[i].name, whole.rollers[j].name, f"{whole.cases[i].share:.10g}")
+        values = [_cell(getattr(case, name)) for name in fields]
+        rows.append([inert_cell(cell) for cell in (*names, *values)])
+    return rows
+
+
+def _heads_with_units(names: Sequence[str]) -> list[str]:
+    """Return the heads of columns; those of parameters state their units."""
+    units = {name: PARAMETERS[name].unit for name in names if name in PARAMETERS}
+    return [_head(name, units.get(name, "-")) for name in names]
+
+
+def _csv(rows: Sequence[Sequence[Any]]) -> str:
+    """Return rows as the text of a CSV file."""
+    out = io.StringIO()
+    csv.writer(out, lineterminator="\n").writerows(rows)
+    return out.getvalue()
+
+
+def _check_has_file(roller: MountedRoller) -> None:
+    """Refuse a roller whose file is not given."""
+    if roller.case is None:
+        where = f"rollers.{roller.name}.roller"
+        raise InputError(where, None, "the file of the roller", "Add roller: FILE.")
 
 
 def name_of_study(text: str) -> str:

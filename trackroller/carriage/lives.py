@@ -12,7 +12,7 @@ from collections.abc import Callable, Mapping
 import numpy as np
 import xarray as xr
 
-from trackroller.damage import LIMITS, verdict
+from trackroller.damage import LIMITS, first_limit
 from trackroller.damage.miner import block_damage, repetitions_to_failure
 from trackroller.damage.pair import first_failure
 from trackroller.parameters import BODIES
@@ -177,9 +177,9 @@ class Lives:
             & 1
             & (self.share > 0)[:, None]
         )
-        broken = verdict.breaking(self.of(breaks, np.maximum).astype(bool), limits)
+        broken = first_limit.breaking(self.of(breaks, np.maximum).astype(bool), limits)
         timed = solved["life_hours_by_limit"].notnull().any(["case", "body"]).values
-        for end in verdict.ENDS:
+        for end in first_limit.ENDS:
             lives = out[f"life_hours_by_limit{end}"].copy()
             for i in (
                 i
@@ -187,7 +187,7 @@ class Lives:
                 if limit.name == "fatigue" and "life_hours" in solved
             ):
                 lives[:, i] = self._fatigue(solved[f"life_hours_by_limit{end}"].values[:, i])
-            first, which = verdict.first_of(lives, used, timed, limits, broken, state == 0)
+            first, which = first_limit.first_of(lives, used, timed, limits, broken, state == 0)
             new |= {f"life_hours_by_limit{end}": lives, f"life_to_first_limit_hours{end}": first}
             new[f"pair_life_to_first_limit_hours{end}"] = first_failure(*first.T)[0]
             if not end:

@@ -26,8 +26,8 @@ from trackroller.carriage.lives import Lives, hours_per_km
 from trackroller.carriage.loads import Wrenches, swing_of, wrenches_of
 from trackroller.carriage.statics import (
     MOTIONS,
-    Equilibrium,
     Moves,
+    RollerForces,
     Springs,
     equilibrium,
     free_ways,
@@ -39,7 +39,7 @@ from trackroller.carriage.statics import (
 )
 from trackroller.carriage.strokes import passes_per_km
 from trackroller.contact.hertz import contact_modulus, unit_approach
-from trackroller.damage import LIMITS, verdict
+from trackroller.damage import LIMITS, first_limit
 from trackroller.damage.miner import block_damage
 from trackroller.errors import InputError
 from trackroller.materials import load_database
@@ -341,7 +341,7 @@ def _reduced(wrench: np.ndarray, springs: Springs) -> np.ndarray:
     return springs.basis.T @ np.concatenate([wrench[1:3], wrench[3:] / springs.length])
 
 
-def _equilibrium(whole: Carriage, springs: Springs, wrenches: Wrenches, name: str) -> Equilibrium:
+def _equilibrium(whole: Carriage, springs: Springs, wrenches: Wrenches, name: str) -> RollerForces:
     """Return the forces of the rollers in a load case; an error names the case."""
     try:
         state = equilibrium(springs, _reduced(wrenches.all, springs))
@@ -377,7 +377,7 @@ def _unknown(whole: Carriage) -> list[int]:
     ]
 
 
-def _decided(whole: Carriage, wrenches: Wrenches, state: Equilibrium) -> bool:
+def _decided(whole: Carriage, wrenches: Wrenches, state: RollerForces) -> bool:
     """Return whether other values of the unknown stiffnesses give the same forces, and lift the
     same rollers.
     """
@@ -401,7 +401,9 @@ def _attrs(units: str, long_name: str, symbol: str = "") -> dict[str, str]:
     return {"units": units, "long_name": long_name, "symbol": symbol}
 
 
-def _forces(whole: Carriage, states: list[Equilibrium], wrenches: list[Wrenches]) -> dict[str, Any]:
+def _forces(
+    whole: Carriage, states: list[RollerForces], wrenches: list[Wrenches]
+) -> dict[str, Any]:
     """Return the forces of rollers and drive, and what the file says of the load cases, as
     variables.
     """
@@ -688,7 +690,7 @@ def with_lives(
     for values in (case_hours, damage):
         values[~ds["converged"].values] = np.nan
     flagged = np.zeros(shape, dtype=np.int64)
-    lasts = {end: np.full(n, np.inf) for end in verdict.ENDS}
+    lasts = {end: np.full(n, np.inf) for end in first_limit.ENDS}
     at_most = np.full(n, np.inf)
     own = np.array(
         [roller.case.velocity for roller in whole.rollers if roller.case is not None], dtype=float
@@ -840,11 +842,11 @@ class _Checks:
         state = lives.summed["limit_state"].copy()
         shares = (lives.share == 0)[:, None, None]
         least = lives.of(
-            np.where(shares, len(verdict.STATES), solved["limit_state"].values), np.minimum
+            np.where(shares, len(first_limit.STATES), solved["limit_state"].values), np.minimum
         )
-        exceeded = verdict.STATES.index("exceeded")
-        state[(least == verdict.STATES.index("unknown")) & (state != exceeded)] = (
-            verdict.STATES.index("unknown")
+        exceeded = first_limit.STATES.index("exceeded")
+        state[(least == first_limit.STATES.index("unknown")) & (state != exceeded)] = (
+            first_limit.STATES.index("unknown")
         )
         into = np.ix_(rollers, np.array(places))
         self.state[into] = state
@@ -863,8 +865,8 @@ class _Checks:
         """Return utilisation, hours and state of each limit as variables, with their labels."""
         dims = ("roller", "limit", "body")
         flags = {
-            "flag_values": np.arange(len(verdict.STATES), dtype=np.int8),
-            "flag_meanings": " ".join(verdict.STATES),
+            "flag_values": np.arange(len(first_limit.STATES), dtype=np.int8),
+            "flag_meanings": " ".join(first_limit.STATES),
             "long_name": "whether the limit is kept over the load cases",
         }
         alone = _attrs("h", "hours of travel to the limit, with the damage of all load cases")

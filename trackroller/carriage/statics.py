@@ -185,7 +185,7 @@ class Springs:
 
 
 @dataclass(frozen=True)
-class Equilibrium:
+class RollerForces:
     """Forces of n rollers: `radial` >= 0 presses on the rail, `axial` acts on the roller along its
     axis [N], (n,).
 
@@ -239,7 +239,7 @@ def motion_of(way: np.ndarray) -> str:
 
 def equilibrium(
     springs: Springs, wrench: np.ndarray, start: np.ndarray | None = None, thorough: bool = True
-) -> Equilibrium:
+) -> RollerForces:
     """Return the forces of the rollers under a wrench.
 
     Parameters
@@ -256,7 +256,7 @@ def equilibrium(
 
     Returns
     -------
-    Equilibrium
+    RollerForces
         With `converged` False where no state that fulfils all conditions was found.
 
     Raises
@@ -293,7 +293,7 @@ def equilibrium(
     return replace(state, converged=False)
 
 
-def fulfils(springs: Springs, wrench: np.ndarray, state: Equilibrium) -> bool:
+def fulfils(springs: Springs, wrench: np.ndarray, state: RollerForces) -> bool:
     """Return whether a state is an equilibrium of the rollers.
 
     Notes
@@ -324,7 +324,7 @@ def _searched(
     size: float,
     displacement: np.ndarray,
     visited: list[np.ndarray],
-) -> Equilibrium | None:
+) -> RollerForces | None:
     """Return an equilibrium among the other sets of rollers, None if none is found.
 
     Parameters
@@ -351,7 +351,7 @@ def _searched(
 
 def _enumerated(
     springs: Springs, wrench: np.ndarray, size: float, displacement: np.ndarray
-) -> Equilibrium | None:
+) -> RollerForces | None:
     """Return the equilibrium of linear springs, of all sets of loaded rollers that with most of
     them.
     """
@@ -413,7 +413,7 @@ def _stiff_place(
 
 def _from_start(
     springs: Springs, carries: np.ndarray, wrench: np.ndarray, size: float, displacement: np.ndarray
-) -> Equilibrium:
+) -> RollerForces:
     """Return the state that Powell's hybrid method reaches from a displacement.
 
     A contact has no axial stiffness without load, so that a locating roller with contacts may
@@ -461,7 +461,7 @@ def _settled(
     size: float,
     radial: np.ndarray,
     start: np.ndarray | None,
-) -> Equilibrium:
+) -> RollerForces:
     """Return the equilibrium with the axial stiffness that belongs to its radial forces."""
     least = 1e-6 * size
     stiffness = np.where(carries, springs.axial_stiffness(np.maximum(radial, least)), 0.0)
@@ -497,7 +497,7 @@ def _settled(
     axial = np.where(carries, springs.axial_stiffness(np.maximum(radial, least)), 0.0) * (
         springs.axial @ displacement
     )
-    return Equilibrium(
+    return RollerForces(
         *_balanced(springs, carries, wrench, radial, axial), approach, displacement, converged
     )
 
@@ -509,7 +509,7 @@ def _state(
     size: float,
     displacement: np.ndarray,
     converged: bool,
-) -> Equilibrium:
+) -> RollerForces:
     """Return the forces at a displacement, of which a roller that only touches its rail has
     none.
     """
@@ -519,7 +519,7 @@ def _state(
     own = carries & (radial > 0)
     stiffness = springs.axial_stiffness(np.maximum(radial, UNLOADED))
     axial = np.where(own, stiffness * (springs.axial @ displacement), 0.0)
-    return Equilibrium(
+    return RollerForces(
         *_balanced(springs, own, wrench, radial, axial), approach, displacement, converged
     )
 
@@ -648,7 +648,7 @@ def _balanced(
     return np.maximum(radial, 0.0), axial
 
 
-def is_determinate(springs: Springs, state: Equilibrium) -> bool:
+def is_determinate(springs: Springs, state: RollerForces) -> bool:
     """Return whether the sums of forces and moments give all forces of the rollers, whatever their
     stiffness is.
     """

@@ -143,7 +143,7 @@ def _left_out(words: str) -> tuple[str, ...]:
 
 
 def _served(case: Case, options: Mapping[str, Any]) -> tuple[str, ...]:
-    """Return the groups of outputs of the limits of the verdict whose inputs a case gives."""
+    """Return the groups of outputs of the checked limits whose inputs a case gives."""
     from trackroller.roller.case import to_table
     from trackroller.roller.options import Options
     from trackroller.roller.stages.outcome import solved_of, to_compute  # heavy: as above

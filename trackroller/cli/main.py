@@ -344,13 +344,22 @@ def size(  # noqa: PLR0913 - one argument for each option of the command
         Path | None, typer.Option("--shelf", help="table of rollers", show_default=False)
     ] = None,
     life: Annotated[
-        str | None, typer.Option("--life", help="required life: '3 years' beside a duty, or hours")
+        str | None,
+        typer.Option("--life", help="required life: '3 years' beside a duty, or hours [h]"),
     ] = None,
     failures: Annotated[
-        str | None, typer.Option("--failures", help="share that may fail by then, such as 5%")
+        str | None, typer.Option("--failures", help="share that may fail within --life, such as 5%")
     ] = None,
     safety: Annotated[
         str | None, typer.Option("--safety", help="factor on all forces within all limits")
+    ] = None,
+    temperature: Annotated[
+        str | None,
+        typer.Option("--temperature", help="permissible temperature [degC], such as '60 degC'"),
+    ] = None,
+    wear_depth: Annotated[
+        str | None,
+        typer.Option("--wear-depth", help="permissible wear depth [mm] within --life: '0.05 mm'"),
     ] = None,
     least: Annotated[
         str | None, typer.Option("--least", help="column of the shelf, such as price")
@@ -359,7 +368,8 @@ def size(  # noqa: PLR0913 - one argument for each option of the command
         bool, typer.Option("--each", help="each place of a carriage takes its own roller")
     ] = False,
     out: Annotated[
-        Path | None, typer.Option("-o", "--out", help="with --each: write this carriage (.yaml)")
+        Path | None,
+        typer.Option("-o", "--out", help="write the carriage of --each, or the spectrum (.yaml)"),
     ] = None,
     results: Results = Path("results"),
     as_json: Annotated[bool, typer.Option("--json", help="print JSON")] = False,
@@ -368,8 +378,8 @@ def size(  # noqa: PLR0913 - one argument for each option of the command
         bool, typer.Option("--example", help="write a case file to start from")
     ] = False,
 ) -> None:
-    """Find the least roller of a shelf that is enough for a life, failures and overload; 1 if none
-    is.
+    """Find the least roller of a shelf that is enough for a life, failures, overload, temperature
+    or wear depth; 1 if none is.
     """
 
 

@@ -8,7 +8,7 @@ import json
 import math
 import os
 import shlex
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -23,7 +23,7 @@ from trackroller.errors import InputError, raise_all
 from trackroller.files import files_beside, write_text
 from trackroller.report.sizing import head_of, lead_of, notes_of, shown
 from trackroller.report.terminal import print_table, print_text
-from trackroller.study.design.entries import SHELVES
+from trackroller.study.design.factor_names import SHELVES
 from trackroller.study.design.levels import entries, in_words
 from trackroller.study.file.load import parse_study
 from trackroller.study.file.shelf import ROLLER, base_beside_shelf, with_rows, without_overridden
@@ -119,6 +119,8 @@ def print_size(  # noqa: PLR0913 - one argument for each option of the command
     life: str | None,
     failures: str | None,
     safety: str | None,
+    temperature: str | None,
+    wear_depth: str | None,
     least: str | None,
     each: bool,
     out: Path | None,
@@ -129,19 +131,18 @@ def print_size(  # noqa: PLR0913 - one argument for each option of the command
 ) -> int:
     """Print which rollers of a shelf are enough, and return the exit code: 0 if one is.
 
-    With `each`, `out` receives the carriage file with the roller of each place. With `example`,
-    `case` is written as a file to start from.
+    With `each`, `out` receives the carriage file with the roller of each place; of a spectrum it
+    receives the file with the least roller. With `example`, `case` is written as a file to start
+    from.
     """
     if example:
         return _write_example_case(case)
     shelf = _check_given(case, shelf)
     target = None
+    from trackroller.results.size import is_spectrum, size  # heavy: analysis
+
     if out is not None:
-        target = _target(out, each)
-    if life is None and safety is None:
-        remedy = "Add --life '3 years', or --safety 1.5."
-        raise InputError("--life", None, "a required life, or a safety", remedy, "is missing")
-    from trackroller.results.size import size  # heavy: analysis
+        target = _target(out, each or is_spectrum(case))
 
     with _as_options():
         sizing = size(
@@ -150,6 +151,8 @@ def print_size(  # noqa: PLR0913 - one argument for each option of the command
             life=life,
             failures=failures,
             safety=safety,
+            temperature=temperature,
+            wear_depth=wear_depth,
             least=least,
             each=each,
             results=results,
@@ -162,6 +165,8 @@ def print_size(  # noqa: PLR0913 - one argument for each option of the command
         is_met = sizing.mounting.enough
     if target is not None and sizing.mounting is not None and sizing.mounting.enough:
         write_yaml_file(target, sizing.mounting.carriage)
+    elif target is not None and sizing.spectrum:
+        write_yaml_file(target, _beside(target, case, sizing.spectrum))
     if as_json:
         print(json.dumps(sizing.to_dict(), ensure_ascii=False, allow_nan=False))
         return int(not is_met)
@@ -180,8 +185,13 @@ def _as_options() -> Iterator[None]:
 
 def _of_option(error: InputError) -> InputError:
     """Return an error on an argument of `size` as one on the option of its name."""
-    if error.field in ("life", "failures", "safety", "least", "each"):
-        return error.named(f"--{error.field}")
+    from trackroller.results.size import REQUIRED  # heavy: analysis
+
+    if error.field == "size":  # nothing is required
+        remedy = "Add --life '3 years', or --safety 1.5, for example."
+        return InputError("--life", None, error.allowed, remedy, "is missing")
+    if error.field in (*REQUIRED, "each"):
+        return error.named(f"--{error.field.replace('_', '-')}")
     return error
 
 
@@ -198,6 +208,11 @@ def _print_sizing(sizing: Sizing, target: Path | None) -> None:
         _print_ratios(sizing)
     if sizing.mounting is not None:
         _print_mounting(sizing.mounting, target)
+    if sizing.spectrum and target is None:
+        print_text("no study is kept of a spectrum; -o sized.yaml writes it with the least roller")
+    elif sizing.spectrum and target is not None:
+        then = f"trackroller spectrum {shlex.quote(str(target))} --report page.html"
+        print_text(f"{target}: the spectrum with {sizing.least}; its page: {then}")
     for own in _studies_of(sizing):
         print_text(f"study {own.study.name}: trackroller report {own.study.name} writes its page")
 
@@ -207,10 +222,19 @@ def _studies_of(sizing: Sizing) -> list[Results]:
     return [own for own in (sizing.results, sizing.overload) if own is not None]
 
 
-def _target(out: Path, each: bool) -> Path:
-    """Return the path of the carriage file, checked before anything is solved."""
-    if not each:
-        raise InputError("--out", str(out), "a file beside --each", "Add --each, or leave it out.")
+def _beside(target: Path, case: Path, spectrum: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the keys of a spectrum whose table of blocks is found from the folder of a file."""
+    keys = dict(spectrum)
+    if isinstance(keys["blocks"], str):
+        keys["blocks"] = os.path.relpath(case.parent / keys["blocks"], target.parent)
+    return keys
+
+
+def _target(out: Path, is_written: bool) -> Path:
+    """Return the path of the carriage or spectrum, checked before anything is solved."""
+    if not is_written:
+        allowed = "a file beside --each, or with a spectrum"
+        raise InputError("--out", str(out), allowed, "Add --each, or leave it out.")
     if out.suffix.lower() not in YAML:
         raise InputError("--out", str(out), "a name that ends in .yaml", "Give another name.")
     return writable(out)

@@ -30,7 +30,7 @@ from trackroller.roller.differences import Difference
 from trackroller.roller.explain import explain as stages_of
 from trackroller.roller.options import Options, options_of_cases
 from trackroller.study.cost import duration
-from trackroller.study.design.entries import OPTION_FACTORS
+from trackroller.study.design.factor_names import OPTION_FACTORS
 from trackroller.study.file.load import load_study
 from trackroller.study.file.study import Study
 from trackroller.study.progress import progress_bar, shown_steps

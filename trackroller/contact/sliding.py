@@ -15,7 +15,7 @@ import numpy as np
 
 from trackroller.contact.friction_laws import FrictionLaw, constant
 from trackroller.contact.quantities import Ellipse, Patch, Resultants, SurfaceTractions
-from trackroller.contact.sliding_kernels import Rule, SlidingPatches, Sums, integrate
+from trackroller.contact.sliding_kernels import Rule, SlidingEllipses, Sums, integrate
 from trackroller.contact.slip import (
     Slip,
     lateral_slip,
@@ -26,6 +26,7 @@ from trackroller.contact.slip import (
     rolling_slip,
     spin_model_index,
 )
+from trackroller.halfspace.tractions import lengths
 from trackroller.numerics.quadrature import clustered_rule
 from trackroller.numerics.threads import share_rows
 
@@ -84,7 +85,7 @@ def integrals(
     """
     n = np.size(friction)
     law = constant() if law is None or law.is_constant else law  # a law that stays at 1 is constant
-    patches = SlidingPatches(
+    patches = SlidingEllipses(
         *np.array((*_geometry(ellipse, slip), travel_speed / slip.rolling_radius))
     )
     sums = np.empty((4, n))
@@ -96,7 +97,7 @@ def integrals(
 
 
 def _geometry(patch: Patch, slip: Slip) -> tuple[np.ndarray, ...]:
-    """Return a, b, sine and cosine of the contact angle, r_C,G and r_Delta0: `SlidingPatches`
+    """Return a, b, sine and cosine of the contact angle, r_C,G and r_Delta0: `SlidingEllipses`
     without speed.
     """
     axes = patch.semi_axis_lateral, patch.semi_axis_rolling
@@ -188,7 +189,7 @@ def tractions(
         unit = (2.0 * np.arange(points) + 1.0) / points - 1.0
     x, y, pressure = ellipse.pressures(unit)
     slip_x, slip_y = slip_field(ellipse, slip, x[:, None, :], y[:, :, None], spin_model)
-    speed = np.hypot(slip_x, slip_y)
+    speed = lengths(slip_x, slip_y)
     bound = friction[:, None, None] * pressure / np.where(speed > 0, speed, np.inf)
     if law is not None:
         bound = bound * law(speed * np.broadcast_to(travel_speed, len(x))[:, None, None])

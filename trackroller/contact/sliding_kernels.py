@@ -32,7 +32,7 @@ _TINY = 1e-13
 FEW_KNOTS = 8  # laws with more knots are smooth enough for one rule
 
 
-class SlidingPatches(NamedTuple):
+class SlidingEllipses(NamedTuple):
     """Sliding patches, arrays (n,), or one of them.
 
     a, b : semi-axes [mm]; sine, cosine : of the signed contact angle; radius : r_C,G [mm]; shift :
@@ -237,7 +237,7 @@ def integrate(first, last, patches, model, law, rule, out):
     """Write the integrals of the patches first..last into the arrays of `out`."""
     a, b, sine, cosine, radius, shift, speed = patches
     for i in range(first, last):
-        one = SlidingPatches(a[i], b[i], sine[i], cosine[i], radius[i], shift[i], speed[i])
+        one = SlidingEllipses(a[i], b[i], sine[i], cosine[i], radius[i], shift[i], speed[i])
         sums = _one_patch(one, model, law, rule)
         out.lateral[i], out.driving[i] = sums.lateral, sums.driving
         out.moment[i], out.power[i] = sums.moment, sums.power

@@ -11,6 +11,7 @@ from trackroller.damage import (
     bearing,
     catalogue,
     fatigue,
+    first_limit,
     heat,
     multiaxial,
     own,
@@ -19,7 +20,6 @@ from trackroller.damage import (
     shakedown,
     static,
     stud,
-    verdict,
     wear,
 )
 from trackroller.damage.limit import Limit
@@ -95,23 +95,21 @@ def _names(limit: Limit, kind: str) -> set[str]:
 
 def limits_of(outputs: Collection[str], not_checked: Collection[str] = ()) -> tuple[Limit, ...]:
     """Return the limits that groups of outputs ask for: those of single limits, and with `limits`
-    all with a verdict.
+    all that are checked.
 
-    `not_checked` names limits that the verdict leaves out.
+    `not_checked` names limits that are left out.
     """
-    of_verdict = judged(outputs, not_checked)
-    return tuple(
-        limit for limit in LIMITS.values() if limit in of_verdict or limit.group in outputs
-    )
+    checked = checked_limits(outputs, not_checked)
+    return tuple(limit for limit in LIMITS.values() if limit in checked or limit.group in outputs)
 
 
 def groups_of(field: str, names: Collection[str]) -> tuple[str, ...]:
-    """Return the groups of outputs of limits and of their verdict; `field` stands in the error of
+    """Return the groups of outputs of limits and of the first one; `field` stands in the error of
     an unknown name.
 
-    `all` stands for all limits that have a verdict.
+    `all` stands for all limits that can be checked.
     """
-    known = [limit.name for limit in judged()]
+    known = [limit.name for limit in checked_limits()]
     for name in names:
         if name in known:
             continue
@@ -121,7 +119,7 @@ def groups_of(field: str, names: Collection[str]) -> tuple[str, ...]:
     check_names(field, names, (*known, "all"))
     if "all" in names:
         names = known
-    return (*dict.fromkeys(LIMITS[name].group for name in names), verdict.GROUP)
+    return (*dict.fromkeys(LIMITS[name].group for name in names), first_limit.GROUP)
 
 
 def check_used(
@@ -155,7 +153,7 @@ def check_used(
         wrong = "is used by no output: it turns lives into years"
         raise InputError("duty", given["duty"], "", "Add limits to outputs, or remove duty.", wrong)
     for name in (name for name in given if name != "travel"):
-        users = [limit for limit in judged() if name in fields_of(limit)]
+        users = [limit for limit in checked_limits() if name in fields_of(limit)]
         if users and not any(limit in asked_for or limit.name in not_checked for limit in users):
             wrong = (
                 f"is used by no output: it belongs to {', '.join(limit.name for limit in users)}"
@@ -174,12 +172,12 @@ def fields_of(limit: Limit) -> set[str]:
 
 
 def others(names: Collection[str]) -> tuple[str, ...]:
-    """Return the limits of the verdict that a choice of limits leaves out; `all` leaves none
+    """Return the checked limits that a choice of limits leaves out; `all` leaves none
     out.
     """
     if "all" in names:
         return ()
-    return tuple(limit.name for limit in judged() if limit.name not in names)
+    return tuple(limit.name for limit in checked_limits() if limit.name not in names)
 
 
 def limit_word(name: str) -> str:
@@ -187,16 +185,16 @@ def limit_word(name: str) -> str:
     return LIMITS[name].word if name in LIMITS else name
 
 
-def judged(
-    outputs: Collection[str] = (verdict.GROUP,), not_checked: Collection[str] = ()
+def checked_limits(
+    outputs: Collection[str] = (first_limit.GROUP,), not_checked: Collection[str] = ()
 ) -> tuple[Limit, ...]:
-    """Return the limits of the verdict: all that have one, without those of `not_checked`; none
+    """Return the checked limits: all that have a use, without those of `not_checked`; none
     without `limits`.
     """
-    if verdict.GROUP not in outputs:
+    if first_limit.GROUP not in outputs:
         return ()
     return tuple(
-        own for own in LIMITS.values() if own.verdict is not None and own.name not in not_checked
+        own for own in LIMITS.values() if own.use is not None and own.name not in not_checked
     )
 
 

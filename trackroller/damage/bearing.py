@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from trackroller.damage.limit import Limit, SolvedRollers, Values, Verdict, optional, variables
+from trackroller.damage.limit import Limit, LimitUse, SolvedRollers, Values, optional, variables
 from trackroller.damage.mapping import MappingField
 from trackroller.errors import InputError
 from trackroller.numerics.variable import LIFE
@@ -159,7 +159,7 @@ def evaluate(solved: SolvedRollers) -> Values:
     }
 
 
-def verdict(solved: SolvedRollers, results: Values) -> Verdict:
+def limit_use(solved: SolvedRollers, results: Values) -> LimitUse:
     """Return the utilisation, and the hours at the failure probability, (n, body); the guide has
     neither.
     """
@@ -167,7 +167,7 @@ def verdict(solved: SolvedRollers, results: Values) -> Verdict:
         [WEIBULL.get(str(kind), np.nan) for kind in FIELD.columns(solved.cases["bearing"])["kind"]]
     )
     hours = life_at(results["bearing_life_hours"], solved.options["failure_probability"], slope)
-    return Verdict(
+    return LimitUse(
         *(
             np.stack([v, np.full_like(v, np.nan)], axis=1)
             for v in (results["bearing_utilisation"], hours)
@@ -222,7 +222,7 @@ LIMIT = Limit(
     meaning="rating life and static safety of the bearing inside, and utilisation by a maker's "
     "catalogue",
     evaluate=evaluate,
-    verdict=verdict,
+    use=limit_use,
     results=variables(
         "bearing",
         (

@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 
 from trackroller.damage.bearing import BearingLoads
-from trackroller.damage.limit import Limit, SolvedRollers, Values, Verdict, optional, variables
+from trackroller.damage.limit import Limit, LimitUse, SolvedRollers, Values, optional, variables
 from trackroller.damage.mapping import MappingField
 from trackroller.numerics.variable import LIFE
 
@@ -119,11 +119,11 @@ def evaluate(solved: SolvedRollers) -> Values:
     return {"catalogue_load_factor": factor, "catalogue_life_km": life}
 
 
-def verdict(solved: SolvedRollers, results: Values) -> Verdict:
+def limit_use(solved: SolvedRollers, results: Values) -> LimitUse:
     """Return load factor and hours of travel, (n, body); the guide has neither."""
     hours = results["catalogue_life_km"] * 1e3 / (solved.cases["velocity"] * 60.0)
     factor = results["catalogue_load_factor"]
-    return Verdict(
+    return LimitUse(
         *(np.stack([value, np.full_like(value, np.nan)], axis=1) for value in (factor, hours))
     )
 
@@ -165,7 +165,7 @@ LIMIT = Limit(
     short="catalogue",
     group="bearing",
     evaluate=evaluate,
-    verdict=verdict,
+    use=limit_use,
     results=variables(
         "bearing",
         (

@@ -13,7 +13,7 @@ from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
-from rocket_fft import c2r, r2c
+from rocket_fft import c2c, c2r, r2c
 from scipy import fft
 
 from trackroller.damage.ball import ball_of_plane, top_of_depths
@@ -27,6 +27,12 @@ RUNG = 0.07  # step of the logarithm of the ratio of sides
 BESIDE = 1  # nodes of the ladder outside its box, on each side
 REACH = 2  # nodes that the correction of B-splines reaches
 PIECE = 8  # patches of nearly the same shape that a thread computes in one call
+# Below an ellipse the shear has one summit below the surface, and a second one at the surface under
+# high friction. On 10,468 bodies of random designs the shear of a depth that `_is_wanted` leaves
+# out was at most 0.96 of the largest, and the largest between 0.17 and 0.5 of the half side.
+ORDER = np.array([4, 3, 5, 0, 2, 6, 1, 7])  # of `DEPTHS` in the search for the largest shear
+FIRST = 4  # depths at the beginning of this order that are always computed
+SHALLOW = 0.8  # share of the largest shear from which on that of the first depth may be a summit
 SIGNS = np.array(FRICTION_SIGNS, np.float32)
 
 
@@ -142,9 +148,13 @@ def _plane(spectra, kernels, poisson_ratio, body, ladder):  # pragma: no cover (
     (nx, ny), (long, wide) = ladder.nodes, ladder.lengths
     own = slice(body, body + 1)
     stress = body_spectra(spectra, kernels, poisson_ratio[own], SIGNS[own])[0, 0]
-    field = np.empty((6, long, wide), np.float32)
-    c2r(stress, field, np.array([1, 2]), False, 1.0 / (long * wide), 1)
-    return field[:, : ny + 2 * BESIDE + 2 * ladder.rows, BESIDE : nx + BESIDE]
+    half = np.empty(stress.shape, np.complex64)
+    c2c(stress, half, np.array([1]), False, 1.0, 1)
+    # the rows beyond are not wanted, and need no transform along x
+    rows = half[:, : ny + 2 * BESIDE + 2 * ladder.rows].copy()
+    field = np.empty((6, rows.shape[1], wide), np.float32)
+    c2r(rows, field, np.array([2]), False, 1.0 / (long * wide), 1)
+    return field[:, :, BESIDE : nx + BESIDE]
 
 
 @compiled
@@ -231,7 +241,24 @@ class LoadedPatches(NamedTuple):
 
 
 @compiled
-def _write_shears(patches, loads, kernels, ladder, log_depth, out):  # pragma: no cover (compiled)
+def _is_wanted(shear, step):  # pragma: no cover (compiled)
+    """Return whether the depth at a step of `ORDER` can have the largest shear, or stands beside
+    it.
+
+    `shear` (depth,) holds the depths before this step, and 0 elsewhere.
+    """
+    depth = ORDER[step]
+    if step < FIRST or shear[0] >= SHALLOW * np.max(shear):
+        return True
+    before = depth + 1 if depth < ORDER[0] else depth - 1
+    towards_top = before + 1 if depth < ORDER[0] else before - 1
+    return shear[before] >= shear[towards_top] and shear[before] > 0.0
+
+
+@compiled
+def _write_shears(
+    patches, loads, kernels, ladder, log_depth, all_depths, out
+):  # pragma: no cover (compiled)
     """Write the shear stresses of `shakedown_shears` of patches on one rung into `out` (m,
     body).
     """
@@ -247,13 +274,13 @@ def _write_shears(patches, loads, kernels, ladder, log_depth, out):  # pragma: n
         at = steps_on_ladder((steps[0] * nx, steps[1] * ny), ladder.nodes)
         scales = steps[0] / at[0], steps[1] / at[1]
         spectra[k] = _spectra(loads_on_ladder(tractions, scales, ladder.nodes), ladder)
-    shear = np.empty((len(patches), 2, len(kernels)))
+    shear = np.zeros((len(patches), 2, len(kernels)))
     # the kernels of one depth stay in the cache while all patches use them
-    for depth in range(len(kernels)):
+    for step, depth in enumerate(ORDER):
         for k, m in enumerate(patches):
             ratio = loads.poisson_ratio[m].astype(np.float32)
             for body in range(2):
-                if loads.wanted[m, body]:
+                if loads.wanted[m, body] and (all_depths or _is_wanted(shear[k, body], step)):
                     own = kernels[depth : depth + 1]
                     stress = _plane(spectra[k], own, ratio, body, ladder)
                     shear[k, body, depth] = math.sqrt(ball_of_plane(stress))
@@ -263,13 +290,15 @@ def _write_shears(patches, loads, kernels, ladder, log_depth, out):  # pragma: n
                 out[m, body] = top_of_depths(shear[k, body], log_depth)
 
 
-def shakedown_shears(loads: LoadedPatches) -> np.ndarray:
+def shakedown_shears(loads: LoadedPatches, below_ellipses: bool = False) -> np.ndarray:
     """Return the shear yield stress at which the stresses below patches just shake down.
 
     Parameters
     ----------
     loads : LoadedPatches
         The patches and the bodies that are asked for.
+    below_ellipses : bool
+        Whether the patches are ellipses, so that the depths around the largest shear suffice.
 
     Returns
     -------
@@ -289,10 +318,12 @@ def shakedown_shears(loads: LoadedPatches) -> np.ndarray:
         for k in range(0, len(own), PIECE)
     ]
     log_depth = np.log(DEPTHS)
+    all_depths = not below_ellipses
 
     def work(first: int, last: int) -> None:
         for rung, patches in pieces[first:last]:
-            _write_shears(patches, loads, kernels_of(rung, ladder), ladder, log_depth, out)
+            kernels = kernels_of(rung, ladder)
+            _write_shears(patches, loads, kernels, ladder, log_depth, all_depths, out)
 
     share_rows(work, len(pieces), 1, 1)
     return out

@@ -12,9 +12,9 @@ import numpy as np
 from trackroller.damage.limit import (
     SN_SCATTER,
     Limit,
+    LimitUse,
     SolvedRollers,
     Values,
-    Verdict,
     variables,
     worst,
 )
@@ -147,7 +147,7 @@ def life(solved: SolvedRollers) -> Values:
     return results
 
 
-def verdict(solved: SolvedRollers, results: Values) -> Verdict:
+def limit_use(solved: SolvedRollers, results: Values) -> LimitUse:
     """Return the utilisation of the fatigue limit and the life at the failure probability, (n,
     body).
 
@@ -159,7 +159,7 @@ def verdict(solved: SolvedRollers, results: Values) -> Verdict:
     overloaded = _overloaded(solved)
     if p == 0.5:
         curve = curve_of(solved)
-        return Verdict(
+        return LimitUse(
             worst(stress / curve.knee[0]), _hours_to_failure(solved, curve, stress), overloaded
         )
     given = solved.cases["placeholder_position"][:, None, None]
@@ -170,7 +170,7 @@ def verdict(solved: SolvedRollers, results: Values) -> Verdict:
         curve = curve_of(solved).assuming(typical_scatter(place, p)).changed(failure_probability=p)
         used.append(worst(stress / curve.knee[0]))
         hours.append(_hours_to_failure(solved, curve, stress))
-    return Verdict(used[0], hours[0], overloaded, life_low=hours[1], life_high=hours[2])
+    return LimitUse(used[0], hours[0], overloaded, life_low=hours[1], life_high=hours[2])
 
 
 def _hours_to_failure(solved: SolvedRollers, curve: SNCurve, stress: np.ndarray) -> np.ndarray:
@@ -189,7 +189,7 @@ LIMIT = Limit(
     group="life",
     meaning="overrollings and hours to failure",
     evaluate=life,
-    verdict=verdict,
+    use=limit_use,
     needs=("peak_stress",),
     results=variables(
         "life",

@@ -20,9 +20,9 @@ from trackroller.damage.histories import RollerTractions
 from trackroller.damage.limit import (
     TRACTIONS,
     Limit,
+    LimitUse,
     SolvedRollers,
     Values,
-    Verdict,
     optional,
     variables,
     worst,
@@ -69,7 +69,7 @@ def of_patches(solved: SolvedRollers) -> Values:
     rises = largest_rises(steps, heat[case, contact], own_decays)
     whole = t.of_all_patches(rises.reshape(-1, *decays.shape[1:]) / conductivity[case])
     cell = (t.x[:, :, 1] - t.x[:, :, 0]) * (t.y[:, :, 1] - t.y[:, :, 0])
-    slides = (np.hypot(t.slip_lateral, t.slip_rolling) * t.pressure).sum(axis=(2, 3))
+    slides = (t.slip * t.pressure).sum(axis=(2, 3))
     return {
         "_rise": whole,
         "_heat_power": heat.sum(axis=(2, 3)) * cell,
@@ -173,7 +173,7 @@ LIMIT = Limit(
     shared=of_patches,
     shared_by_mechanics=False,
     evaluate=evaluate,
-    verdict=lambda solved, results: Verdict(worst(results["heat_utilisation"]), None),
+    use=lambda solved, results: LimitUse(worst(results["heat_utilisation"]), None),
     needs=(TRACTIONS,),
     results=variables(
         "heat",
@@ -228,14 +228,6 @@ LIMIT = Limit(
             0.0,
         ),
         optional("cooled_area", "A_c", "mm2", "surface from which the roller loses heat", 0.0),
-        optional(
-            "permissible_temperature",
-            "theta_zul",
-            "degC",
-            "permissible temperature of roller and guide; that of their materials counts too",
-            -100.0,
-            4e3,
-        ),
         Parameter(
             "ambient_temperature",
             "theta_0",
@@ -245,6 +237,14 @@ LIMIT = Limit(
             -100.0,
             1000.0,
             role="condition",
+        ),
+        optional(
+            "permissible_temperature",
+            "theta_zul",
+            "degC",
+            "permissible temperature of roller and guide; that of their materials counts too",
+            -100.0,
+            4e3,
         ),
     ),
     materials=(

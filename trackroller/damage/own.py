@@ -28,7 +28,7 @@ from trackroller.errors import InputError, raise_all, unknown_name
 
 FOLDER = Path("config", "limits")
 VARIABLE = "TRACKROLLER_ALLOW_CODE"  # the command line sets it for --allow-code
-FUNCTIONS = ("evaluate", "verdict", "shared")  # of a limit, which a file of a user programs
+FUNCTIONS = ("evaluate", "use", "shared")  # of a limit, which a file of a user programs
 
 
 def hint(name: Any) -> str:

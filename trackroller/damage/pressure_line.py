@@ -23,9 +23,9 @@ from numpy.typing import ArrayLike
 
 from trackroller.damage.limit import (
     Limit,
+    LimitUse,
     SolvedRollers,
     Values,
-    Verdict,
     optional,
     variables,
     worst,
@@ -88,7 +88,7 @@ def evaluate(solved: SolvedRollers) -> Values:
     }
 
 
-def verdict(solved: SolvedRollers, results: Values) -> Verdict:
+def limit_use(solved: SolvedRollers, results: Values) -> LimitUse:
     """Return utilisation and hours of the worse contact at the failure probability, (n, body).
 
     The scatter is that of the material, or the typical one with its range.
@@ -97,7 +97,7 @@ def verdict(solved: SolvedRollers, results: Values) -> Verdict:
     used = worst(results["pressure_line_utilisation"])
     p = solved.options["failure_probability"]
     if p == 0.5:
-        return Verdict(used, median)
+        return LimitUse(used, median)
     materials = solved.materials
     by_stress = materials["scatter_in_stress"] ** materials["rolling_exponent"]
     own = np.where(
@@ -109,7 +109,7 @@ def verdict(solved: SolvedRollers, results: Values) -> Verdict:
         typical = typical_scatter(np.where(np.isnan(given), end, given), p)
         scatter = np.where(np.isnan(own), typical, own)
         lives.append(median * scatter ** log_deviates(p))
-    return Verdict(used, lives[0], life_low=lives[1], life_high=lives[2])
+    return LimitUse(used, lives[0], life_low=lives[1], life_high=lives[2])
 
 
 VALUES = ("rolling_pressure", "rolling_cycles", "rolling_exponent")
@@ -121,7 +121,7 @@ LIMIT = Limit(
     meaning="utilisation and hours by a line of tests in rolling contact, from the Hertzian "
     "pressure",
     evaluate=evaluate,
-    verdict=verdict,
+    use=limit_use,
     results=variables(
         "pressure_line",
         (

@@ -14,9 +14,9 @@ from numpy.typing import ArrayLike
 
 from trackroller.damage.limit import (
     Limit,
+    LimitUse,
     SolvedRollers,
     Values,
-    Verdict,
     optional,
     variables,
     worst,
@@ -78,9 +78,9 @@ def evaluate(solved: SolvedRollers) -> Values:
     }
 
 
-def verdict(solved: SolvedRollers, results: Values) -> Verdict:
+def limit_use(solved: SolvedRollers, results: Values) -> LimitUse:
     """Return utilisation and hours of the worse contact, (n, body)."""
-    return Verdict(
+    return LimitUse(
         worst(results["rating_utilisation_static"]), -worst(-results["rating_life_hours"])
     )
 
@@ -92,7 +92,7 @@ LIMIT = Limit(
     group="rating",
     meaning="utilisation and hours after EN 13001-3-3, from Hertzian pressure and hardness",
     evaluate=evaluate,
-    verdict=verdict,
+    use=limit_use,
     results=variables(
         "rating",
         (

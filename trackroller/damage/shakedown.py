@@ -21,18 +21,43 @@ from trackroller.damage.histories import RollerTractions
 from trackroller.damage.limit import (
     TRACTIONS,
     Limit,
+    LimitUse,
     SolvedRollers,
     Values,
-    Verdict,
     variables,
     worst,
 )
 from trackroller.numerics.variable import BODIES, LARGEST
 
 
-def shears(
-    t: RollerTractions, poisson_ratio: np.ndarray, bounded: np.ndarray | None = None
+def _shears_of_patches(
+    t: RollerTractions, poisson_ratio: np.ndarray, wanted: np.ndarray, hertzian: bool
 ) -> np.ndarray:
+    """Return the shear yield stress at which the stresses below solved patches just shake down.
+
+    `wanted` marks patches and bodies of `t.solved_patches`, (m, body), and the result has its
+    shape [MPa]; it is NaN where no number is wanted.
+    """
+    # numba compiles on import, and planning needs none of it
+    from trackroller.damage.deep_planes import LoadedPatches, shakedown_shears
+
+    out = np.full(wanted.shape, np.nan)
+    some = wanted.any(axis=1)
+    if not some.any():
+        return out
+    case, contact = t.solved_patches
+    at = case[some], contact[some]
+    lateral, rolling, pressure = (
+        field[at] for field in (t.shear_lateral, t.shear_rolling, t.pressure)
+    )
+    steps = np.stack(t.steps, axis=2)[at]
+    own = LoadedPatches(lateral, rolling, pressure, steps, poisson_ratio[at[0]], wanted[some])
+    surface = np.sqrt(np.max(lateral**2 + rolling**2, axis=(1, 2)))
+    out[some] = np.maximum(shakedown_shears(own, hertzian), surface[:, None])
+    return out
+
+
+def shears(t: RollerTractions, poisson_ratio: np.ndarray, hertzian: bool = False) -> np.ndarray:
     """Return the shear yield stress k at which the stresses below each patch just shake down.
 
     Parameters
@@ -41,32 +66,62 @@ def shears(
         The patches.
     poisson_ratio : numpy.ndarray
         nu of the bodies, (n, 2) [1].
-    bounded : numpy.ndarray of bool, optional
-        Bodies of which no number is wanted, (n, 2).
+    hertzian : bool
+        Whether all patches are ellipses.
 
     Returns
     -------
     numpy.ndarray
-        k, (n, contact, body) [MPa]; NaN where no number is wanted.
+        k, (n, contact, body) [MPa].
     """
-    # numba compiles on import, and planning needs none of it
-    from trackroller.damage.deep_planes import LoadedPatches, shakedown_shears
-
-    case, contact = t.solved_patches
+    case, _ = t.solved_patches
     wanted = np.ones((case.size, len(BODIES)), dtype=bool)
-    if bounded is not None:
-        wanted = ~bounded[case]
-    some = wanted.any(axis=1)
-    at = case[some], contact[some]
-    lateral, rolling, pressure = (
-        field[at] for field in (t.shear_lateral, t.shear_rolling, t.pressure)
-    )
-    steps = np.stack(t.steps, axis=2)[at]
-    own = LoadedPatches(lateral, rolling, pressure, steps, poisson_ratio[at[0]], wanted[some])
-    surface = np.sqrt(np.max(lateral**2 + rolling**2, axis=(1, 2)))
-    out = np.full(wanted.shape, np.nan)
-    out[some] = np.maximum(shakedown_shears(own), surface[:, None])
-    return t.of_all_patches(out)
+    return t.of_all_patches(_shears_of_patches(t, poisson_ratio, wanted, hertzian))
+
+
+def largest_shears(
+    t: RollerTractions,
+    poisson_ratio: np.ndarray,
+    most: np.ndarray,
+    bounded: np.ndarray,
+    hertzian: bool = False,
+) -> np.ndarray:
+    """Return the shear yield stress of `shears` for the contact that decides, and a bound for a
+    contact that does not.
+
+    The contact with the larger bound is computed first. The other contact is computed only if its
+    bound exceeds the number of the first.
+
+    Parameters
+    ----------
+    t : RollerTractions
+        The patches.
+    poisson_ratio : numpy.ndarray
+        nu of the bodies, (n, 2) [1].
+    most : numpy.ndarray
+        Upper bounds of k, (n, contact, body) [MPa]; NaN where no bound is known.
+    bounded : numpy.ndarray of bool
+        Bodies of which no number is wanted, (n, 2).
+    hertzian : bool
+        Whether all patches are ellipses.
+
+    Returns
+    -------
+    numpy.ndarray
+        (n, contact, body) [MPa], whose largest value over the contacts is that of `shears`; NaN
+        where no number is wanted.
+    """
+    case, contact = t.solved_patches
+    wanted = ~bounded[case]
+    # an unknown bound counts as the larger one
+    comes_first = contact[:, None] == np.argmax(most, axis=1)[case]
+    shear = _shears_of_patches(t, poisson_ratio, wanted & comes_first, hertzian)
+    first = np.fmax.reduce(t.of_all_patches(shear), axis=1)
+    decided = most[case, contact] <= first[case]
+    others = wanted & ~comes_first
+    rest = _shears_of_patches(t, poisson_ratio, others & ~decided, hertzian)
+    shear = np.where(others, np.where(decided, most[case, contact], rest), shear)
+    return t.of_all_patches(shear)
 
 
 def bound(solved: SolvedRollers) -> np.ndarray:
@@ -81,8 +136,8 @@ def of_mechanics(solved: SolvedRollers) -> Values:
 
     These are the shear yield stress that just shakes down, `_shaken`, (n, contact, body) [MPa], the
     peak stress with its error, `_elastic`, (n, contact, body) [MPa], and the largest |tau|/p of
-    each patch, `_traction`, (n, contact) [1]. `_shaken` is NaN where a bound stands for the number,
-    and `_traction` where no output asks for it.
+    each patch, `_traction`, (n, contact) [1]. Where no output asks for the numbers of each contact,
+    `_traction` is NaN, and `_shaken` is that of `largest_shears`.
     """
     v = solved.values
     elastic = v["peak_stress"] * (1.0 + v["error_estimate"])
@@ -91,11 +146,14 @@ def of_mechanics(solved: SolvedRollers) -> Values:
     bounded = LIMIT.kept_by_bound(replace(solved, values={"_elastic": elastic}))
     unknown = np.full_like(elastic, np.nan)
     out = {"_shaken": unknown, "_elastic": elastic, "_traction": unknown[:, :, 0]}
-    if not bounded.all():
-        ratio = solved.materials["poisson_ratio"]
-        out["_shaken"] = shears(solved.tractions(), ratio, bounded)
+    ratio = solved.materials["poisson_ratio"]
+    hertzian = solved.options.get("normal") == "hertz"
     if LIMIT.group in solved.options.get("outputs", (LIMIT.group,)):
+        out["_shaken"] = shears(solved.tractions(), ratio, hertzian)
         out["_traction"] = _largest_traction(solved.tractions())
+    elif not bounded.all():
+        most = elastic / np.sqrt(3.0)
+        out["_shaken"] = largest_shears(solved.tractions(), ratio, most, bounded, hertzian)
     return out
 
 
@@ -103,7 +161,7 @@ def _largest_traction(t: RollerTractions) -> np.ndarray:
     """Return the largest |tau|/p of each patch, (n, contact) [1]."""
     pressed = t.pressure > 0.02 * np.nanmax(t.pressure, axis=(2, 3), keepdims=True, initial=0.0)
     with np.errstate(divide="ignore", invalid="ignore"):
-        local = np.hypot(t.shear_lateral, t.shear_rolling) / t.pressure
+        local = t.shear / t.pressure
     return np.asarray(np.max(np.where(pressed, local, 0.0), axis=(2, 3)))
 
 
@@ -136,7 +194,7 @@ LIMIT = Limit(
     shared=of_mechanics,
     bound=bound,
     evaluate=evaluate,
-    verdict=lambda solved, results: Verdict(worst(results["shakedown_utilisation"]), None),
+    use=lambda solved, results: LimitUse(worst(results["shakedown_utilisation"]), None),
     needs=("peak_stress", TRACTIONS),
     results=variables(
         "shakedown",

@@ -4,7 +4,10 @@ The curve is straight in logarithms through (N_Rm, R_m) and the knee (N_k, sigma
 2022 after DIN 50100:2016), or through the points that a material gives, whose last one is the knee.
 Stresses are in MPa, cycles and probabilities in 1; arrays may have any shapes that broadcast.
 
-ASSUME: the curve of the database holds for a failure probability of 50 %.
+ASSUME: the curve of the database holds for a failure probability of 50 %. ASSUME: below sigma_D
+the scatter of the strength stays, so that the life scatters by T_N T_S^(k_2 - k) there, as in
+pyLife 2 (materiallaws/woehlercurve.py). A second exponent k_2 < k would make that less than T_N, by
+8 -> 1.36 for k = 55 and k_2 = 8; there the life scatters by T_N at all stresses.
 """
 
 from __future__ import annotations
@@ -342,14 +345,15 @@ class SNCurve:
         """Return sigma_D [MPa] and N_k [1] at the failure probability; the exponent stays the same.
 
         The scatter is log-normal (DIN 50100:2016). With the standard normal deviate u of the
-        probability, lg N shifts by u lg(T_N)/2.563 and lg sigma_D by u lg(T_S)/2.563.
+        probability, lg N shifts by u lg(T_N)/2.563 and lg sigma_D by u lg(T_S)/2.563. A curve whose
+        exponent falls below sigma_D shifts in lg N alone, so that no life scatters less than T_N.
         """
         _, limit, _, knee = self._points
         if not np.any(np.asarray(self.failure_probability) != 0.5):
             return limit, knee
         t_n, t_s = self.scatter_ranges
         deviate = log_deviates(self.failure_probability)
-        fall = t_s**deviate
+        fall = np.where(self._falls_faster_below, 1.0, t_s**deviate)
         # The curve moves along with the strength. If T_N is larger than this move gives, it also
         # moves in cycles.
         beyond = t_n**deviate * fall**-self.exponent
@@ -365,6 +369,13 @@ class SNCurve:
         if self.rule == "haibach":
             by_rule = 2 * self.exponent - 1
         return np.where(np.isnan(given), by_rule, given)
+
+    @property
+    def _falls_faster_below(self) -> np.ndarray:
+        """Return whether the exponent is smaller below sigma_D than above it, a bool array."""
+        if self.rule == "unlimited":
+            return np.asarray(False)
+        return np.asarray(self._below < self.exponent)
 
     def slope(self, stress: ArrayLike) -> np.ndarray:
         """Return the exponent of the life at a stress [1]: k, and below sigma_D that of the rule or

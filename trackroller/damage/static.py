@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from trackroller.damage.limit import Limit, SolvedRollers, Values, Verdict, worst
+from trackroller.damage.limit import Limit, LimitUse, SolvedRollers, Values, worst
 
 
-def verdict(solved: SolvedRollers, results: Values) -> Verdict:
+def limit_use(solved: SolvedRollers, results: Values) -> LimitUse:
     """Return the peak von Mises stress over R_m, (n, body) [1]; the limit has no time, and a body
     above it breaks.
     """
     used = worst(solved.values["peak_stress"]) / solved.materials["tensile_strength"]
-    return Verdict(used, None, used > 1.0)
+    return LimitUse(used, None, used > 1.0)
 
 
 LIMIT = Limit(
@@ -19,7 +19,7 @@ LIMIT = Limit(
     short="static strength",
     group="peak_stress",
     evaluate=lambda solved: {},
-    verdict=verdict,
+    use=limit_use,
     needs=("peak_stress",),
     compares=("peak_stress", "tensile strength R_m"),
 )

@@ -23,14 +23,15 @@ mean stress counts by Goodman, sigma_a/(1 - sigma_m/R_m), and a notch multiplies
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from trackroller.damage.bearing import BearingLoads
-from trackroller.damage.limit import Limit, SolvedRollers, Values, Verdict, optional, variables
+from trackroller.damage.limit import Limit, LimitUse, SolvedRollers, Values, optional, variables
 from trackroller.damage.mapping import MappingField
-from trackroller.damage.sn_curve import SNCurve
+from trackroller.damage.sn_curve import SNCurve, typical_scatter
 from trackroller.errors import InputError
 from trackroller.numerics.variable import LIFE
 
@@ -43,10 +44,13 @@ OF_MATERIAL = (
     "tensile_strength",
     "yield_strength",
     "fatigue_limit",
+    "scatter_in_cycles",
+    "scatter_in_stress",
     "cycles_at_tensile_strength",
     "cycles_at_fatigue_limit",
 )
-LINE = OF_MATERIAL[-2:]
+SCATTER = ("scatter_in_cycles", "scatter_in_stress")
+LINE = ("cycles_at_tensile_strength", "cycles_at_fatigue_limit")
 RISING = (("yield_strength", "tensile_strength"), ("fatigue_limit", "tensile_strength"), LINE)
 
 
@@ -178,9 +182,7 @@ def evaluate(solved: SolvedRollers) -> Values:
     root = root_loads(loads, own["length"], eccentricity)
     outer, middle = root_stress(root, own["diameter"])
     stress = np.maximum(outer, middle)
-    amplitude = own["notch_factor"] * reversed_amplitude(
-        outer, own["load_ratio"], own["tensile_strength"]
-    )
+    amplitude = _amplitude(outer, own)
     size = own["length"], own["diameter"], own["youngs_modulus"], own["poisson_ratio"]
     pressed = deflection(np.abs(loads.pressing), np.abs(loads.tilting), *size)
     driven = deflection(np.abs(loads.driving), np.abs(loads.yawing), *size)
@@ -188,42 +190,106 @@ def evaluate(solved: SolvedRollers) -> Values:
         "stud_stress": stress,
         "stud_static_utilisation": stress / own["yield_strength"],
         "stud_endurance_utilisation": amplitude / own["fatigue_limit"],
-        "stud_life_hours": _life(amplitude, own, str(solved.options["life_rule"])),
+        "stud_life_hours": _life(amplitude, own, str(solved.options["life_rule"]))[0],
         "stud_deflection": np.hypot(pressed[0], driven[0]),
         "stud_slope": np.degrees(np.hypot(pressed[1], driven[1])),
     }
 
 
-def _life(amplitude: np.ndarray, own: dict[str, np.ndarray], rule: str) -> np.ndarray:
-    """Return the hours to failure by the S-N line of the stud's material; NaN without a line or
-    without cycles per hour.
+def _amplitude(outer: np.ndarray, own: Mapping[str, np.ndarray]) -> np.ndarray:
+    """Return the fully reversed amplitude of the stress at the outer fibre, with the notch, (n,)
+    [MPa].
+    """
+    reversed_one = reversed_amplitude(outer, own["load_ratio"], own["tensile_strength"])
+    return np.asarray(own["notch_factor"] * reversed_one)
+
+
+def _life(
+    amplitude: np.ndarray,
+    own: Mapping[str, np.ndarray],
+    rule: str,
+    probability: float = 0.5,
+    place: np.ndarray | float = 0.0,
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the hours to failure by the S-N line of the stud's material, NaN without a line or
+    without cycles per hour; and the fatigue limit, which falls with the probability where a line is
+    known, (n,) each.
+
+    Parameters
+    ----------
+    amplitude : numpy.ndarray
+        Fully reversed amplitude, (n,) [MPa].
+    own : mapping
+        Values of the studs by name, (n,) each.
+    rule : str
+        Rule below the fatigue limit.
+    probability : float
+        Failure probability [1].
+    place : numpy.ndarray or float
+        Place in the range of the typical scatter, of studs that state none, (n,) [1].
     """
     names = ("tensile_strength", "fatigue_limit", *LINE)
     hours = np.full(len(amplitude), np.nan)
-    known = np.isfinite(amplitude) & np.isfinite(own["cycles_per_hour"])
-    known &= np.all([np.isfinite(own[name]) for name in names], axis=0)
+    limit = np.array(own["fatigue_limit"], dtype=float)
+    with_line = np.isfinite(amplitude) & np.all([np.isfinite(own[name]) for name in names], axis=0)
     broken = np.isinf(amplitude) & np.isfinite(own["cycles_per_hour"])
     hours[broken] = 0.0
-    if not known.any():
-        return hours
-    curve = SNCurve.of({name: own[name][known] for name in names}, rule)
-    hours[known] = curve.life_cycles(amplitude[known]) / own["cycles_per_hour"][known]
-    return hours
+    if not with_line.any():
+        return hours, limit
+    curve = SNCurve.of({name: own[name][with_line] for name in (*names, *SCATTER)}, rule)
+    if probability != 0.5:
+        at = np.broadcast_to(place, amplitude.shape)[with_line]
+        typical = typical_scatter(at, probability)
+        curve = curve.assuming(typical).changed(failure_probability=probability)
+    hours[with_line] = curve.life_cycles(amplitude[with_line]) / own["cycles_per_hour"][with_line]
+    limit[with_line] = curve.knee[0]
+    return hours, limit
 
 
-def verdict(solved: SolvedRollers, results: Values) -> Verdict:
-    """Return the utilisation and the hours of the stud, (n, body); the guide has neither.
+def limit_use(solved: SolvedRollers, results: Values) -> LimitUse:
+    """Return the utilisation and the hours of the stud at the failure probability, (n, body); the
+    guide has neither.
 
     An endurance limit that is exceeded ends a life where this is known, and is a utilisation
-    otherwise.
+    otherwise. Where the stud states no scatter, its life is a range by the typical one.
     """
-    hours = results["stud_life_hours"]
+    probability = solved.options["failure_probability"]
     static = results["stud_static_utilisation"]
-    without_life = np.where(np.isnan(hours), results["stud_endurance_utilisation"], np.nan)
-    used = np.fmax(static, without_life)
-    return Verdict(
-        *(np.stack([value, np.full_like(value, np.nan)], axis=1) for value in (used, hours))
+    if probability == 0.5:
+        hours = results["stud_life_hours"]
+        without_life = np.where(np.isnan(hours), results["stud_endurance_utilisation"], np.nan)
+        return LimitUse(_of_roller(np.fmax(static, without_life)), _of_roller(hours))
+    own = FIELD.columns(solved.cases[FIELD.name])
+    loads = root_loads(
+        BearingLoads.of(solved), own["length"], np.nan_to_num(own["eccentricity"], nan=0.0)
     )
+    amplitude = _amplitude(root_stress(loads, own["diameter"])[0], own)
+    given = solved.cases["placeholder_position"]
+    lives = []
+    limits = []
+    for end in (0.0, -1.0, 1.0):
+        place = np.where(np.isnan(given), end, given)
+        rule = str(solved.options["life_rule"])
+        hours, limit = _life(amplitude, own, rule, probability, place)
+        lives.append(_of_roller(hours))
+        limits.append(limit)
+    without_life = np.where(np.isnan(lives[0][:, 0]), amplitude / limits[0], np.nan)
+    used = _of_roller(np.fmax(static, without_life))
+    return LimitUse(used, lives[0], life_low=lives[1], life_high=lives[2])
+
+
+def _of_roller(values: np.ndarray) -> np.ndarray:
+    """Return values of the roller, (n,), by body, (n, 2)."""
+    return np.stack([values, np.full_like(values, np.nan)], axis=1)
+
+
+def without_scatter(cases: Mapping[str, np.ndarray]) -> np.ndarray:
+    """Return which studs have an S-N line and state no scatter, so that they take the typical one,
+    (n,) bool.
+    """
+    own = FIELD.columns(cases[FIELD.name])
+    has_line = np.all([np.isfinite(own[name]) for name in ("load_ratio", *LINE)], axis=0)
+    return np.asarray(has_line & np.all([np.isnan(own[name]) for name in SCATTER], axis=0))
 
 
 def check(given: dict[str, Any]) -> None:
@@ -285,6 +351,8 @@ FIELD = MappingField(
         optional("yield_strength", "R_e", "MPa", "yield strength", 0.0),
         optional("tensile_strength", "R_m", "MPa", "tensile strength", 0.0),
         optional("fatigue_limit", "sigma_D", "MPa", "fully reversed fatigue limit", 0.0),
+        optional("scatter_in_cycles", "T_N", "-", "scatter N_90/N_10", 1.0, closed=True),
+        optional("scatter_in_stress", "T_S", "-", "scatter S_90/S_10", 1.0, closed=True),
         optional("cycles_at_tensile_strength", "N_Rm", "-", "cycles at R_m", 0.0),
         optional("cycles_at_fatigue_limit", "N_k", "-", "cycles at sigma_D", 0.0),
         optional("notch_factor", "K_f", "-", "notch factor of fatigue", 1.0, closed=True),
@@ -310,7 +378,7 @@ LIMIT = Limit(
     group="stud",
     meaning="stress, endurance and deflection of the stud or axle",
     evaluate=evaluate,
-    verdict=verdict,
+    use=limit_use,
     results=variables(
         "stud",
         ("stud_stress", (), "MPa", "sigma_S", "von Mises stress at the clamped end of the stud"),
@@ -324,10 +392,12 @@ LIMIT = Limit(
     requires=("stud",),
     bodies=("roller",),
     compares=("stud_stress", "permissible stress of the stud"),
+    distribution="S-N scatter of the stud",
     assumes=(
         "Stud: a rigidly clamped round cantilever, without the preload of its bolt. The moments of "
         "the contacts add to those of the forces, and an eccentric collar stands in its worst "
         "position. With endurance, all forces change together, and the mean stress counts by "
-        "Goodman; the life is the median one.",
+        "Goodman. At a failure probability the fatigue limit of a stud without an S-N line stays "
+        "the median one.",
     ),
 )

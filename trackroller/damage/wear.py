@@ -32,9 +32,9 @@ from trackroller.damage.histories import RollerTractions
 from trackroller.damage.limit import (
     TRACTIONS,
     Limit,
+    LimitUse,
     SolvedRollers,
     Values,
-    Verdict,
     optional,
     variables,
     worst,
@@ -246,34 +246,51 @@ def leaves_table(work: np.ndarray, table: str) -> np.ndarray:
     )
 
 
-def _beyond_table(solved: SolvedRollers, work: np.ndarray) -> np.ndarray:
+def _beyond_table(solved: SolvedRollers, shear: np.ndarray, sliding: np.ndarray) -> np.ndarray:
     """Return whether a contact of a case leaves the table of the case, (n,); see `leaves_table`."""
-    out = np.zeros(len(work), dtype=bool)
+    out = np.zeros(len(shear), dtype=bool)
     if solved.options["wear_law"] != "energy":
         return out
     texts = solved.cases["wear_table"]
     for text in set(texts.tolist()) - {""}:
         rows = texts == text
-        out[rows] = leaves_table(work[rows], text).any(axis=1)
+        out[rows] = leaves_table(shear[rows] * sliding[rows], text).any(axis=1)
     return out
 
 
-def _rates(solved: SolvedRollers, t: RollerTractions, sliding: np.ndarray) -> list[np.ndarray]:
+def _rates(
+    solved: SolvedRollers, pressure: np.ndarray, shear: np.ndarray, sliding: np.ndarray
+) -> list[np.ndarray]:
     """Return `local_rates` of each case, (n, contact, y, x) of roller and guide; NaN without a
     table.
     """
-    shear = np.hypot(t.shear_lateral, t.shear_rolling)
     if solved.options["wear_law"] == "archard":
-        return local_rates(t.pressure, shear, sliding, "")
+        return local_rates(pressure, shear, sliding, "")
     texts = solved.cases["wear_table"]
     out = [np.full_like(shear, np.nan) for _ in BODIES]
     for text in set(texts.tolist()) - {""}:
         rows = texts == text
-        for rate, own in zip(
-            out, local_rates(t.pressure[rows], shear[rows], sliding[rows], text), strict=True
-        ):
-            rate[rows] = own
+        own = local_rates(pressure[rows], shear[rows], sliding[rows], text)
+        for body in range(len(BODIES)):
+            out[body][rows] = own[body]
     return out
+
+
+def _lines(rates: list[np.ndarray], spacing: np.ndarray) -> np.ndarray:
+    """Return the integrals of the rates of both bodies along the rolling direction, (n, contact,
+    body, x); equal rates are integrated once.
+    """
+    unit = np.ones(len(spacing))
+
+    def along_rolling(rate: np.ndarray) -> np.ndarray:
+        return wear_depth(rate, np.ones_like(rate), spacing, unit)
+
+    roller, guide = rates
+    first = along_rolling(roller)
+    second = first
+    if guide is not roller:
+        second = along_rolling(guide)
+    return np.stack([first, second], axis=2)
 
 
 def of_mechanics(solved: SolvedRollers) -> Values:
@@ -291,26 +308,22 @@ def of_mechanics(solved: SolvedRollers) -> Values:
         & np.isnan(t.slip_rolling)
         & (t.pressure >= 0.0)
     )
-    sliding = np.where(locked, 1.0, np.hypot(t.slip_lateral, t.slip_rolling))
+    sliding = np.where(locked, 1.0, t.slip)
     wide, long = (axis[..., 1] - axis[..., 0] for axis in (t.x, t.y))
     cell = wide * long
     braked = locked.any(axis=(2, 3))
+    shear = t.shear
+    rubbed = np.sum(shear * sliding, axis=(2, 3))
+    rates = _rates(solved, t.pressure, shear, sliding)
     # constant friction: |tau| = mu p wherever surfaces slide, to more digits than an iteration has
-    constant = solved.cases["friction_law"] == ""
+    constant = (solved.cases["friction_law"] == "")[:, None]
     mu = solved.cases["friction_coefficient"][:, None]
-    shear = np.sum(np.hypot(t.shear_lateral, t.shear_rolling) * sliding, axis=(2, 3))
-    rubbed = (
-        np.where(constant[:, None], mu * np.sum(t.pressure * sliding, axis=(2, 3)), shear) * cell
-    )
+    rubbed = np.where(constant, mu * np.sum(t.pressure * sliding, axis=(2, 3)), rubbed) * cell
     pressed = np.sum(t.pressure, axis=(2, 3)) * cell
     v = solved.values
     known = np.where(braked, v["normal_force"], v["friction_energy_per_distance"])
     long = long * energy_ratio(known, np.where(braked, pressed, rubbed))
-    lines = [
-        wear_depth(rate, 0.0 * rate + 1.0, long, np.ones(len(rate)))
-        for rate in _rates(solved, t, sliding)
-    ]
-    depth = np.stack(lines, axis=2)
+    depth = _lines(rates, long)
     largest, place = deepest(t.x, depth)
     # a roller that stands still is not overrolled
     largest[:, :, 0] = np.where(braked, np.nan, largest[:, :, 0])
@@ -319,7 +332,7 @@ def of_mechanics(solved: SolvedRollers) -> Values:
         "wear_place": place,
         "_worn_volume": 1e6 * depth.sum(axis=-1) * wide[..., None],
         "_gap_at_edge": _gaps_at_edges(solved, t),
-        BEYOND_TABLE: _beyond_table(solved, np.hypot(t.shear_lateral, t.shear_rolling) * sliding),
+        BEYOND_TABLE: _beyond_table(solved, shear, sliding),
         "wear_error_estimate": ERROR.get(solved.options["contact_model"], np.nan) / t.x.shape[-1]
         + 0.0 * wide,
     }
@@ -432,7 +445,7 @@ def evaluate(solved: SolvedRollers) -> Values:
     }
 
 
-def verdict(solved: SolvedRollers, results: Values) -> Verdict:
+def limit_use(solved: SolvedRollers, results: Values) -> LimitUse:
     """Return the required travel over the travel to the permissible depth, and the hours, (n,
     body).
     """
@@ -441,7 +454,7 @@ def verdict(solved: SolvedRollers, results: Values) -> Verdict:
         used = solved.cases["required_travel"][:, None] / (
             hours * (solved.cases["velocity"] * KM_PER_HOUR)[:, None]
         )
-    return Verdict(used, hours, life_low=low, life_high=high)
+    return LimitUse(used, hours, life_low=low, life_high=high)
 
 
 def check(given: dict[str, Any]) -> None:
@@ -489,7 +502,7 @@ LIMIT = Limit(
     "permissible depth",
     shared=of_mechanics,
     evaluate=evaluate,
-    verdict=verdict,
+    use=limit_use,
     needs=("friction_work", TRACTIONS),
     results=variables(
         "wear",

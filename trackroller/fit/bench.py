@@ -132,8 +132,8 @@ def fit_bench(  # noqa: PLR0913 - one argument for each choice of a fit
     check_texts(name=name, like=like)
     check_base(base)
     slope, scatter_in_cycles = check_held(slope, scatter_in_cycles)
-    constants: dict[str, float | None] = {"slope": slope, "scatter": scatter_in_cycles}
-    values = [name for name in values if constants.get(name) is None]
+    fixed = {"slope": slope, "scatter": scatter_in_cycles}
+    values = [value for value in values if fixed.get(value) is None]
     if not values:
         raise InputError(
             "fit", fit, "at least one value that is not held", "Name fatigue_strength as well."
@@ -156,44 +156,54 @@ def fit_bench(  # noqa: PLR0913 - one argument for each choice of a fit
     solved = _solved(rows, cases, options, tested)
     groups = []
     if {"fatigue_strength", "slope", "scatter"} & set(values):
-        constants = dict.fromkeys(("slope", "scatter"))
-        if "slope" not in values:
-            constants["slope"] = slope or material.woehler_exponent
-        if "scatter" not in values:
-            constants["scatter"] = _scatter_of(material, scatter_in_cycles)
+        constants = _constants(values, material, slope, scatter_in_cycles)
         groups.append(_fatigue(rows, ends, travels, solved, tested, material, constants, prior))
     if "wear_coefficient" in values:
         groups.append(_wear(rows, ends, travels, cases, options, tested))
     if "friction_coefficient" in values:
         groups.append(_friction(rows, cases, options))
-    given = {key: str(options.get(key, default)) for key, default in DEFAULTS.items()} | {
-        "body": tested
-    }
+    given = {key: str(options.get(key, default)) for key, default in DEFAULTS.items()}
+    return MaterialFit(
+        "bench",
+        name or f"{material.name} fitted",
+        tuple(groups),
+        rows,
+        like or material.name,
+        given | {"body": tested},
+        [*_notes(values), *_outside(rows, solved, tested)],
+        not_given_notes(cases),
+    )
+
+
+def _constants(
+    values: Sequence[str], material: Material, slope: float | None, scatter: float | None
+) -> dict[str, float | None]:
+    """Return the slope k and the deviation of ln N that are not fitted: those that are held, or
+    those of the material. `scatter` is T_N.
+    """
+    constants: dict[str, float | None] = dict.fromkeys(("slope", "scatter"))
+    if "slope" not in values:
+        constants["slope"] = slope or material.woehler_exponent
+    if "scatter" not in values:
+        constants["scatter"] = _scatter_of(material, scatter)
+    return constants
+
+
+def _notes(values: Sequence[str]) -> list[str]:
+    """Return under which conditions the fitted values hold."""
     notes = [
         "The values hold for the contact model, the life criterion and the accuracy of the fit."
     ]
     if "wear_coefficient" in values:
         notes.append(
             "Travels to a depth are the mean of the two closed forms of the limit wear; "
-            "`trackroller fit wear` follows "
-            "the profile of one groove instead."
+            "`trackroller fit wear` follows the profile of one groove instead."
         )
-    if "friction_coefficient" in values and len(groups) > 1:
+    if "friction_coefficient" in values and {*values} != {"friction_coefficient"}:
         notes.append(
             "The rows were solved with the friction that they state, not with the fitted one."
         )
-    notes += _outside(rows, solved, tested)
-    name = name or f"{material.name} fitted"
-    return MaterialFit(
-        "bench",
-        name,
-        tuple(groups),
-        rows,
-        like or material.name,
-        given,
-        notes,
-        not_given_notes(cases),
-    )
+    return notes
 
 
 def check_base(base: Any) -> None:
@@ -484,7 +494,6 @@ def _fatigue(
     prior: Mapping[str, Sequence[float]] | None,
 ) -> Group:
     """Return the line of fatigue of a body."""
-    k = material.woehler_exponent
     b = BODIES.index(body)
     stress = []
     low = []
@@ -492,21 +501,9 @@ def _fatigue(
     origin = []
     for row in rows:
         ended = ends[row].mode == "fatigue" and ends[row].body == body
-        life = solved.stress[row, :, b] ** -k / solved.per_km[row, :, b]  # up to a factor [km]
-        if np.isnan(life).any():
-            remedy = "Give guide_overrollings_per_hour, or fit the roller."
-            raise rows.error(row, "base", f"a known number of overrollings of the {body}", remedy)
-        worse = int(np.argmin(life))
-        stated = rows.number(row, "contact", 1, 2)
-        if stated not in (1, 2) and not math.isnan(stated):
-            raise rows.error(row, "contact", "1 or 2, the contact that failed", "Correct the cell.")
-        contacts = {worse}
-        failed = worse
-        if not math.isnan(stated):
-            failed = int(stated) - 1
+        contacts, failed = _contacts_of_row(rows, row, solved, body, material.woehler_exponent)
+        if not ended:
             contacts = {failed}
-        if ended and not math.isnan(stated):
-            contacts = {failed, 1 - failed}  # the other contact ran as long without a failure
         for contact in contacts:
             start, stop = travels[row]
             if not ended or contact != failed:
@@ -521,6 +518,29 @@ def _fatigue(
     return _fatigue_group(
         rows, tests, tuple(np.array(origin)[known].tolist()), material, constants, prior
     )
+
+
+def _contacts_of_row(
+    rows: TestTable, row: int, solved: Solved, body: str, slope: float
+) -> tuple[set[int], int]:
+    """Return the contacts of a roller that a test tells of, and the one that failed, or would fail
+    first by the slope k.
+
+    A row that states the failed contact tells of the other one too: it ran as long without a
+    failure.
+    """
+    b = BODIES.index(body)
+    life = solved.stress[row, :, b] ** -slope / solved.per_km[row, :, b]  # up to a factor [km]
+    if np.isnan(life).any():
+        remedy = "Give guide_overrollings_per_hour, or fit the roller."
+        raise rows.error(row, "base", f"a known number of overrollings of the {body}", remedy)
+    stated = rows.number(row, "contact", 1, 2)
+    if math.isnan(stated):
+        worse = int(np.argmin(life))
+        return {worse}, worse
+    if stated not in (1, 2):
+        raise rows.error(row, "contact", "1 or 2, the contact that failed", "Correct the cell.")
+    return {0, 1}, int(stated) - 1
 
 
 def _fatigue_group(

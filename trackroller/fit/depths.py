@@ -14,7 +14,7 @@ from trackroller.errors import InputError, check_names
 from trackroller.fit.bench import DEEPEST, check_base, not_given_notes, wear_group, worn_alone
 from trackroller.fit.material_fit import MaterialFit, check_texts
 from trackroller.fit.solved_rollers import DEFAULTS
-from trackroller.fit.table import LEAST, read_tests
+from trackroller.fit.table import LEAST, TestTable, read_tests
 from trackroller.parameters import BODIES
 from trackroller.roller.settings import checked_case
 from trackroller.roller.wear import wear
@@ -73,26 +73,7 @@ def fit_wear(
     rows = read_tests(table, NEEDED, COLUMNS, ("test", "note"))
     travel = np.array([rows.number(row, "travel", LEAST, FARTHEST) for row in rows])
     depth = np.array([rows.number(row, "wear_depth", LEAST, DEEPEST) for row in rows])
-    for row, (km, mm) in enumerate(zip(travel, depth, strict=True)):
-        for column, value in zip(NEEDED, (km, mm), strict=True):
-            if math.isnan(value):
-                raise rows.error(
-                    row, column, "a number; the cell is empty", "Fill the cell, or remove the row."
-                )
-        deeper = [other for other in range(row) if travel[other] < km and depth[other] > mm]
-        if deeper:
-            allowed = f"a depth of at least that after less travel, {depth[deeper[0]]:g} mm"
-            raise rows.error(
-                row, "wear_depth", allowed, "Measure one groove only, and correct the row."
-            )
-        if any(travel[other] == km for other in range(row)):
-            remedy = "Write the mean of the two depths once."
-            raise rows.error(
-                row, "travel", "each travel once", remedy, "stands in another row as well"
-            )
-    if len(rows) < 2:
-        allowed = "two depths or more, for a coefficient with its scatter"
-        raise rows.placed(InputError("tests", len(rows), allowed, "Measure the groove once more."))
+    _check_depths(rows, travel, depth)
     case, options, _ = checked_case(dict(base or {}))
     unit = followed(worn_alone(case, body), options, body, depth)
     for row in np.flatnonzero(np.isnan(unit)).tolist():
@@ -126,6 +107,33 @@ def fit_wear(
         notes,
         not_given,
     )
+
+
+def _check_depths(rows: TestTable, travel: np.ndarray, depth: np.ndarray) -> None:
+    """Refuse empty cells, depths that fall with the travel, and fewer than two measurements.
+
+    `travel` [km] and `depth` [mm] have one value a row.
+    """
+    for row, (km, mm) in enumerate(zip(travel, depth, strict=True)):
+        for column, value in zip(NEEDED, (km, mm), strict=True):
+            if math.isnan(value):
+                raise rows.error(
+                    row, column, "a number; the cell is empty", "Fill the cell, or remove the row."
+                )
+        deeper = [other for other in range(row) if travel[other] < km and depth[other] > mm]
+        if deeper:
+            allowed = f"a depth of at least that after less travel, {depth[deeper[0]]:g} mm"
+            raise rows.error(
+                row, "wear_depth", allowed, "Measure one groove only, and correct the row."
+            )
+        if any(travel[other] == km for other in range(row)):
+            remedy = "Write the mean of the two depths once."
+            raise rows.error(
+                row, "travel", "each travel once", remedy, "stands in another row as well"
+            )
+    if len(rows) < 2:
+        allowed = "two depths or more, for a coefficient with its scatter"
+        raise rows.placed(InputError("tests", len(rows), allowed, "Measure the groove once more."))
 
 
 def followed(

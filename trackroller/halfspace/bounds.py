@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from trackroller.halfspace.ellipse import Room, fields_of, refinement, unit_rule
+from trackroller.halfspace.ellipse import RayRoom, fields_of, refinement, unit_rule
 from trackroller.halfspace.peak import Target, lengths, scan
 from trackroller.numerics.compiled import compiled
 from trackroller.numerics.threads import share_rows
@@ -52,7 +52,7 @@ def lower_bounds(
         rule, largest = unit_rule(int(_ORDER * factor)), np.empty((group.size, 2))
 
         def work(first: int, last: int, some=some, rule=rule, largest=largest) -> None:
-            _largest(first, last, some, rule, Room.empty(), largest)
+            _largest(first, last, some, rule, RayRoom.empty(), largest)
 
         share_rows(work, group.size, 2, 64)
         out[group] = largest

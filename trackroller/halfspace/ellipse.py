@@ -457,7 +457,7 @@ FIELD = np.float32  # of traction fields: gathering their values takes most of t
 NO_FIELD = np.zeros((2, 1, 1), FIELD)  # stands for a traction field in full sliding
 
 
-class Room(NamedTuple):
+class RayRoom(NamedTuple):
     """Work space of one thread: rays in double and in single precision, and numbers of elements."""
 
     rays: np.ndarray
@@ -465,7 +465,7 @@ class Room(NamedTuple):
     places: np.ndarray
 
     @classmethod
-    def empty(cls) -> Room:
+    def empty(cls) -> RayRoom:
         """Return work space for one thread."""
         return cls(np.empty(SCRATCH), np.empty(SCRATCH, FIELD), np.empty(STRIDE, np.int32))
 
@@ -539,7 +539,7 @@ def near_parts(patch, field, points, rules, room):
         x_C, y_C and depth [mm].
     rules : tuple of numpy.ndarray
         `unit_rule` of the plane waves, and of both directions of the friction integral.
-    room : Room
+    room : RayRoom
         Work space of the thread.
 
     Returns
@@ -634,7 +634,7 @@ def stress_parts(
 
     def work(first: int, last: int) -> None:
         some = near[first:last]
-        out[some] = near_parts(record, field, points[some], (waves_rule, rule), Room.empty())
+        out[some] = near_parts(record, field, points[some], (waves_rule, rule), RayRoom.empty())
 
     share_rows(work, near.size, 32)
     if far.any():  # the far field is compiled at its first use only

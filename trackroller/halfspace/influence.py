@@ -43,7 +43,7 @@ class GridLoads(NamedTuple):
     kind: int
 
 
-class Box(NamedTuple):
+class LoadedBox(NamedTuple):
     """Loaded rectangle in grid spacings."""
 
     x_min: float
@@ -61,7 +61,7 @@ class CornerLoads(NamedTuple):
     length: float
     near: GridLoads
     far: GridLoads
-    box: Box
+    box: LoadedBox
     reach: float
 
 
@@ -114,7 +114,7 @@ def corner_loads(x: Array, y: Array, tractions: Array) -> CornerLoads:
         if corners.places.size
         else (np.zeros(2), np.zeros(2))
     )
-    box = Box(*(float(v) for v in (low[0], high[0], low[1], high[1])))
+    box = LoadedBox(*(float(v) for v in (low[0], high[0], low[1], high[1])))
     return CornerLoads(length, corners, _kept(across, along, far, POINT_FORCES), box, FAR)
 
 

@@ -18,7 +18,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from trackroller.halfspace.ellipse import FIELD, Room, fields_of, near_parts, refinement, unit_rule
+from trackroller.halfspace.ellipse import (
+    FIELD,
+    RayRoom,
+    fields_of,
+    near_parts,
+    refinement,
+    unit_rule,
+)
 from trackroller.halfspace.peak_settings import PeakSettings
 from trackroller.halfspace.rigid_slip import pole_offset, slip_zeros
 from trackroller.halfspace.stress import FRICTION_SIGNS, von_mises_of_parts
@@ -311,7 +318,7 @@ class Target(NamedTuple):
         Units of normalised points [mm], see `lengths`.
     slender : bool
         True if the quadrature rules of the patch are refined.
-    room : Room
+    room : RayRoom
         Work space of the thread.
     """
 
@@ -320,7 +327,7 @@ class Target(NamedTuple):
     poisson_ratio: np.ndarray
     unit: np.ndarray
     slender: bool
-    room: Room
+    room: RayRoom
 
 
 class Climbs(NamedTuple):
@@ -909,7 +916,7 @@ def _found(patches: SearchedPatches, rules: Rules, effort: Effort) -> Peak:
     peaks = np.zeros((len(patches.rows), 2, 6))
 
     def work(first: int, last: int) -> None:
-        _search_rows(first, last, patches, rules, effort, Room.empty(), peaks)
+        _search_rows(first, last, patches, rules, effort, RayRoom.empty(), peaks)
 
     share_rows(work, len(peaks), 2, 64)
     return Peak(*np.moveaxis(peaks, 2, 0))

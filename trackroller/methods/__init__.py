@@ -20,7 +20,7 @@ from trackroller.methods.morris import Morris
 from trackroller.methods.optimise import Optimise
 from trackroller.methods.saltelli import Saltelli
 from trackroller.methods.sobol import Sobol
-from trackroller.methods.table import Table
+from trackroller.methods.table import GivenTable
 
 _FILES: tuple[type[Method], ...] = (
     Grid,
@@ -32,7 +32,7 @@ _FILES: tuple[type[Method], ...] = (
     BoxBehnken,
     PlackettBurman,
     InnerOuter,
-    Table,
+    GivenTable,
     Optimise,
 )
 for _method in _FILES:

@@ -10,7 +10,7 @@ from trackroller.methods.factor import Factor
 from trackroller.methods.sample import Sample
 
 
-class Table(Sample):
+class GivenTable(Sample):
     """Rows of a CSV file or workbook; nothing is drawn."""
 
     name = "table"

@@ -44,12 +44,12 @@ class Stored(str):
     __slots__ = ()
 
 
-class Refused(str):
+class RefusedCell(str):
     """The text of a cell that the program would read otherwise than a person, with what is allowed
     and a remedy.
     """
 
-    def __new__(cls, text: str, allowed: str, remedy: str) -> Refused:
+    def __new__(cls, text: str, allowed: str, remedy: str) -> RefusedCell:
         """Return the cell with its message."""
         cell = super().__new__(cls, text)
         cell.message = (allowed, remedy)
@@ -188,7 +188,7 @@ def plain_column(cells: Sequence[str], signs: Collection[str]) -> Sequence[str]:
     """Return the cells of a column of numbers as `plain` does, but fast where all are plain numbers
     already.
 
-    Ambiguous cells become `Refused`.
+    Ambiguous cells become `RefusedCell`.
     """
     if _are_plain(cells, signs):
         return cells
@@ -228,17 +228,17 @@ def _are_plain(cells: Sequence[str], signs: Collection[str]) -> bool:
 
 
 def _plain_or_refused(cell: str, signs: Collection[str]) -> str:
-    if isinstance(cell, Refused):
+    if isinstance(cell, RefusedCell):
         return cell
     try:
         return plain_cell(cell, signs)
     except AmbiguousNumber as exc:
-        return Refused(cell, str(exc), exc.remedy)
+        return RefusedCell(cell, str(exc), exc.remedy)
 
 
 def is_number(cell: str) -> bool:
     """Return whether a cell holds a number without unit."""
-    if isinstance(cell, Refused):
+    if isinstance(cell, RefusedCell):
         parts = None
     else:
         parts = _parts(_tidy(cell))
@@ -251,7 +251,7 @@ def plain_labels(cells: Sequence[str], signs: Collection[str]) -> Sequence[str]:
 
     Other columns are returned as they are: `00123`, `3E5`, `1.10` and ambiguous numbers are labels.
     """
-    if any(isinstance(cell, Refused) for cell in cells):
+    if any(isinstance(cell, RefusedCell) for cell in cells):
         return cells
     own = decimal_signs(cells)
     if len(own) > 1:
@@ -272,7 +272,9 @@ def plain_labels(cells: Sequence[str], signs: Collection[str]) -> Sequence[str]:
 def _is_written_as(cell: str, number: str) -> bool:
     """Return whether a cell is written as its number is, but for the decimal sign."""
     return (
-        not isinstance(number, Refused) and number == cell.replace(",", ".") and _reads_back(number)
+        not isinstance(number, RefusedCell)
+        and number == cell.replace(",", ".")
+        and _reads_back(number)
     )
 
 

@@ -84,7 +84,7 @@ class _Truth:
 
 
 @dataclass(frozen=True)
-class Comparison:
+class Relation:
     """One comparison of a named quantity with a limit, as written.
 
     Parameters
@@ -195,7 +195,7 @@ def condition(text: str, values: Mapping[str, Any], field: str = "constraints") 
     return np.asarray(result.holds & result.known)
 
 
-def comparisons(text: str, field: str) -> tuple[Comparison, ...]:
+def comparisons(text: str, field: str) -> tuple[Relation, ...]:
     """Split a condition into comparisons joined by `or`.
 
     Parameters
@@ -207,7 +207,7 @@ def comparisons(text: str, field: str) -> tuple[Comparison, ...]:
 
     Returns
     -------
-    tuple of Comparison
+    tuple of Relation
         The comparisons in the order of the text.
 
     Raises
@@ -233,7 +233,7 @@ def comparisons(text: str, field: str) -> tuple[Comparison, ...]:
             )
         value = ast.unparse(part.left)
         compared.append(
-            Comparison(value, _COMPARE[type(part.ops[0])][0], ast.unparse(part.comparators[0]))
+            Relation(value, _COMPARE[type(part.ops[0])][0], ast.unparse(part.comparators[0]))
         )
     return tuple(compared)
 

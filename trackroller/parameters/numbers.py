@@ -7,7 +7,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from trackroller.damage import LIMITS, verdict, with_limits
+from trackroller.damage import LIMITS, first_limit, with_limits
 from trackroller.numerics.parameter import Parameter
 
 POSITIVE: dict[str, Any] = {"lower": 0.0, "open_lower": True}
@@ -134,7 +134,10 @@ _ALL = (
 # They change lives and utilisations; forces and stresses do not depend on them.
 OF_LIMITS: dict[str, Parameter] = {
     own.name: own
-    for own in (*(own for limit in LIMITS.values() for own in limit.parameters), verdict.POSITION)
+    for own in (
+        *(own for limit in LIMITS.values() for own in limit.parameters),
+        first_limit.POSITION,
+    )
 }
 PARAMETERS: dict[str, Parameter] = with_limits(
     {p.name: p for p in _ALL}, OF_LIMITS.values(), "a parameter"

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from trackroller.damage import LIMITS, verdict
+from trackroller.damage import LIMITS, first_limit
 from trackroller.damage.own import hint
 from trackroller.errors import InputError, unknown_name
 from trackroller.parameters.accuracy import QUANTITIES
@@ -208,7 +208,7 @@ class Option:
 _OPTIONS = (
     Option(
         "outputs",
-        ("forces", "contact", "peak_stress", "life", verdict.GROUP),
+        ("forces", "contact", "peak_stress", "life", first_limit.GROUP),
         "groups of results; a group is computed only if it is asked for",
         {
             "forces": "forces, moments and longitudinal creepage",
@@ -218,7 +218,7 @@ _OPTIONS = (
             "tractions": "pressure, shear and creepage over each patch",
             "subsurface": "stresses on two sections through the peak",
             **{limit.group: limit.meaning for limit in LIMITS.values() if limit.meaning},
-            verdict.GROUP: verdict.MEANING,
+            first_limit.GROUP: first_limit.MEANING,
         },
         kind="words",
         required=True,
@@ -321,7 +321,7 @@ _OPTIONS = (
         "not_checked",
         (),
         "limits that the group limits leaves out",
-        {own.name: own.title for own in LIMITS.values() if own.verdict is not None},
+        {own.name: own.title for own in LIMITS.values() if own.use is not None},
         kind="words",
     ),
     Option(

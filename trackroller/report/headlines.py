@@ -21,30 +21,33 @@ Keys of `Answer.headline`; a key that is missing, None, NaN or empty is left out
 `body`             `roller`, `guide` or ''
 `error`            told error of the leader's output [1]
 `extrapolated`     whether the leader's life lies beyond its data
-`not_held`         {count, of, where}: conditions that no candidate holds; `where` as "all 12 driven
-                   at friction 0.05"
+`not_held`         {count, of, where}: conditions in which the model judges all candidates and none
+                   holds, out of the judged ones; `where` as "all 12 driven at friction 0.05"
 `why`              of `cannot_tell`: a key of `CAUSES`
-`not_judged`       {count, of, where}: the same for conditions that the model cannot judge
+`not_judged`       {count, of, where}: conditions that no candidate surely holds, and in which the
+                   model cannot judge some candidate
 `elsewhere`        whether the leader holds all other conditions, so that the headline says
                    "elsewhere"
 `exceeded`         {limit, body, use [1], hours}: the worst check of the leader above 100 %
-`second`           {limit, verdict}: second model ("rating") that turns the leader's verdict; a
-                   state of `STATES`
-`measure`          {what, of, on, turn, units, low, high}: placeholder, its body, the other one,
-                   where the leader turns
+`second`           {limit, verdict, low, high}: second model ("rating") that turns the leader's
+                   verdict; a state of `STATES`; its life at the worst condition [h]
+`measure`          {what, of, on, turn, units, low, high}: placeholder, its material, the other one,
+                   where the leader turns, and its range
 `give`             {what}: load that was not given, in words: "the motor force"
-`nearest`          {name (as one of `names`), holds, of, meets, perhaps, low, fails}: `meets` and
-                   `perhaps` count the conditions that surely meet it and that may; `fails` says
-                   where it surely fails, in words
+`nearest`          {name (as one of `names`), holds, judged, of, meets, perhaps, low, fails}:
+                   `meets` and `perhaps` count the conditions that surely meet it and that may;
+                   `judged` those that the model judges; `fails` says where it surely fails, in
+                   words
 `up_to`, `from_on`  levels of the single numeric choice between which all conditions meet the
                    requirement
 `share`, `share_low`, `share_high`  share of the drawn conditions that meets it, Wilson's interval
                    [1]
-`wanted`, `n`      share that is wanted [1]; drawn conditions
+`wanted`, `n`, `judged`  share that is wanted [1]; drawn conditions; those that the model judges
 =================  =================================================================================
 
 `how sure`, by `Answer.kind` (`share`, `count`, `cannot_tell` with `why`): `share`, `share_low`,
-`share_high`, `wanted`, `n` of drawn conditions, or `meets`, `of` of listed loads; and `low`,
+`share_high`, `wanted`, `n` of drawn conditions, or `meets`, `of` of listed loads, and `judged` of
+both; and `low`,
 `high`, `ends`, `ends_high`, `body`, `error`, `extrapolated`, `exceeded`, `second`, `not_held` as
 above.
 
@@ -62,12 +65,12 @@ it, cases that may, all cases.
 they are others.
 
 `best`, by `Answer.kind` (`one`, `front`, `front_required`; `solve_finer`, `open`, `none` with
-`nearest`): `designs`, a list of dict: `name` (as one of `names`), `at` (`corner`, `knee` or ''),
-`goals` and `required` (lists of {words, units, value}; `required` holds outputs of requirements
-that are no goals; a goal with `is_choice` stands in the name), `stopped` (search stopped before
-this end); `binds` (requirement, limit or end of a range in words), `accuracy` (of these numbers),
-`extrapolated`, `exceeded`, `second`, and of drawn conditions `share`, `share_low`, `share_high`,
-`wanted`, `n` as above.
+`nearest`, of `open` also `measure` as above): `designs`, a list of dict: `name` (as one of
+`names`), `at` (`corner`, `knee` or ''), `goals` and `required` (lists of {words, units, value};
+`required` holds outputs of requirements that are no goals; a goal with `is_choice` stands in the
+name), `stopped` (search stopped before this end); `binds` (requirement, limit or end of a range in
+words), `accuracy` (of these numbers), `extrapolated`, `exceeded`, `second`, and of drawn conditions
+`share`, `share_low`, `share_high`, `wanted`, `n` as above.
 
 `roller`, `spectrum`, `wear`, `carriage`: see `roller_answer`, `spectrum_answer`, `wear_answer` and
 `carriage_answer` in `trackroller.results`.
@@ -144,9 +147,9 @@ def decide(answer: Answer) -> Headline:
     """Say which candidate to build, or why the study cannot say so."""
     head = answer.headline
     lead = DECISIONS[answer.kind](answer)
-    if head.get("not_held") and head.get("elsewhere") and answer.kind in ELSEWHERE:
-        lost = f"None holds in {_part(head['not_held'], 'conditions')}"
-        lead = f"{lost}; elsewhere {ELSEWHERE[answer.kind](answer)}"
+    lost = _lost(head)
+    if lost and head.get("elsewhere") and answer.kind in ELSEWHERE:
+        lead = capital(f"{listing(lost)}; elsewhere {ELSEWHERE[answer.kind](answer)}")
         clauses = [_value_said(answer), *_goals_said(head), *_other_rules(head)]
         return Headline(lead, f": {'; '.join(clauses)}.")
     shares = _known(head, "share") and bool(answer.required)
@@ -155,6 +158,24 @@ def decide(answer: Answer) -> Headline:
     else:
         clauses = _lasts(answer)
     return _joined(lead, [*_up_to(answer), *clauses, *_nearest(answer)])
+
+
+def _lost(head: Mapping[str, Any]) -> list[str]:
+    """Return in how many judged conditions no candidate holds, and how many are not judged."""
+    failed = head.get("not_held")
+    unknown = head.get("not_judged")
+    texts = []
+    if failed:
+        what = "conditions"
+        if unknown:
+            what = "judged conditions"
+        texts.append(f"none holds in {_part(failed, what)}")
+    if unknown:
+        verb = "are"
+        if unknown["count"] == 1:
+            verb = "is"
+        texts.append(f"{_part(unknown, 'conditions')} {verb} not judged")
+    return texts
 
 
 def _build(answer: Answer) -> str:
@@ -196,19 +217,41 @@ def _measure(answer: Answer) -> str:
     measure = answer.headline.get("measure")
     if not measure:
         return f"Open whether {_leader(answer)} meets it"
+    return f"Measure the {ranged_value(measure)}"
+
+
+def ranged_value(measure: Mapping[str, Any]) -> str:
+    """Return a value that is known within a range: its name, material and range."""
     of = ""
     if measure.get("of"):
         of = f" of {measure['of']}"
+    if measure["what"] == "tests":
+        return f"S-N line{of} (band of its tests)"
     on = ""
     if measure.get("on"):
         on = f" on {measure['on']}"
-    return f"Measure the {plain(measure['what'])}{of}{on}"
+    ends = []
+    if _known(measure, "low") and _known(measure, "high"):
+        ends = [f"{grouped(measure['low'], 2)} to {_with_unit(measure['high'], measure)}"]
+    return _noted(f"{plain(measure['what'])}{of}{on}", ends)
+
+
+def _with_unit(value: float, measure: Mapping[str, Any]) -> str:
+    """Return a value of a placeholder with its unit."""
+    text = grouped(value, 2)
+    if measure.get("units") in (None, "", "1", "-"):
+        return text
+    return f"{text} {unit_text(measure['units'])}"
 
 
 def _give(answer: Answer) -> str:
-    lead = f"Give {answer.headline['give']['what']}"
-    if answer.headline.get("not_held"):
-        lead += f": without it {_part(answer.headline['not_held'], 'conditions')} are lost"
+    head = answer.headline
+    lead = f"Give {head['give']['what']}"
+    if head.get("not_held"):
+        what = "conditions"
+        if head.get("not_judged"):
+            what = "judged conditions"
+        lead += f": without it {_part(head['not_held'], what)} are lost"
     return lead
 
 
@@ -316,7 +359,14 @@ def _shares(answer: Answer) -> list[str]:
     notes = []
     if _known(head, "wanted"):
         notes = [f"{percent(head['wanted'])} are wanted"]
-    return [share, *notes, *_other_rules(head)]
+    return [share, *notes, *_not_judged_draws(head), *_other_rules(head)]
+
+
+def _not_judged_draws(head: Mapping[str, Any]) -> list[str]:
+    """Return how many drawn conditions the model does not judge; their lives count as missed."""
+    if not _known(head, "judged") or head["judged"] == head["n"]:
+        return []
+    return [f"{head['n'] - head['judged']:,} of them not judged"]
 
 
 def _up_to(answer: Answer) -> list[str]:
@@ -343,7 +393,7 @@ def _nearest(answer: Answer) -> list[str]:
     if answer.required:
         clauses = _reached(near)
     else:
-        clauses = [f"holds {near['holds']} of {near['of']} conditions"]
+        clauses = [f"holds {near['holds']} of {near['of']} conditions{_judged_of(near)}"]
     if _known(near, "low") and near["low"] > 0 and near["holds"] == near["of"]:
         clauses[0] += f", {_output(answer, near['low'])} at the worst"
     fails = _short(near.get("fails"))
@@ -356,7 +406,14 @@ def _nearest(answer: Answer) -> list[str]:
 
 def _reached(near: Mapping[str, Any]) -> list[str]:
     """Return in how many conditions the nearest design meets the requirement."""
-    return [f"meets {_met_count(near)} of {near['of']} conditions"]
+    return [f"meets {_met_count(near)} of {near['of']} conditions{_judged_of(near)}"]
+
+
+def _judged_of(head: Mapping[str, Any]) -> str:
+    """Return how many conditions the model judges, behind a count of all of them; '' for all."""
+    if not _known(head, "judged") or head["judged"] == head["of"]:
+        return ""
+    return f", {head['judged']:,} of them judged"
 
 
 def _met_count(head: Mapping[str, Any]) -> str:
@@ -372,10 +429,7 @@ def _turn(head: Mapping[str, Any]) -> list[str]:
     measure = head.get("measure")
     if not measure or not _known(measure, "turn"):
         return []
-    units = ""
-    if measure.get("units") not in (None, "", "1", "-"):
-        units = f" {unit_text(measure['units'])}"
-    return [f"the answer turns at {grouped(measure['turn'], 2)}{units}"]
+    return [f"the answer turns at {_with_unit(measure['turn'], measure)}"]
 
 
 def how_sure(answer: Answer) -> Headline:
@@ -388,13 +442,14 @@ def how_sure(answer: Answer) -> Headline:
         notes = []
         if _known(head, "wanted"):
             notes = [f"{percent(head['wanted'])} are wanted"]
-        clauses = [*notes, *_worst(answer), *_other_rules(head)]
+        clauses = [*notes, *_not_judged_draws(head), *_worst(answer), *_other_rules(head)]
         end = "."
         if clauses:
             end = f"; {'; '.join(clauses)}."
         return Headline(lead, end)
     named = _name(answer, _first(head.get("names")))
-    lead = capital(f"{named} meets {head['meets']:,} of {head['of']:,} loads".strip())
+    count = f"{head['meets']:,} of {head['of']:,} loads{_judged_of(head)}"
+    lead = capital(f"{named} meets {count}".strip())
     return _joined(lead, [*_worst(answer), *_other_rules(head), *_required(answer)])
 
 
@@ -543,9 +598,11 @@ def _without_design(answer: Answer) -> Headline:
     near = answer.headline.get("nearest")
     if answer.kind == "none" or not near:
         return _joined(_none(answer), _nearest(answer))
-    only = "A range leaves"
-    if answer.kind == "solve_finer":
-        only = "Solve finer: only the error leaves"
+    only = "Solve finer: only the error leaves"
+    if answer.kind == "open":
+        only = f"The range of the {lowered(answer.required[0].words)} leaves"
+        if answer.headline.get("measure"):
+            only = f"{capital(ranged_value(answer.headline['measure']))} leaves"
     return _joined(
         f"{only} {_name(answer, near['name'])} open", [*_reached(near), *_required(answer)]
     )
@@ -1171,7 +1228,10 @@ def _other_rules(head: Mapping[str, Any]) -> list[str]:
             "missed": "misses",
             "none": "does not judge",
         }
-        clauses.append(f"the {second['limit']} {verb[second['verdict']]}")
+        life = []
+        if second["verdict"] == "open" and _known(second, "low"):
+            life = [f"{carried_range(second['low'], second['high'])} h"]
+        clauses.append(_noted(f"the {second['limit']} {verb[second['verdict']]}", life))
     exceeded = head.get("exceeded")
     if exceeded:
         clauses.append(f"{exceeded['limit']} exceeded ({percent(exceeded['use'])})")

@@ -12,7 +12,7 @@ import re
 import shutil
 import subprocess
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 
 _KINDS = {".svg": "image/svg+xml", ".png": "image/png"}
 _BROWSERS = ("chromium", "chromium-browser", "google-chrome", "chrome", "msedge")
+_TOGETHER = 10_000  # values and texts of a template that make one piece
 _PATIENCE = 300  # seconds that printing may take
 _PRINT = [
     *("--headless", "--disable-gpu", "--no-first-run"),
@@ -47,6 +48,16 @@ def render(template: str, content: dict[str, Any], **filters: Callable[..., Any]
         Filters of the template beside `marked` and `symbols`, by name.
     """
     return _template(template, tuple(filters.items())).render(content)
+
+
+def pieces(template: str, content: dict[str, Any], **filters: Callable[..., Any]) -> Iterator[str]:
+    """Yield the text of a template in pieces, so that a long one is never in memory as a whole.
+
+    Parameters are those of `render`.
+    """
+    stream = _template(template, tuple(filters.items())).stream(content)
+    stream.enable_buffering(_TOGETHER)
+    yield from stream
 
 
 @functools.cache

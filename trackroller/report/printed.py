@@ -8,9 +8,15 @@ from dataclasses import replace
 
 from trackroller.report.headlines import headline_of, warning_line
 from trackroller.report.numbers import on_duty
-from trackroller.report.tables.rows import MOST_ROWS, MOST_SHOWN, Rows, rows_before_fold, rows_of
+from trackroller.report.tables.rows import (
+    MOST_ROWS,
+    MOST_SHOWN,
+    ShownTable,
+    rows_before_fold,
+    rows_of,
+)
 from trackroller.report.terminal import print_table, print_text
-from trackroller.results.answer import Answer, Part
+from trackroller.results.answer import Answer, FurtherTable
 
 
 def print_answer(answer: Answer) -> None:
@@ -44,7 +50,7 @@ def print_below_headline(answer: Answer) -> None:
             print_text(warning_line(caution))
 
 
-def print_part(answer: Answer, part: Part) -> None:
+def print_part(answer: Answer, part: FurtherTable) -> None:
     """Print a further table of an answer with its note."""
     with on_duty(answer.facts.get("duty")):
         own = replace(answer, table=part.table, columns=part.columns, required=())
@@ -53,7 +59,7 @@ def print_part(answer: Answer, part: Part) -> None:
             print_text(part.note)
 
 
-def _print_rows(table: Rows, title: str | None = None, most: int = MOST_ROWS) -> None:
+def _print_rows(table: ShownTable, title: str | None = None, most: int = MOST_ROWS) -> None:
     """Print the first rows of a table, and what all rows share."""
     heads = [f"{head.title} [{head.unit}]" if head.unit else head.title for head in table.heads]
     rows = [[cell.text for cell in row] for row in table.cells[:most]]

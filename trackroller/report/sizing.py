@@ -9,12 +9,18 @@ from typing import TYPE_CHECKING, Any
 from trackroller.numerics.units import PLAIN
 from trackroller.parameters import PARAMETERS
 from trackroller.parameters.example import not_given_text
-from trackroller.study.design.entries import SIZES
+from trackroller.study.design.factor_names import SIZES
 from trackroller.study.file.shelf import ROLLER
 
 if TYPE_CHECKING:
     from trackroller.results.size import Sizing
 
+# what a ratio of the table of rollers counts
+RATIOS = {
+    "life_ratio": "times the required life",
+    "temperature_ratio": "times its temperature rise is permitted",
+    "wear_ratio": "times the required life to the wear depth",
+}
 OWN_UNITS = {"life_hours": "h"}  # of columns that a sizing adds
 
 
@@ -23,19 +29,35 @@ def lead_of(sizing: Sizing) -> str:
     if not sizing.least:
         return "No roller of the shelf is surely enough."
     row = sizing.table.set_index(ROLLER).loc[sizing.least].to_dict()
+    parts = _reached(sizing, row)
+    number = int((sizing.table["verdict"] == "enough").sum())
+    leads = "has the largest load ratio"
+    if sizing.least_of:
+        leads = "is the least"
+    elif "life_hours" in row:
+        leads = "lasts longest"
+    of = f"of {number} that are enough"
+    if number == 1:
+        leads = "alone is enough"
+        of = ""
+    return f"{sizing.least} {leads} {of}".rstrip() + f": {', '.join(parts)}."
+
+
+def _reached(sizing: Sizing, row: Mapping[str, Any]) -> list[str]:
+    """Return what a roller reaches of what is required, and a second model that says otherwise."""
     parts = []
     if sizing.least_of:
         parts.append(f"{sizing.least_of} {row[sizing.least_of]:g}")
-    if "life_ratio" in row:
-        parts.append(f"{row['life_ratio']:.3g} times the required life")
+    for name, words in RATIOS.items():
+        if math.isfinite(row.get(name, math.nan)):
+            parts.append(f"{row[name]:.3g} {words}")
     if "overload" in row:
         parts.append("within all limits at the forces times the safety")
     if math.isfinite(row.get("load_ratio", math.nan)):
         parts.append(f"{row['load_ends']} at {row['load_ratio']:.3g} times the forces")
     if row.get("second_model"):
         parts.append(f"but the {row['second_model']}")
-    number = int((sizing.table["verdict"] == "enough").sum())
-    return f"{sizing.least} is the least of {number} that are enough: {', '.join(parts)}."
+    return parts
 
 
 def notes_of(sizing: Sizing) -> list[str]:

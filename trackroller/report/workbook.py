@@ -5,11 +5,13 @@ workbooks.
 from __future__ import annotations
 
 import csv
+import itertools
 import json
 import math
 import re
 import zipfile
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +19,7 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from trackroller.damage.verdict import STATES
+from trackroller.damage.first_limit import STATES
 from trackroller.errors import InputError
 from trackroller.files import inert_cell
 from trackroller.parameters import REGIME_LABELS
@@ -60,7 +62,7 @@ def export(tables: Sequence[Table], folder: Path) -> list[Path]:
             )
         paths.append(path)
     book = folder / "tables.xlsx"
-    put(book, lambda beside: _save(beside, tables))
+    put(book, lambda beside: _save(beside, map(_Sheet.of, tables)))
     return [*paths, book]
 
 
@@ -82,10 +84,8 @@ def write_answer(answer: Answer, folder: Path) -> list[Path]:
     folder.mkdir(parents=True, exist_ok=True)
     rows = _rows_sheet(answer)
     book, table, record_file = (folder / f"answer.{ending}" for ending in ("xlsx", "csv", "json"))
-    put(
-        book,
-        lambda beside: _save(beside, [_headline_sheet(answer), rows, *_further_sheets(answer)]),
-    )
+    sheets = [_headline_sheet(answer), rows, *_further_sheets(answer)]
+    put(book, lambda beside: _save(beside, map(_Sheet.of, sheets)))
     with table.open("w", newline="", encoding="utf-8") as file:
         csv.writer(file).writerows(
             [inert_cell(value) for value in row] for row in [rows.heads, *rows.rows]
@@ -188,7 +188,11 @@ def _further_sheets(answer: Answer) -> list[Table]:
     return sheets
 
 
-MOST_ROWS = 1_048_575  # of a sheet below its head, by the format XLSX
+MOST_ROWS = 1_048_574  # of a sheet below its names and units, by the format XLSX
+# ASSUME: a sheet of more cells, 1 GB of XML, takes a spreadsheet minutes and more memory than most
+# machines have
+MOST_CELLS = 20_000_000
+BLOCK = 4_096  # rows that are texts at the same time
 
 
 def write_cases(table: pd.DataFrame, path: Path) -> Path:
@@ -216,15 +220,28 @@ def write_cases(table: pd.DataFrame, path: Path) -> Path:
         raise InputError(
             "cases", str(path), "a file whose name ends in .xlsx or .csv", "Change the name."
         )
-    if len(table) > MOST_ROWS:
-        remedy = "Write them as .csv."
-        raise InputError("cases", len(table), f"at most {MOST_ROWS:,} cases in a workbook", remedy)
+    _check_size(table)
     names = list(map(str, table.columns))
-    columns = [in_words(str(name), table[name].astype(object).tolist()) for name in table]
-    sheet = Table(
-        "cases", "Cases", names, [list(map(unit_of, names)), *map(list, zip(*columns, strict=True))]
-    )
-    return put(path, lambda beside: _save(beside, [sheet], heads=2))
+    sheet = _Sheet("cases", (names, list(map(unit_of, names))), _rows_of_cases(table), len(table))
+    return put(path, lambda beside: _save(beside, [sheet]))
+
+
+def _check_size(table: pd.DataFrame) -> None:
+    """Refuse cases that a sheet cannot hold, or that make a workbook which no spreadsheet opens."""
+    remedy = "Write them as .csv."
+    if len(table) > MOST_ROWS:
+        raise InputError("cases", len(table), f"at most {MOST_ROWS:,} cases in a workbook", remedy)
+    if table.size > MOST_CELLS:
+        cells = f"{len(table):,} cases of {table.shape[1]} columns"
+        raise InputError("cases", cells, f"at most {MOST_CELLS:,} cells in a workbook", remedy)
+
+
+def _rows_of_cases(table: pd.DataFrame) -> Iterator[Sequence[Any]]:
+    """Yield the cells of each case, with words in place of the numbers of flags."""
+    for start in range(0, len(table), BLOCK):
+        block = table.iloc[start : start + BLOCK]
+        columns = [in_words(str(name), block[name].astype(object).tolist()) for name in block]
+        yield from zip(*columns, strict=True)
 
 
 def write_results(results: Results, path: Path) -> Path:
@@ -289,7 +306,7 @@ def write_roller(ds: xr.Dataset, path: Path) -> Path:
     limits = _rows_sheet(answer)
     sheets.append(Table("limits", "Limits", limits.heads, limits.rows))
     sheets += [_headline_sheet(answer), *_further_sheets(answer)]
-    return put(path, lambda beside: _save(beside, sheets))
+    return put(path, lambda beside: _save(beside, map(_Sheet.of, sheets)))
 
 
 def _plain(value: Any) -> Any:
@@ -361,36 +378,64 @@ _WORDS: dict[str, Callable[[int], str]] = {
 } | {"regime": _word(REGIME_LABELS), "validity": _flags_set, "at_surface": _word(("no", "yes"))}
 
 
-def _save(path: Path, tables: Sequence[Table], heads: int = 1) -> None:
-    """Write a workbook with one sheet a table, whose first lines stay in sight and whose last head
-    filters.
+@dataclass(frozen=True)
+class _Sheet:
+    """One sheet of a workbook.
+
+    Attributes
+    ----------
+    name : of the sheet
+    heads : its first lines, which stay in sight; the last of them filters
+    rows : cells of each further line, taken once
+    count : number of these lines
     """
-    names = [re.sub(r"[\[\]:*?/\\]", " ", table.name)[:31] for table in tables]
-    parts: dict[str, tuple[str, list[Any]]] = {
-        "[Content_Types].xml": ("types", []),
-        "_rels/.rels": ("root", []),
-        "xl/workbook.xml": ("book", []),
-        "xl/_rels/workbook.xml.rels": ("links", []),
+
+    name: str
+    heads: Sequence[Sequence[str]]
+    rows: Iterable[Sequence[Any]]
+    count: int
+
+    @classmethod
+    def of(cls, table: Table) -> _Sheet:
+        """Return the sheet of a table."""
+        return cls(table.name, [table.heads], table.rows, len(table.rows))
+
+
+def _save(path: Path, sheets: Iterable[_Sheet]) -> None:
+    """Write a workbook; only a block of each sheet is in memory."""
+    by_place = dict(enumerate(sheets, 1))
+    names = [re.sub(r"[\[\]:*?/\\]", " ", sheet.name)[:31] for sheet in by_place.values()]
+    parts: dict[str, dict[str, Any]] = {
+        "[Content_Types].xml": {"part": "types", "names": names},
+        "_rels/.rels": {"part": "root"},
+        "xl/workbook.xml": {"part": "book", "names": names},
+        "xl/_rels/workbook.xml.rels": {"part": "links", "names": names},
     }
-    for i, table in enumerate(tables, 1):
-        parts[f"xl/worksheets/sheet{i}.xml"] = "sheet", [table.heads, *table.rows]
-    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as file:
+    for place, sheet in by_place.items():
+        parts[f"xl/worksheets/sheet{place}.xml"] = _content_of(sheet)
+    with zipfile.ZipFile(path, "w") as file:
         file.comment = b"trackroller"  # which other programs drop as they save the workbook
-        for name, (part, rows) in parts.items():
-            widths = []
-            if rows:
-                widths = [min(max(len(str(value)) + 3, 9), 40) for value in rows[0]]
-            span = f"A{heads}:{_letters(len(widths))}{max(len(rows), heads)}"
-            content = {
-                "part": part,
-                "names": names,
-                "rows": rows,
-                "heads": heads,
-                "widths": widths,
-                "span": span,
-            }
-            text = html.render("workbook.xml.j2", content, figure=_figure, printable=_printable)
-            file.writestr(zipfile.ZipInfo(name, (1980, 1, 1, 0, 0, 0)), text)
+        for name, content in parts.items():
+            info = zipfile.ZipInfo(name, (1980, 1, 1, 0, 0, 0))
+            info.compress_type = zipfile.ZIP_DEFLATED
+            with file.open(info, "w") as into:
+                for text in html.pieces(
+                    "workbook.xml.j2", content, figure=_figure, printable=_printable
+                ):
+                    into.write(text.encode())
+
+
+def _content_of(sheet: _Sheet) -> dict[str, Any]:
+    """Return the variables of the template for a sheet."""
+    heads = len(sheet.heads)
+    widths = [min(max(len(str(name)) + 3, 9), 40) for name in sheet.heads[0]]
+    return {
+        "part": "sheet",
+        "rows": itertools.chain(sheet.heads, sheet.rows),
+        "heads": heads,
+        "widths": widths,
+        "span": f"A{heads}:{_letters(len(widths))}{heads + sheet.count}",
+    }
 
 
 def _letters(column: int) -> str:

@@ -33,7 +33,7 @@ WARNINGS = {  # code -> what it means
     "doubtful": "values that are unusual, or that tests contradict",
     "flagged": "an assumption of the model or an accuracy is not kept",
 }
-# of a candidate; a limit has those of `trackroller.damage.verdict.STATES`
+# of a candidate; a limit has those of `trackroller.damage.first_limit.STATES`
 STATES = ("met", "open", "missed", "none")
 
 
@@ -159,7 +159,7 @@ class Required:
 
 
 @dataclass(frozen=True, eq=False)
-class Part:
+class FurtherTable:
     """A further table of an answer, such as the forces of both contacts or the blocks of a
     spectrum.
 
@@ -219,7 +219,7 @@ class Answer:
     curves: tuple[Curve, ...] = ()
     ends: pd.DataFrame = field(default_factory=pd.DataFrame)
     outputs: pd.DataFrame = field(default_factory=pd.DataFrame)
-    parts: tuple[Part, ...] = ()
+    parts: tuple[FurtherTable, ...] = ()
     picture: Mapping[str, Any] = field(default_factory=dict)
     not_checked: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     not_used: Mapping[str, str] = field(default_factory=dict)
@@ -269,7 +269,7 @@ class Answer:
         return plain
 
 
-def _part(part: Part) -> dict[str, Any]:
+def _part(part: FurtherTable) -> dict[str, Any]:
     """Return a further table as plain values."""
     columns = [vars(column) for column in part.columns]
     return {

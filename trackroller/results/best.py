@@ -1,4 +1,4 @@
-"""The answer of a search: the best design, or the corners and the knee of a front."""
+"""The answer of a search: the best candidate, or the corners and the knee of a front."""
 
 from __future__ import annotations
 
@@ -44,13 +44,14 @@ from trackroller.results.study_facts import (
     given_for_nothing,
     not_given_words,
 )
+from trackroller.results.turning_values import value_behind
 from trackroller.roller.output_names import is_life
 from trackroller.study.design.levels import in_words
 from trackroller.study.file.search import judged_by
 from trackroller.study.outputs import flat
 
 AT_END = 1e-3  # of the range of a choice, within which a value stands at its end
-REASONS = {  # why a design does not hold, as what binds another one
+REASONS = {  # why a candidate does not hold, as what binds another one
     "skids": "skidding",
     "lifts off": "lift-off",
     "breaks": "the tensile strength",
@@ -64,7 +65,7 @@ REQUIRED = "required_{}"  # column of the output of a requirement by its number
 
 @dataclass(frozen=True)
 class _Outcome:
-    """A search with its designs.
+    """A search with its candidates.
 
     Attributes
     ----------
@@ -77,7 +78,7 @@ class _Outcome:
 
     @cached_property
     def judged(self) -> Judged:
-        """Return all gathered designs."""
+        """Return all gathered candidates."""
         return judge(self.results)
 
     @cached_property
@@ -97,7 +98,7 @@ class _Outcome:
 
     @cached_property
     def shares(self) -> list[Shares]:
-        """Return the share of the conditions in which each design meets each requirement."""
+        """Return the share of the conditions in which each candidate meets each requirement."""
         return shares_of(self.results)
 
     @cached_property
@@ -112,15 +113,15 @@ class _Outcome:
 
     @property
     def is_required(self) -> bool:
-        """Return whether the designs have to meet a requirement."""
+        """Return whether the candidates have to meet a requirement."""
         return required(self.results)
 
     @cached_property
     def verdict(self) -> np.ndarray:
-        """Return whether each design meets the requirement, shape (designs,): `met`, `open`,
+        """Return whether each candidate meets the requirement, shape (candidates,): `met`, `open`,
         `missed`, or `none`.
 
-        Optima are judged by their solution at `reference`. `none` stands where a design does not
+        Optima are judged by their solution at `reference`. `none` stands where a candidate does not
         hold in enough conditions to be compared.
         """
         short = shortfall(self.results)
@@ -129,14 +130,14 @@ class _Outcome:
         states = np.where(short == 0, "met", np.where(short < 2, "open", "missed")).astype(object)
         return np.where(self.judged.violation > 0, "none", states)
 
-    def rows(self, design: int) -> slice:
-        """Return the cases of a design."""
+    def rows(self, candidate: int) -> slice:
+        """Return the cases of a candidate."""
         many = int(self.results.design.meta["inner_samples"])
-        return slice(design * many, (design + 1) * many)
+        return slice(candidate * many, (candidate + 1) * many)
 
     @cached_property
     def front(self) -> np.ndarray:
-        """Return the designs that no other one beats, shape (designs,) bool."""
+        """Return the candidates that no other one beats, shape (candidates,) bool."""
         best = self.judged
         return np.asarray(
             (nondominated_ranks(best.costs, best.missed) == 0) & (best.missed == best.missed.min())
@@ -144,13 +145,13 @@ class _Outcome:
 
     @cached_property
     def optima(self) -> dict[int, Mapping[str, Any]]:
-        """Return the optima that were solved at `reference`, by the number of the design."""
+        """Return the optima that were solved at `reference`, by the number of the candidate."""
         return {int(one["design"]): one for one in self.search["optima"]}
 
     @cached_property
     def corners(self) -> dict[int, bool]:
-        """Return the best design in each of several goals, and whether no step improves it, by its
-        number.
+        """Return the best candidate in each of several goals, and whether no step improves it, by
+        its number.
         """
         outcome: dict[int, bool] = {}
         for one in self.search.get("corners", ()):
@@ -161,18 +162,18 @@ class _Outcome:
 
     @property
     def chosen(self) -> int:
-        """Return the recommended design."""
+        """Return the recommended candidate."""
         return int(self.search["recommended"])
 
     @property
     def usable(self) -> bool:
-        """Return whether a design holds in some condition."""
+        """Return whether a candidate holds in some condition."""
         return bool(self.search["optima"])
 
     @cached_property
     def named(self) -> list[int]:
-        """Return the designs of the headline: the recommended one, or both corners and the knee in
-        their order.
+        """Return the candidates of the headline: the recommended one, or both corners and the knee
+        in their order.
         """
         if not self.usable:
             return []
@@ -183,7 +184,7 @@ class _Outcome:
 
     @cached_property
     def shown(self) -> list[int]:
-        """Return the designs of the table: those of the headline, the corners, then the others
+        """Return the candidates of the table: those of the headline, the corners, then the others
         along the first goal.
         """
         others = [number for number in self.optima if number not in (*self.named, *self.corners)]
@@ -208,10 +209,11 @@ def answer_of_search(results: SolvedCases) -> Answer:
     Answer
         Its kind is `one` (one goal), `front` (several goals, no requirement: corners and knee),
         `front_required` (the best that meets the requirement), `solve_finer` (only the error of the
-        solution leaves the requirement open), `open` (a range leaves it open), or `none`: no design
-        holds, or none meets the requirement. The headline holds `designs` (name, goals, `at`,
-        `stopped`), `binds`, `accuracy`, `extrapolated`, `second` and `exceeded`. Where no design is
-        known to meet the requirement, `nearest` stands in place of `designs`.
+        solution leaves the requirement open), `open` (a range leaves it open), or `none`: no
+        candidate holds, or none meets the requirement. The headline holds `designs` (name, goals,
+        `at`, `stopped`), `binds`, `accuracy`, `extrapolated`, `second` and `exceeded`. Where no
+        candidate is known to meet the requirement, `nearest` stands in place of `designs`;
+        `measure` of `open` is the value whose range leaves it open.
 
     Raises
     ------
@@ -269,7 +271,7 @@ def _headline(outcome: _Outcome, kind: str) -> dict[str, Any]:
     """Return the numbers and names of the headline."""
     head: dict[str, Any] = {"designs": []}
     if kind in ("one", "front", "front_required"):
-        head["designs"] = [_design(outcome, number) for number in outcome.named]
+        head["designs"] = [_candidate(outcome, number) for number in outcome.named]
     if not outcome.usable:
         return head
     chosen = outcome.chosen
@@ -281,6 +283,10 @@ def _headline(outcome: _Outcome, kind: str) -> dict[str, Any]:
         "count": int(outcome.front.sum()),
     }
     if not head["designs"]:
+        if kind == "open":
+            head["measure"] = value_behind(
+                outcome.results, outcome.judges, _numbers(outcome, chosen)
+            )
         return head | {"nearest": _nearest(outcome, chosen)}
     if outcome.is_required and _is_drawn(outcome):
         own = _requirement(outcome, chosen)
@@ -297,8 +303,8 @@ def _headline(outcome: _Outcome, kind: str) -> dict[str, Any]:
     return head
 
 
-def _design(outcome: _Outcome, number: int) -> dict[str, Any]:
-    """Return a design of the headline: its choices and its goals at `reference`."""
+def _candidate(outcome: _Outcome, number: int) -> dict[str, Any]:
+    """Return a candidate of the headline: its choices and its goals at `reference`."""
     at = ""
     if len(outcome.named) > 1:
         at = "knee"
@@ -326,8 +332,8 @@ def _design(outcome: _Outcome, number: int) -> dict[str, Any]:
 
 
 def _nearest(outcome: _Outcome, number: int) -> dict[str, Any]:
-    """Return the design that comes nearest to the requirement: its name, where it holds and meets,
-    and its low end.
+    """Return the candidate that comes nearest to the requirement: its name, where it holds and
+    meets, and its low end.
     """
     rows = outcome.rows(number)
     meets = min((own.sure[number] for own in outcome.shares), default=0.0)
@@ -341,6 +347,7 @@ def _nearest(outcome: _Outcome, number: int) -> dict[str, Any]:
     return {
         "name": _name(outcome, number),
         "holds": int(outcome.results.holds[rows].sum()),
+        "judged": int(outcome.ranges.judged[rows].sum()),
         "meets": round(float(meets) * of),
         "perhaps": round(float(perhaps) * of),
         "of": of,
@@ -349,15 +356,21 @@ def _nearest(outcome: _Outcome, number: int) -> dict[str, Any]:
     }
 
 
+def _numbers(outcome: _Outcome, number: int) -> np.ndarray:
+    """Return the numbers of the cases of a design, shape (k,)."""
+    rows = outcome.rows(number)
+    return np.arange(rows.start, rows.stop)
+
+
 def _name(outcome: _Outcome, number: int) -> dict[str, Any]:
-    """Return the choices of a design, those that have one value in all designs left out."""
+    """Return the choices of a candidate, those that have one value in all candidates left out."""
     own = choices_of(outcome.results, number)
     varied = [name for name in own if _varies(outcome, name)]
     return {name: _level(name, own[name]) for name in varied or own}
 
 
 def _varies(outcome: _Outcome, name: str) -> bool:
-    """Return whether a choice has several values among the designs of the table."""
+    """Return whether a choice has several values among the candidates of the table."""
     texts = {str(choices_of(outcome.results, number)[name]) for number in outcome.shown}
     return len(texts) > 1 or len(outcome.shown) == 1
 
@@ -381,7 +394,7 @@ def _is_stopped(outcome: _Outcome, number: int) -> bool:
 
 
 def _table(outcome: _Outcome) -> tuple[pd.DataFrame, tuple[Column, ...]]:
-    """Return one row a design that was solved at `reference`, with its columns."""
+    """Return one row a candidate that was solved at `reference`, with its columns."""
     table = pd.DataFrame([_row(outcome, number) for number in outcome.shown])
     columns = [*_choice_columns(outcome), *_goal_columns(outcome), *_required_columns(outcome)]
     if outcome.is_required:
@@ -549,7 +562,7 @@ def _range(outcome: _Outcome, goal: str, number: int) -> tuple[float, float]:
 
 
 def _corner(outcome: _Outcome, number: int) -> str:
-    """Return whether a design that ends the front, or the optimum of one goal, is solved."""
+    """Return whether a candidate that ends the front, or the optimum of one goal, is solved."""
     if number not in outcome.corners:
         return ""
     if _is_stopped(outcome, number):
@@ -558,7 +571,7 @@ def _corner(outcome: _Outcome, number: int) -> str:
 
 
 def _requirement(outcome: _Outcome, number: int) -> dict[str, Any]:
-    """Return whether a design meets the requirement, and in which share of the conditions."""
+    """Return whether a candidate meets the requirement, and in which share of the conditions."""
     share = float(outcome.optima[number]["share"][1])
     low, high = (np.nan, np.nan)
     if _is_drawn(outcome):
@@ -581,7 +594,7 @@ def _is_drawn(outcome: _Outcome) -> bool:
 
 def _step(outcome: _Outcome) -> dict[str, Any]:
     """Return to which part or multiple a tolerance takes the first goal of the recommended
-    design.
+    candidate.
     """
     way = next(iter(outcome.goals.values()))
     own = float(outcome.judged.values[outcome.chosen, 0])
@@ -601,10 +614,10 @@ def _step(outcome: _Outcome) -> dict[str, Any]:
 
 
 def _binds(outcome: _Outcome, number: int) -> list[str]:
-    """Return what binds a design: what the nearest design with a better goal misses, then ends of
-    ranges.
+    """Return what binds a candidate: what the nearest candidate with a better goal misses, then
+    ends of ranges.
 
-    A goal in which a design that misses no more is better is bound by the other goals.
+    A goal in which a candidate that misses no more is better is bound by the other goals.
     """
     judged = outcome.judged
     words = []
@@ -620,7 +633,7 @@ def _binds(outcome: _Outcome, number: int) -> list[str]:
 
 
 def _missed(outcome: _Outcome, number: int) -> str:
-    """Return what a design misses, in words that follow "bound by"."""
+    """Return what a candidate misses, in words that follow "bound by"."""
     if outcome.judged.violation[number] == 0:
         lacking = [own for own in outcome.shares if not own.enough(own.sure)[number]]
         if lacking:
@@ -634,7 +647,7 @@ def _missed(outcome: _Outcome, number: int) -> str:
 
 
 def _at_ends(outcome: _Outcome, number: int) -> list[str]:
-    """Return the choices of a design that stand at an end of the range that the search may take."""
+    """Return the choices of a candidate that stand at an end of their range in the search."""
     words = []
     for name, value in choices_of(outcome.results, number).items():
         factor = outcome.results.study.parsed[name]
@@ -653,7 +666,7 @@ def _at_ends(outcome: _Outcome, number: int) -> list[str]:
 
 
 def _beyond(outcome: _Outcome) -> np.ndarray:
-    """Return the designs with a goal that is a life beyond its data, shape (designs,)."""
+    """Return the candidates with a goal that is a life beyond its data, shape (candidates,)."""
     lives = [goal for goal in outcome.goals if is_life(judged_by(goal)[1])]
     none = np.zeros(len(outcome.judged.values), dtype=bool)
     return np.asarray(
@@ -675,8 +688,8 @@ def _required_life(outcome: _Outcome) -> tuple[float, float]:
 
 
 def _second_life(outcome: _Outcome, number: int) -> tuple[str, float, str] | None:
-    """Return the second model with the shortest life of a design, this life [h], and its verdict on
-    the requirement.
+    """Return the second model with the shortest life of a candidate, this life [h], and its verdict
+    on the requirement.
 
     None where no second model knows its life in every condition that is judged.
     """
@@ -710,7 +723,7 @@ def _second_life(outcome: _Outcome, number: int) -> tuple[str, float, str] | Non
 
 
 def _second(outcome: _Outcome, number: int) -> dict[str, str] | None:
-    """Return the second model that turns the verdict of a design; None if none does."""
+    """Return the second model that turns the verdict of a candidate; None if none does."""
     second = _second_life(outcome, number)
     if second is None or second[2] in ("", outcome.verdict[number]):
         return None
@@ -718,8 +731,8 @@ def _second(outcome: _Outcome, number: int) -> dict[str, str] | None:
 
 
 def _exceeded(outcome: _Outcome, number: int) -> dict[str, Any] | None:
-    """Return the limit of a design that is exceeded most, second models included; None if all are
-    kept.
+    """Return the limit of a candidate that is exceeded most, second models included; None if all
+    are kept.
 
     A use of the S-N curve above 1 is a finite life, and no excess.
     """
@@ -745,10 +758,10 @@ def _exceeded(outcome: _Outcome, number: int) -> dict[str, Any] | None:
 
 
 def _picture(outcome: _Outcome) -> dict[str, Any]:
-    """Return the designs of the picture: their goals, those of the front, and those of the
+    """Return the candidates of the picture: their goals, those of the front, and those of the
     headline.
 
-    Of one goal `history` holds the best value that was known after each design, among those that
+    Of one goal `history` holds the best value that was known after each candidate, among those that
     miss least.
     """
     judged = outcome.judged
@@ -784,7 +797,7 @@ def _warnings(outcome: _Outcome) -> tuple[Caution, ...]:
     rows = np.zeros(len(results.table), dtype=bool)
     rows[outcome.rows(outcome.chosen)] = True
     warnings = case_cautions(results, outcome.ranges, rows)
-    # of the designs of the table, below
+    # of the candidates of the table, below
     warnings = [one for one in warnings if one.code != "extrapolated"]
     shown = np.array(outcome.shown)
     beyond = int(_beyond(outcome)[shown].sum())

@@ -392,8 +392,8 @@ def _least(own: Comparison, values: np.ndarray, rows: np.ndarray) -> np.ndarray:
     """
     chosen = np.flatnonzero(rows & own.own & ~np.isnan(values))
     out = np.full(own.count, np.inf)
-    np.minimum.at(out, own.place[chosen], values[chosen])
-    some = np.bincount(own.place[chosen], minlength=own.count) > 0
+    np.minimum.at(out, own.candidate[chosen], values[chosen])
+    some = np.bincount(own.candidate[chosen], minlength=own.count) > 0
     return np.where(some, out, np.nan)
 
 
@@ -489,8 +489,8 @@ def _everywhere(own: Comparison, rows: np.ndarray) -> np.ndarray:
     (candidates,).
     """
     counts = own.reachable
-    bad = np.bincount(own.place[counts & ~rows], minlength=own.count)
-    some = np.bincount(own.place[counts], minlength=own.count) > 0
+    bad = np.bincount(own.candidate[counts & ~rows], minlength=own.count)
+    some = np.bincount(own.candidate[counts], minlength=own.count) > 0
     return np.asarray((bad == 0) & some)
 
 
@@ -509,7 +509,7 @@ def _shares(own: Comparison) -> dict[str, Any]:
     if not own.drawn:
         return {}
     hits = own.hits()
-    size = np.bincount(own.place[own.own], minlength=own.count)
+    size = np.bincount(own.candidate[own.own], minlength=own.count)
     share = own.shares(hits)
     low, high = wilson(share * size, size)
     sure, may = own.met()
@@ -600,12 +600,12 @@ def _second_models(own: Comparison) -> dict[str, Any]:
         if ends is None:
             continue
         least = [_least(own, end, rows) for end in ends]
-        unknown = np.bincount(own.place[rows & np.isnan(ends[0])], minlength=own.count) > 0
+        unknown = np.bincount(own.candidate[rows & np.isnan(ends[0])], minlength=own.count) > 0
         shorter = ~unknown & ~np.isnan(least[0]) & ((which == "") | (least[0] < shortest))
         which[shorter] = limit_word(name)
         shortest = np.where(shorter, least[0], shortest)
         longest = np.where(shorter, least[1], longest)
-        lives = np.where(own.own & shorter[own.place], ends, lives)
+        lives = np.where(own.own & shorter[own.candidate], ends, lives)
     known = which != ""
     lives = np.fmin(lives, _other_ends(own, names))
     return {
@@ -718,8 +718,8 @@ def _exceeded(own: Comparison) -> dict[str, Any]:
     hours = own.hours_by_limit("")
     case = np.full(own.count, -1)
     order = np.flatnonzero(rows)
-    order = order[np.lexsort((-worst[order], own.place[order]))]
-    numbers, first = np.unique(own.place[order], return_index=True)
+    order = order[np.lexsort((-worst[order], own.candidate[order]))]
+    numbers, first = np.unique(own.candidate[order], return_index=True)
     case[numbers] = order[first]
     out: dict[str, list[Any]] = {name: [] for name in nothing}
     for row in case:

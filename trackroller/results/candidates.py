@@ -1,7 +1,7 @@
-"""Compare designs over their conditions.
+"""Compare candidates over their conditions.
 
-A design is one combination of choices. It is judged over all conditions in which the study has it,
-the worst first.
+A candidate is one combination of choices. It is judged over all conditions in which the study has
+it, the worst first.
 """
 
 from __future__ import annotations
@@ -22,8 +22,8 @@ from trackroller.results.solved_cases import SolvedCases, made_once
 from trackroller.roller.output_names import is_life
 from trackroller.study.design.levels import OF_MATERIALS
 
-FEWEST = 20  # sampled conditions of a design below which its life is not stated
-# conditions that all designs of a table must have, so that they are compared over these alone
+FEWEST = 20  # sampled conditions of a candidate below which its life is not stated
+# conditions that all candidates of a table must have, so that they are compared over these alone
 SHARED = 2
 # compared in a study without lives
 STRESS = ("peak_stress_roller", "peak stress of the roller", "MPa")
@@ -87,20 +87,20 @@ def mixed(results: SolvedCases) -> np.ndarray:
     return out
 
 
-def _shared(place: np.ndarray, use: np.ndarray) -> np.ndarray:
-    """Mark the rows whose conditions every design has once; none if there are fewer than `SHARED`
-    such conditions.
+def _shared(candidate: np.ndarray, use: np.ndarray) -> np.ndarray:
+    """Mark the rows whose conditions every candidate has once; none if there are fewer than
+    `SHARED` such conditions.
 
     Parameters
     ----------
-    place : number of the design of each row, -1 for rows that are not compared, shape (n,)
+    candidate : number of the candidate of each row, -1 for rows that are not compared, shape (n,)
     use : number of the condition of each row, shape (n,)
     """
-    rows = np.flatnonzero(place >= 0)
-    pairs = pd.DataFrame({"place": place[rows], "use": use[rows]})
+    rows = np.flatnonzero(candidate >= 0)
+    pairs = pd.DataFrame({"candidate": candidate[rows], "use": use[rows]})
     tried = pairs.drop_duplicates().groupby("use").size()
-    shared = tried.index[tried == place.max() + 1].to_numpy()
-    in_common = np.isin(use, shared) & (place >= 0)
+    shared = tried.index[tried == candidate.max() + 1].to_numpy()
+    in_common = np.isin(use, shared) & (candidate >= 0)
     each_once = not pairs[in_common[rows]].duplicated().any()
     if len(shared) >= SHARED and each_once:
         return in_common
@@ -108,8 +108,8 @@ def _shared(place: np.ndarray, use: np.ndarray) -> np.ndarray:
 
 
 def goal_without_lives(results: SolvedCases) -> tuple[str, str, str] | None:
-    """Return what compares designs without lives: a stress, else whether they meet the target; None
-    without both.
+    """Return what compares candidates without lives: a stress, else whether they meet the target;
+    None without both.
     """
     if STRESS[0] in results.table:
         return STRESS
@@ -120,7 +120,8 @@ def goal_without_lives(results: SolvedCases) -> tuple[str, str, str] | None:
 
 @made_once
 def candidates_of(results: SolvedCases, free: tuple[str, ...] = ()) -> Candidates | None:
-    """Return the designs of a study: the combinations of choices, each judged over its conditions.
+    """Return the candidates of a study: the combinations of choices, each judged over its
+    conditions.
 
     Parameters
     ----------
@@ -142,7 +143,7 @@ def candidates_of(results: SolvedCases, free: tuple[str, ...] = ()) -> Candidate
 
 @dataclass(frozen=True)
 class Candidates:
-    """The designs of a study.
+    """The combinations of choices of a study, each judged over its conditions.
 
     Attributes
     ----------
@@ -150,28 +151,28 @@ class Candidates:
     choices, conditions : names of the factors by role
     goal : column, words and unit of the life that is compared; of a study without lives the peak
         stress of the roller, and `UNRANKED` without this stress
-    place : number of the design of each case, shape (n,); -1 for cases of a less exact contact
-        model, and for those that are no draws of their own
-    matched : whether each design has the same conditions, each once
-    untried : rows of a table whose conditions were not tried with every design, shape (n,) bool;
-        not in `place`
-    design : `place` with the rows of `untried`, shape (n,)
+    candidate : number of the candidate of each case, shape (n,); -1 for cases of a less exact
+        contact model, and for those that are no draws of their own
+    matched : whether each candidate has the same conditions, each once
+    untried : rows of a table whose conditions were not tried with every candidate, shape (n,) bool;
+        not in `candidate`
+    with_untried : `candidate` with the rows of `untried`, shape (n,)
     """
 
     results: SolvedCases
     choices: tuple[str, ...]
     conditions: tuple[str, ...]
     goal: tuple[str, str, str]
-    place: np.ndarray
+    candidate: np.ndarray
     matched: bool
     untried: np.ndarray
-    design: np.ndarray
+    with_untried: np.ndarray
 
     @classmethod
     def grouped(
         cls, results: SolvedCases, goal: tuple[str, str, str], free: tuple[str, ...] = ()
     ) -> Candidates:
-        """Return the designs of a study, whether a case is valid or not.
+        """Return the candidates of a study, whether a case is valid or not.
 
         Parameters
         ----------
@@ -184,35 +185,35 @@ class Candidates:
             tuple(n for n, r in roles.items() if r == role) for role in ("choice", "condition")
         )
         own = results.of_one_model()
-        place = np.where(own, codes(results.table, choices), -1)
-        place[own] = np.unique(place[own], return_inverse=True)[1]
+        candidate = np.where(own, codes(results.table, choices), -1)
+        candidate[own] = np.unique(candidate[own], return_inverse=True)[1]
         use = codes(results.table, conditions)
         left_out = np.zeros(len(use), dtype=bool)
         if conditions:
             left_out = mixed(results)
         if left_out.any():
-            place = np.where(left_out, -1, place)
-            place[place >= 0] = np.unique(place[place >= 0], return_inverse=True)[1]
+            candidate = np.where(left_out, -1, candidate)
+            candidate[candidate >= 0] = np.unique(candidate[candidate >= 0], return_inverse=True)[1]
         if results.config.method.observed:
-            shared = _shared(place, use)
+            shared = _shared(candidate, use)
         else:
             shared = np.zeros(len(use), dtype=bool)
         untried = shared
         if shared.any():
             untried = own & ~shared
-        design = place
-        place = np.where(untried, -1, place)
-        counted = place >= 0
-        several = place.max() + 1
+        with_untried = candidate
+        candidate = np.where(untried, -1, candidate)
+        counted = candidate >= 0
+        several = candidate.max() + 1
         many = len(np.unique(use[counted]))
-        pairs = len(np.unique(place[counted] * (use.max() + 1) + use[counted]))
+        pairs = len(np.unique(candidate[counted] * (use.max() + 1) + use[counted]))
         matched = bool(pairs == counted.sum() == several * many)
-        return cls(results, choices, conditions, goal, place, matched, untried, design)
+        return cls(results, choices, conditions, goal, candidate, matched, untried, with_untried)
 
     @cached_property
     def size(self) -> np.ndarray:
-        """Return the number of conditions of each design, shape (designs,)."""
-        return np.bincount(self.place[self.place >= 0])
+        """Return the number of conditions of each candidate, shape (candidates,)."""
+        return np.bincount(self.candidate[self.candidate >= 0])
 
     @property
     def drawn(self) -> bool:
@@ -223,7 +224,7 @@ class Candidates:
 
     @property
     def comparable(self) -> bool:
-        """Return whether the designs can be compared: they share their conditions, or each has a
+        """Return whether the candidates can be compared: they share their conditions, or each has a
         sample of them.
         """
         return (
@@ -245,8 +246,8 @@ class Candidates:
 
     @property
     def ranks(self) -> bool:
-        """Return whether the goal ranks the designs: a life does, and a stress does among designs
-        of one material.
+        """Return whether the goal ranks the candidates: a life does, and a stress does among
+        candidates of one material.
         """
         one = not any(
             self.members[name].nunique() > 1 for name in OF_MATERIALS if name in self.choices
@@ -259,31 +260,33 @@ class Candidates:
         have a value.
         """
         rows: np.ndarray = (
-            self.results.holds & (self.place >= 0) & ~np.isnan(self.results.column(self.goal[0]))
+            self.results.holds
+            & (self.candidate >= 0)
+            & ~np.isnan(self.results.column(self.goal[0]))
         )
         return rows
 
     @cached_property
     def reached(self) -> np.ndarray:
-        """Return the cases of the conditions in which a design holds, shape (n,); all if designs
-        share no conditions.
+        """Return the cases of the conditions in which a candidate holds, shape (n,); all if
+        candidates share no conditions.
 
-        So do all of drawn conditions, and of a study in which no design holds anywhere.
+        So do all of drawn conditions, and of a study in which no candidate holds anywhere.
         """
         if self.drawn or not self.matched or not self.usable.any():
-            return np.ones(len(self.place), dtype=bool)
+            return np.ones(len(self.candidate), dtype=bool)
         use = codes(self.results.table, self.conditions)
         return np.isin(use, use[self.usable])
 
     @cached_property
     def valid_in(self) -> np.ndarray:
-        """Return the number of valid cases of each design, shape (designs,)."""
+        """Return the number of valid cases of each candidate, shape (candidates,)."""
         return self._count(self.usable)
 
     @cached_property
     def possible(self) -> int:
-        """Return the number of conditions in which at least one design is valid; 0 if designs share
-        no conditions.
+        """Return the number of conditions in which at least one candidate is valid; 0 if candidates
+        share no conditions.
         """
         if self.matched:
             return len(np.unique(codes(self.results.table, self.conditions)[self.usable]))
@@ -291,16 +294,16 @@ class Candidates:
 
     @cached_property
     def members(self) -> pd.DataFrame:
-        """Return the choices of each design, in the order of their numbers."""
-        numbers, first = np.unique(self.place, return_index=True)
+        """Return the choices of each candidate, in the order of their numbers."""
+        numbers, first = np.unique(self.candidate, return_index=True)
         rows = first[numbers >= 0]
         own = {name: self.results.table[name].to_numpy()[rows] for name in self.choices}
         return pd.DataFrame(own, index=range(len(rows)))
 
     @cached_property
     def table(self) -> pd.DataFrame:
-        """Return one row a design, the best first: by the share of conditions that it holds, then
-        by its life.
+        """Return one row a candidate, the best first: by the share of conditions that it holds,
+        then by its life.
 
         Columns: the choices; the numbers of cases `cases`, `rolls` and `valid`; `worst`, `median`
         and `best` of the goal over the valid cases, `worst_case` (its row), and which of the three
@@ -353,13 +356,13 @@ class Candidates:
             share = share.where(~sure, 2.0)
         return table, share, key, sign * table["median"]
 
-    def cases_of(self, design: int) -> np.ndarray:
+    def cases_of(self, number: int) -> np.ndarray:
         """Return the cases of a row of `table` by its index, shape (n,) bool."""
-        rows: np.ndarray = self.place == design
+        rows: np.ndarray = self.candidate == number
         return rows
 
     def worst_cases(self, values: np.ndarray, way: str) -> np.ndarray:
-        """Return the case of each design with the worst value among its valid cases, -1 without
+        """Return the case of each candidate with the worst value among its valid cases, -1 without
         one.
 
         Parameters
@@ -374,22 +377,22 @@ class Candidates:
         return self._least(worse, self.usable)
 
     def _count(self, rows: np.ndarray) -> np.ndarray:
-        return np.bincount(self.place[rows & (self.place >= 0)], minlength=len(self.size))
+        return np.bincount(self.candidate[rows & (self.candidate >= 0)], minlength=len(self.size))
 
     def _least(self, values: np.ndarray, rows: np.ndarray) -> np.ndarray:
-        """Return the case with the smallest value of each design among the rows, -1 if no value is
-        known.
+        """Return the case with the smallest value of each candidate among the rows, -1 if no value
+        is known.
         """
-        known = np.flatnonzero(rows & (self.place >= 0) & ~np.isnan(values))
-        order = known[np.lexsort((values[known], self.place[known]))]
-        candidates, first = np.unique(self.place[order], return_index=True)
+        known = np.flatnonzero(rows & (self.candidate >= 0) & ~np.isnan(values))
+        order = known[np.lexsort((values[known], self.candidate[known]))]
+        candidates, first = np.unique(self.candidate[order], return_index=True)
         out = np.full(len(self.size), -1)
         out[candidates] = order[first]
         return out
 
     def _spread(self) -> dict[str, np.ndarray]:
-        """Return worst, median and best of the goal of each design, and whether they lie beyond the
-        S-N data.
+        """Return worst, median and best of the goal of each candidate, and whether they lie beyond
+        the S-N data.
         """
         values = self.results.column(self.goal[0])
         rows = np.flatnonzero(self.usable)
@@ -397,7 +400,7 @@ class Candidates:
             rising_values = values[rows]
         else:
             rising_values = -values[rows]
-        order = rows[np.lexsort((rising_values, self.place[rows]))]
+        order = rows[np.lexsort((rising_values, self.candidate[rows]))]
         number = self._count(self.usable)
         start = np.cumsum(number) - number
         some = number > 0
@@ -418,8 +421,8 @@ class Candidates:
         return columns
 
     def _quantile(self) -> dict[str, np.ndarray]:
-        """Return the life that nine of ten cases of each design reach, its interval, and whether it
-        lies beyond.
+        """Return the life that nine of ten cases of each candidate reach, its interval, and whether
+        it lies beyond.
 
         Cases that are not valid have life 0. The scatter of the material of the body that fails
         first counts if the study asks for it, and if the S-N curve decides.
@@ -437,15 +440,16 @@ class Candidates:
         rests = np.array(
             [max(b10(lives[c])[0], value) for c, value in zip(cases, ends[0], strict=True)]
         )
-        there = self.usable & (lives <= rests[self.place]) & beyond_sn_data(results, self.goal[0])
+        there = self.usable & (lives <= rests[self.candidate])
+        there &= beyond_sn_data(results, self.goal[0])
         return columns | {"b10_beyond": self._count(there) > 0}
 
 
 def _ranked(
     table: pd.DataFrame, share: pd.Series, key: pd.Series, middle: pd.Series
 ) -> pd.DataFrame:
-    """Sort designs by the share of cases that they hold, then by the key, and rank them; equal ones
-    tie.
+    """Sort candidates by the share of cases that they hold, then by the key, and rank them; equal
+    ones tie.
     """
     order = np.lexsort((-middle.fillna(-np.inf), -key.fillna(-np.inf), -share))
     shares = share.to_numpy()[order]
@@ -460,13 +464,13 @@ def _ranked(
 
 
 def hardest_first(candidates: Candidates) -> np.ndarray:
-    """Number the conditions of the cases, shape (n,): fewest valid designs first, then the worse
+    """Number the conditions of the cases, shape (n,): fewest valid candidates first, then the worse
     worst case.
 
     Cases of a less exact contact model have the number -1.
     """
     table = candidates.results.table
-    own = candidates.place >= 0
+    own = candidates.candidate >= 0
     use = codes(table, candidates.conditions)
     use = np.unique(np.where(own, use, -1), return_inverse=True)[1] - int(not own.all())
     worst = np.full(use.max() + 1, np.inf)

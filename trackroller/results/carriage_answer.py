@@ -25,12 +25,12 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from trackroller.damage import LIMITS, catalogue, judged, limit_word, wear
-from trackroller.damage.verdict import STATES
+from trackroller.damage import LIMITS, catalogue, checked_limits, limit_word, wear
+from trackroller.damage.first_limit import STATES
 from trackroller.parameters import BODIES, MATERIAL_FIELDS, REGIME_LABELS, REGIMES
 from trackroller.parameters.carriage_fields import long_name_of
 from trackroller.parameters.validity import VALIDITY
-from trackroller.results.answer import Answer, Caution, Column, Part, Required
+from trackroller.results.answer import Answer, Caution, Column, FurtherTable, Required
 from trackroller.results.friction import friction_cautions
 from trackroller.results.life_columns import FIRST_LIMIT
 from trackroller.results.placeholders import guess_cautions, placeholders_part
@@ -394,7 +394,7 @@ def _limits_of(own: xr.Dataset, state: str = "") -> Iterator[tuple[str, str, flo
     """Yield name, body, use and hours of the limits of a roller, or of those with a state alone."""
     if "limit_state" not in own:
         return
-    for limit in judged():
+    for limit in checked_limits():
         for body in limit.bodies:
             at = own.sel(limit=limit.name, body=body)
             if not state or int(at["limit_state"]) == STATES.index(state):
@@ -549,23 +549,23 @@ def _beside_rolling(own: xr.Dataset) -> str:
     return "; ".join(f"{', '.join(cases)} ({regime})" for regime, cases in names.items())
 
 
-def _parts(ds: xr.Dataset) -> Iterator[Part]:
+def _parts(ds: xr.Dataset) -> Iterator[FurtherTable]:
     """Yield the further tables of a carriage: loads, load cases with their margins, masses, and
     places.
     """
     loads = pd.DataFrame(list(_loads(ds)), columns=[one.name for one in OF_LOADS])
     columns = tuple(one for one in OF_LOADS if not _is_empty(loads[one.name]) or one.role)
-    yield Part("loads", "Loads of the rollers", loads, columns, strokes_words(ds))
+    yield FurtherTable("loads", "Loads of the rollers", loads, columns, strokes_words(ds))
     cases = pd.DataFrame(list(_cases(ds)), columns=[one.name for one in OF_CASES])
     shown = tuple(one for one in OF_CASES if "_to_" not in one.name or f"{one.name}" in ds)
-    yield Part("cases", "Load cases and margins", cases, shown, OF_MARGINS)
+    yield FurtherTable("cases", "Load cases and margins", cases, shown, OF_MARGINS)
     masses = [
         [str(name), float(value), *map(float, at)]
         for name, value, at in zip(
             ds["mass_name"].values, ds["mass"].values, ds["mass_at"].values, strict=True
         )
     ]
-    yield Part(
+    yield FurtherTable(
         "masses", "Masses", pd.DataFrame(masses, columns=[one.name for one in MASSES]), MASSES
     )
     places = [
@@ -577,7 +577,7 @@ def _parts(ds: xr.Dataset) -> Iterator[Part]:
             strict=True,
         )
     ]
-    yield Part(
+    yield FurtherTable(
         "places",
         "Places and directions",
         pd.DataFrame(places, columns=[one.name for one in PLACES]),

@@ -28,7 +28,7 @@ from trackroller.results.solved_cases import SolvedCases
 from trackroller.roller.expected_errors import ratio_error
 from trackroller.roller.output_names import is_life
 from trackroller.roller.told_errors import ORDINARY_FRICTION
-from trackroller.study.design.entries import SHELVES
+from trackroller.study.design.factor_names import SHELVES
 from trackroller.study.design.levels import OF_MATERIALS
 from trackroller.study.outputs import flat
 
@@ -226,30 +226,30 @@ class Comparison:
         return tuple(name for name in self.groups.choices if name not in self.idle)
 
     @cached_property
-    def place(self) -> np.ndarray:
+    def candidate(self) -> np.ndarray:
         """Return the number of the candidate of each case, shape (n,); -1 for cases that are not
         compared.
 
         Not compared are cases of a less exact contact model, mixtures of a design, and all levels
         but the first one of a choice that changes nothing.
         """
-        own = self.groups.design >= 0
+        own = self.groups.with_untried >= 0
         for name in self.idle:
             first = self.results.levels(name)[0]
             own = own & (self.results.table[name] == first).to_numpy()
-        place = np.where(own, codes(self.results.table, self.choices), -1)
-        place[own] = np.unique(place[own], return_inverse=True)[1]
-        return place
+        candidate = np.where(own, codes(self.results.table, self.choices), -1)
+        candidate[own] = np.unique(candidate[own], return_inverse=True)[1]
+        return candidate
 
     @property
     def own(self) -> np.ndarray:
         """Return the cases that are compared, shape (n,)."""
-        return np.asarray(self.place >= 0)
+        return np.asarray(self.candidate >= 0)
 
     @cached_property
     def count(self) -> int:
         """Return the number of candidates."""
-        return int(self.place.max()) + 1
+        return int(self.candidate.max()) + 1
 
     @cached_property
     def spans(self) -> tuple[str, ...]:
@@ -289,7 +289,7 @@ class Comparison:
         the placeholders.
         """
         use = codes(self.results.table, names)[self.own]
-        keys = np.stack([self.place[self.own], use, self.level[self.own]])
+        keys = np.stack([self.candidate[self.own], use, self.level[self.own]])
         once = np.unique(keys, axis=1).shape[1] == self.own.sum()
         return bool(once and self.own.sum() == np.prod([len(np.unique(key)) for key in keys]))
 
@@ -324,9 +324,9 @@ class Comparison:
         """
         width = int(self.use.max()) + 1
         pair, inverse = np.unique(
-            self.place[self.own] * width + self.use[self.own], return_inverse=True
+            self.candidate[self.own] * width + self.use[self.own], return_inverse=True
         )
-        of_case = np.full(len(self.place), -1)
+        of_case = np.full(len(self.candidate), -1)
         of_case[self.own] = inverse
         return pair // width, pair % width, of_case
 
@@ -351,8 +351,8 @@ class Comparison:
     @cached_property
     def rows(self) -> list[np.ndarray]:
         """Return the numbers of the cases of each candidate."""
-        order = np.argsort(self.place, kind="stable")
-        start = np.searchsorted(self.place[order], np.arange(self.count + 1))
+        order = np.argsort(self.candidate, kind="stable")
+        start = np.searchsorted(self.candidate[order], np.arange(self.count + 1))
         return [order[start[i] : start[i + 1]] for i in range(self.count)]
 
     @cached_property
@@ -459,8 +459,8 @@ class Comparison:
         """
         chosen = np.flatnonzero(rows & self.own & ~np.isnan(values))
         tie = self.ranges.sign * self.ranges.middle[chosen]
-        order = chosen[np.lexsort((tie, self.ranges.sign * values[chosen], self.place[chosen]))]
-        numbers, first = np.unique(self.place[order], return_index=True)
+        order = chosen[np.lexsort((tie, self.ranges.sign * values[chosen], self.candidate[chosen]))]
+        numbers, first = np.unique(self.candidate[order], return_index=True)
         case = np.full(self.count, -1)
         case[numbers] = order[first]
         return np.where(case < 0, np.nan, values[case]), case
@@ -470,8 +470,8 @@ class Comparison:
         row.
         """
         chosen = np.flatnonzero(rows & self.own & ~np.isnan(values))
-        order = chosen[np.lexsort((values[chosen], self.place[chosen]))]
-        number = np.bincount(self.place[order], minlength=self.count)
+        order = chosen[np.lexsort((values[chosen], self.candidate[chosen]))]
+        number = np.bincount(self.candidate[order], minlength=self.count)
         start = np.cumsum(number) - number
         lower = []
         upper = []
@@ -489,7 +489,7 @@ class Comparison:
     @cached_property
     def members(self) -> pd.DataFrame:
         """Return the choices of each candidate, in the order of their numbers."""
-        numbers, first = np.unique(self.place, return_index=True)
+        numbers, first = np.unique(self.candidate, return_index=True)
         rows = first[numbers >= 0]
         own: dict[str, Any] = {
             name: self.results.table[name].to_numpy()[rows] for name in self.choices
@@ -499,7 +499,7 @@ class Comparison:
     @cached_property
     def materials(self) -> np.ndarray:
         """Return the materials of each candidate as one text, shape (candidates,)."""
-        first = np.unique(self.place, return_index=True)
+        first = np.unique(self.candidate, return_index=True)
         rows = first[1][first[0] >= 0]
         named = [n for n in OF_MATERIALS if n in self.results.table]
         if not named:
@@ -523,9 +523,9 @@ class Comparison:
         ----------
         hits : cases, bool, or the probability that each case is a hit, shape (n,)
         """
-        total = np.bincount(self.place[self.own], minlength=self.count)
+        total = np.bincount(self.candidate[self.own], minlength=self.count)
         sums = np.bincount(
-            self.place[self.own], weights=hits[self.own].astype(float), minlength=self.count
+            self.candidate[self.own], weights=hits[self.own].astype(float), minlength=self.count
         )
         return np.asarray(sums / np.maximum(total, 1))
 
@@ -534,7 +534,7 @@ class Comparison:
         """Return the standard deviation of log10 life by the material that ends each case, shape
         (n,) [1].
         """
-        out = np.zeros(len(self.place))
+        out = np.zeros(len(self.candidate))
         if not is_life(self.ranges.output[0]):
             return out
         own = material_deviations(self.results)

@@ -114,7 +114,7 @@ class Decider:
                 sign = 1.0
             worst = np.full(own.count, np.inf)
             rows = own.reachable & ~np.isnan(values.astype(float))
-            np.minimum.at(worst, own.place[rows], sign * values[rows].astype(float))
+            np.minimum.at(worst, own.candidate[rows], sign * values[rows].astype(float))
             columns.append(np.where(np.isposinf(worst), -np.inf, worst)[:, None])
         return np.concatenate(columns, axis=1)
 
@@ -150,7 +150,7 @@ class Decider:
             return np.array([float(quantile(np.sort(values[rows]), 0.1)) for rows in own.rows])
         worst = np.full(own.count, np.inf)
         rows = own.reachable
-        np.minimum.at(worst, own.place[rows], values[rows])
+        np.minimum.at(worst, own.candidate[rows], values[rows])
         return np.where(np.isposinf(worst) | np.isnan(worst), 0.0, worst)
 
     def best_first(self, among: Iterable[int]) -> list[int]:
@@ -229,7 +229,12 @@ class Decider:
         least = max(
             (one.least for one in self.own.required if one.output in OF_PAIR), default=np.nan
         )
-        placeholder = self.turning.of_open_limit(leader) or self.turning.decides(leader, least)
+        turning = self.turning
+        placeholder = (
+            turning.of_open_limit(leader)
+            or turning.decides(leader, least)
+            or turning.behind(leader)
+        )
         return Decision("measure", order, [leader], measure=placeholder or {})
 
     def _by_rank(self) -> Decision:
@@ -247,7 +252,7 @@ class Decider:
             pool = every[(holds >= counts) & (holds > 0)]
         if not len(pool):
             unknown = (~judged & (table["holds"] == 0)).any() and (table["holds"] == 0).all()
-            if unknown:
+            if unknown or self._may_hold().any():
                 return Decision("cannot_tell", order, [], "model")
             return Decision("none", order, [])
         if not own.rankable:
@@ -269,6 +274,20 @@ class Decider:
         if len(named) > 1:
             return Decision("a_or_b", order, named)
         return Decision("build", order, named)
+
+    def _may_hold(self) -> np.ndarray:
+        """Return the candidates that fail in none of the judged conditions that count, or in a
+        tenth of the drawn ones, shape (m,).
+        """
+        own = self.own
+        failed = own.reachable & own.ranges.judged & ~own.ranges.holds
+        number = np.bincount(own.candidate[failed], minlength=own.count)
+        share = 0.0
+        if own.drawn:
+            share = 0.1
+        return np.asarray(
+            number <= share * np.bincount(own.candidate[own.own], minlength=own.count)
+        )
 
     def _beats(self, one: int, other: int) -> bool:
         """Return whether a candidate is never worse than another one by more than the error, and
@@ -364,8 +383,8 @@ def _meets_without(own: Comparison, lost: np.ndarray) -> bool:
     if not own.drawn:
         return False  # the states of candidates leave out the conditions that none holds
     rows = own.own & ~lost
-    total = np.bincount(own.place[rows], minlength=own.count)
-    hits = np.bincount(own.place[rows & own.met()[1]], minlength=own.count)
+    total = np.bincount(own.candidate[rows], minlength=own.count)
+    hits = np.bincount(own.candidate[rows & own.met()[1]], minlength=own.count)
     return bool((hits[total > 0] >= own.wanted_share * total[total > 0]).any())
 
 
@@ -404,9 +423,12 @@ def _headline(own: Comparison, table: pd.DataFrame, decision: Decision) -> dict[
     if decision.kind in ("none", "cannot_tell"):
         head["nearest"] = {
             "name": names_of(own, [decision.order[0]])[0],
-            **{key: plain(one[key]) for key in ("holds", "of", "meets", "perhaps", "low", "fails")},
+            **{key: plain(one[key]) for key in NEAREST},
         }
     return head | _level_reached(own, table)
+
+
+NEAREST = ("holds", "judged", "of", "meets", "perhaps", "low", "fails")
 
 
 def _goals_of(own: Comparison, one: pd.Series) -> list[dict[str, Any]]:
@@ -441,10 +463,15 @@ def leading(own: Comparison, one: pd.Series) -> dict[str, Any]:
             "hours": float(one["use_hours"]),
         }
     if one["second_state"] not in ("", one["state"]):
-        head["second"] = {"limit": plain(one["second"]), "verdict": plain(one["second_state"])}
+        head["second"] = {
+            "limit": plain(one["second"]),
+            "verdict": plain(one["second_state"]),
+            "low": plain(one["second_low"]),
+            "high": plain(one["second_high"]),
+        }
     if own.drawn:
         head |= {key: float(one[key]) for key in ("share", "share_low", "share_high")}
-        head |= {"wanted": own.wanted_share, "n": int(one["n"])}
+        head |= {"wanted": own.wanted_share, "n": int(one["n"]), "judged": int(one["judged"])}
     return head
 
 
@@ -454,7 +481,29 @@ def not_held_by_any(own: Comparison) -> dict[str, Any]:
 
 
 def lost_conditions(own: Comparison, rows: np.ndarray) -> dict[str, Any]:
-    """Return the number of conditions of some cases, and where they are; {} without cases."""
+    """Return the number of conditions of some cases, which no candidate holds, and where they are;
+    {} without cases.
+
+    `not_held` are the conditions in which the model judges every candidate, out of all judged
+    conditions. `not_judged` are the others: some candidate may hold them.
+    """
+    lost = {}
+    unknown = np.isin(own.use, np.unique(own.use[rows & ~own.ranges.judged]))
+    of = len(np.unique(own.use[own.own]))
+    open_conditions = _conditions_of(own, rows & unknown, of)
+    if open_conditions:
+        lost["not_judged"] = open_conditions
+        of -= open_conditions["count"]
+    failed = _conditions_of(own, rows & ~unknown, of)
+    if failed:
+        lost["not_held"] = failed
+    return lost
+
+
+def _conditions_of(own: Comparison, rows: np.ndarray, of: int) -> dict[str, Any]:
+    """Return the number of conditions of some cases, out of how many, and where they are; {}
+    without cases.
+    """
     if not rows.any():
         return {}
     table = own.results.table
@@ -463,13 +512,8 @@ def lost_conditions(own: Comparison, rows: np.ndarray) -> dict[str, Any]:
     names = [name for name in own.conditions if table[name].nunique() > 1]
     names = labels_in_place(table.iloc[first], names, own.results.labels, lost)
     place = places_of(table.iloc[first], names, lost, np.ones(len(first), dtype=bool))
-    judged = own.ranges.judged[rows]
     where = places_text(place, table.iloc[first]) or causes_text(own, rows)
-    conditions = {"count": int(lost.sum()), "of": len(first), "where": where}
-    cause = "not_judged"
-    if judged.any():
-        cause = "not_held"
-    return {cause: conditions}
+    return {"count": int(lost.sum()), "of": of, "where": where}
 
 
 def causes_text(own: Comparison, rows: np.ndarray) -> str:

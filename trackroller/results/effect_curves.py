@@ -22,7 +22,7 @@ from trackroller.results.factor_levels import BINS, MOST_LEVELS, groups, spaced_
 from trackroller.results.like_changes import effect_of_changes
 from trackroller.results.solved_cases import SolvedCases
 from trackroller.results.subgroups import plain
-from trackroller.study.design.entries import OPTION_FACTORS
+from trackroller.study.design.factor_names import OPTION_FACTORS
 
 FEWEST_ROWS = 30  # smallest number of cases that are fitted
 TOLD = 0.9  # share of the variance that a fit must predict before its effects are told

@@ -13,7 +13,7 @@ from trackroller.results.factor_levels import BINS, classes
 from trackroller.results.solved_cases import SolvedCases
 from trackroller.results.subgroups import level_text
 from trackroller.roller.output_names import is_life
-from trackroller.study.design.entries import OPTION_FACTORS
+from trackroller.study.design.factor_names import OPTION_FACTORS
 
 NOTHING = "nothing ends it"
 UNKNOWN = "not known"

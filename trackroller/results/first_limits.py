@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 
 from trackroller.damage import LIMITS
-from trackroller.damage.verdict import breaking
+from trackroller.damage.first_limit import breaking
 from trackroller.parameters import BODIES, FIRST_TO_FAIL
 from trackroller.results.factor_levels import MOST_LEVELS
 from trackroller.results.life_columns import FIRST_LIMIT

@@ -48,7 +48,7 @@ def answer_how_sure(results: SolvedCases) -> Answer:
         names = names_of(own, order[:1])
     head: dict[str, Any] = {"names": names, **leading(own, one)}
     if not own.drawn:
-        head |= {"meets": int(one["meets"]), "of": int(one["of"])}
+        head |= {name: int(one[name]) for name in ("meets", "judged", "of")}
     kind = "count"
     if own.drawn:
         kind = "share"

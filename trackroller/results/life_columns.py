@@ -11,7 +11,7 @@ from trackroller.roller.requirement import LIVES_OF_PAIR
 
 # limits that stand beside the verdict: second models of an end that another limit has, and those
 # without a verdict
-BESIDE = tuple(name for name, limit in LIMITS.items() if limit.beside or limit.verdict is None)
+BESIDE = tuple(name for name, limit in LIMITS.items() if limit.beside or limit.use is None)
 
 LIVES = (
     ("pair_life_hours", "life of the pair", "h"),

@@ -34,7 +34,7 @@ from trackroller.results.life_columns import body_lives, past_data
 from trackroller.results.solved_cases import SAME_ENDS, SolvedCases, made_once
 from trackroller.results.targets import hits_of, scattering_body
 from trackroller.roller.output_names import body_of, is_life
-from trackroller.study.design.entries import OPTION_FACTORS
+from trackroller.study.design.factor_names import OPTION_FACTORS
 from trackroller.study.outputs import Output, of_fatigue, of_first_limit, outputs
 
 PARTS = 8  # of equal weight, into which each value of a line divides its posterior

@@ -99,7 +99,7 @@ def load_ratios(study: Study, factor: str) -> LoadRatios:
     options, group = cases.options
     options = [one | {"at_most": ()} for one in options]  # a bound is no number to bring to 100 %
     labels = study.drawn.columns[factor][cases.rows]
-    solver = _OfDesign(cases.design, options, group, study.materials)
+    solver = _OfStudy(cases.design, options, group, study.materials)
     return _ratios(solver, labels, list(study.parsed[factor].levels), factor)
 
 
@@ -250,7 +250,7 @@ class _Solver:
         return out
 
 
-class _OfDesign(_Solver):
+class _OfStudy(_Solver):
     """Solve rows of the design of a study."""
 
     def __init__(

@@ -16,8 +16,8 @@ import numpy as np
 import xarray as xr
 
 from trackroller.damage import LIMITS, heat
+from trackroller.damage.first_limit import ENDS, STATES
 from trackroller.damage.limit import SN_SCATTER, Limit, roller_overrollings
-from trackroller.damage.verdict import ENDS, STATES
 from trackroller.fit.stored import StoredFit, fits_of_case
 from trackroller.materials import Material
 from trackroller.parameters import BODIES, PARAMETERS, REGIMES
@@ -56,7 +56,7 @@ class Margin:
         Life to the limit and the ends of its range [h]; NaN if the limit has no life, or if the
         life is not known.
     state : str
-        One of `trackroller.damage.verdict.STATES`.
+        One of `trackroller.damage.first_limit.STATES`.
     breaks : bool
         Whether the body breaks at once by this limit.
     timed, beside : bool

@@ -19,12 +19,14 @@ import pandas as pd
 from trackroller.carriage.file import carriage_of
 from trackroller.carriage.solve import cases_of, forces_of, with_lives
 from trackroller.damage import LIMITS
-from trackroller.damage.verdict import STATES
+from trackroller.damage.first_limit import STATES
 from trackroller.errors import InputError
 from trackroller.methods.factor import ROWS
+from trackroller.parameters import BODIES
 from trackroller.results.load_ratio import EXACT, load_ratios_of_cases
+from trackroller.results.size_verdicts import LIMIT_OF
 from trackroller.roller.aliases import RADII
-from trackroller.study.design.entries import CASE_FIELDS
+from trackroller.study.design.factor_names import CASE_FIELDS
 from trackroller.study.file.shelf import ROLLER
 from trackroller.study.file.study import Study
 
@@ -53,17 +55,22 @@ class Mounting:
     carriage: Mapping[str, Any] = field(default_factory=dict, repr=False)
 
 
-def rollers_by_place(study: Study, safety: float = 1.0, least: str = "") -> Mounting:
+def rollers_by_place(
+    study: Study, safety: float = 1.0, least: str = "", permitted: tuple[str, ...] = ()
+) -> Mounting:
     """Return the least roller that is enough at each place of the carriage of a sizing.
 
     Parameters
     ----------
     study : Study
-        The study `life` of `trackroller.results.size.sizing_studies`, with a carriage.
+        The study at the loads of `trackroller.results.size.sizing_studies`, with a carriage.
     safety : float
         Factor on the forces of each roller at which no limit may be exceeded [1].
     least : str
         Column of the shelf by which rollers rank; '' for the longest life.
+    permitted : tuple of str
+        The permitted values that are required, of `trackroller.results.size_verdicts.PERMITTED`; a
+        roller of which one is not known is not surely enough.
 
     Returns
     -------
@@ -73,15 +80,16 @@ def rollers_by_place(study: Study, safety: float = 1.0, least: str = "") -> Moun
     if study.carriage is None:
         remedy = "Leave it out, or give a carriage file."
         raise InputError("each", True, "a carriage, which has places", remedy)
-    search = _Search(study, safety, least)
+    search = _Mounting(study, safety, least, permitted)
     return search.mounted()
 
 
-class _Search:
+class _Mounting:
     """Judge the rollers of a shelf at the places of a carriage."""
 
-    def __init__(self, study: Study, safety: float, least: str) -> None:
+    def __init__(self, study: Study, safety: float, least: str, permitted: tuple[str, ...]) -> None:
         self.study = study
+        self.limits = [LIMIT_OF[name] for name in permitted]
         self.safety = safety
         self.keys = dict(study.config.carriage or {})
         self.places = list(self.keys["rollers"])
@@ -151,7 +159,9 @@ class _Search:
         ds = with_lives(forces_of(whole), whole)
         lives = ds["life_hours_low"].values
         rolls = np.isin(ds["roller_regime"].values, (-1, 0)).all(axis=0)
-        exceeded = self._exceeded(ds["limit_state"].values, ds["limit"].values.tolist())
+        names = ds["limit"].values.tolist()
+        exceeded = self._exceeded(ds["limit_state"].values, names)
+        known = self._known(ds["limit_state"].values, names)
         cases = cases_of(whole, ds)
         labels = [self.places[j] for _, j in cases]
         options = {key: v for key, v in whole.rollers[0].options.items() if key != "outputs"}
@@ -166,8 +176,18 @@ class _Search:
             table[self.least] = table[self.least].astype(float)
         lasts = np.isnan(self.required) | (lives >= self.required)
         holds = ~(table["load_ratio"] < self.safety * (1.0 - EXACT)).to_numpy()
-        table["enough"] = lasts & holds & rolls & ~exceeded
+        table["enough"] = lasts & holds & rolls & known & ~exceeded
         return table
+
+    def _known(self, state: np.ndarray, names: list[str]) -> np.ndarray:
+        """Return which rollers have a verdict on each limit that is asked for, (roller,) bool."""
+        known = np.ones(len(self.places), dtype=bool)
+        for limit in self.limits:
+            if limit not in names:
+                return np.zeros(len(self.places), dtype=bool)
+            of_roller = state[:, names.index(limit), BODIES.index("roller")]
+            known &= of_roller != STATES.index("unknown")
+        return known
 
     def _exceeded(self, state: np.ndarray, names: list[str]) -> np.ndarray:
         """Return which rollers exceed a limit over the load cases, (roller,) bool."""

@@ -1,4 +1,4 @@
-"""Pareto set of a study: the designs that no other design beats in every goal, under
+"""Pareto set of a study: the candidates that no other candidate beats in every goal, under
 constraints.
 """
 
@@ -65,7 +65,7 @@ def study_pareto(results: SolvedCases) -> xr.Dataset | None:
     Returns
     -------
     xarray.Dataset or None
-        Without the key `pareto` the goals are those of `SolvedCases.goals`. Designs that share
+        Without the key `pareto` the goals are those of `SolvedCases.goals`. Candidates that share
         their conditions: see `pareto_of_candidates`. An inner/outer design with the key: see
         `pareto_of_points`, and without it None. Otherwise see `pareto`; rows that differ in
         conditions have the attribute `kind` = `case`, and there is no set without the key, because
@@ -224,14 +224,14 @@ def front_of(
     further: Mapping[str, str] | None = None,
     **attrs: Any,
 ) -> xr.Dataset:
-    """Return the allowed designs with their factors, goals and `optimal`, see `pareto`.
+    """Return the allowed candidates with their factors, goals and `optimal`, see `pareto`.
 
     Parameters
     ----------
-    factors, columns : values of the n allowed designs by name; the columns hold the goals
+    factors, columns : values of the n allowed candidates by name; the columns hold the goals
     objectives : goals, each `min` or `max`
-    row : number of each design, shape (n,)
-    further : columns that a design must also be beaten in to be left out, each `min` or `max`
+    row : number of each candidate, shape (n,)
+    further : columns that a candidate must also be beaten in to be left out, each `min` or `max`
     attrs : further attributes of the result
     """
     directions = {**objectives, **(further or {})}
@@ -347,21 +347,21 @@ def _of_points(table: xr.Dataset, name: str) -> Column:
 
 
 def pareto_of_candidates(candidates: Candidates, objectives: Mapping[str, str]) -> xr.Dataset:
-    """Find the designs that no other design beats in every goal and in the number of conditions
-    that it holds.
+    """Find the candidates that no other candidate beats in every goal and in the number of
+    conditions that it holds.
 
     Parameters
     ----------
     candidates : Candidates
-        The designs of a study. A condition that is a goal counts as a choice.
+        The candidates of a study. A condition that is a goal counts as a choice.
     objectives : mapping of str to str
         Output, numeric factor or parameter, and `min` or `max` for each.
 
     Returns
     -------
     xarray.Dataset
-        Dimension `row`, the case with the worst first goal of each design that is valid in a
-        condition. Variables: the choices; each goal at the worst of the design's valid cases;
+        Dimension `row`, the case with the worst first goal of each candidate that is valid in a
+        condition. Variables: the choices; each goal at the worst of the candidate's valid cases;
         `valid_in`, the number of these cases; `optimal`; `beyond_` and the name of a life, 1 where
         it lies beyond the S-N data.
     """
@@ -409,10 +409,10 @@ def _beyond(
 
 
 def pareto_of_search(results: SolvedCases) -> xr.Dataset:
-    """Return the Pareto set of the gathered designs of a search, see `pareto`.
+    """Return the Pareto set of the gathered candidates of a search, see `pareto`.
 
-    The dimension `row` numbers the designs. Only the designs are compared that are valid in the
-    most conditions, and that meet the target of the study if any of them does.
+    The dimension `row` numbers the candidates. Only the candidates are compared that are valid in
+    the most conditions, and that meet the target of the study if any of them does.
     """
     judged = judge(results)
     goals = goals_of_search(results)
@@ -424,7 +424,7 @@ def pareto_of_search(results: SolvedCases) -> xr.Dataset:
         missed = judged.violation
     nearest = np.flatnonzero((missed == least) & (least < 1))
     tried = codes(results.table.iloc[:: design.meta["inner_samples"]], design.meta["outer"])
-    # a design that was solved twice counts once
+    # a candidate that was solved twice counts once
     nearest = nearest[np.unique(tried[nearest], return_index=True)[1]]
     first = nearest * design.meta["inner_samples"]
     factors = {name: readable(design.columns[name][first]) for name in design.meta["outer"]}

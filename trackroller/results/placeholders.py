@@ -14,7 +14,7 @@ import xarray as xr
 
 from trackroller.damage import LIMITS
 from trackroller.errors import listing
-from trackroller.results.answer import Caution, Column, Part, yes_or_blank
+from trackroller.results.answer import Caution, Column, FurtherTable, yes_or_blank
 from trackroller.roller.limit_notes import placeholders_of
 
 POLYMER = 20e3  # MPa; a material with a lower Young's modulus is treated as a polymer
@@ -29,7 +29,7 @@ COLUMNS = (
 )
 
 
-def placeholders_part(ds: xr.Dataset) -> Part:
+def placeholders_part(ds: xr.Dataset) -> FurtherTable:
     """Return the placeholders of the materials of a result, and what the database says against
     other values.
 
@@ -56,7 +56,7 @@ def placeholders_part(ds: xr.Dataset) -> Part:
     table = pd.DataFrame(
         rows, columns=[name for one in COLUMNS for name in (one.name, one.until) if name]
     )
-    return Part(
+    return FurtherTable(
         "placeholders",
         "Values that nobody has measured",
         table.drop_duplicates(ignore_index=True),
@@ -105,7 +105,7 @@ def _is_polymer(values: dict[str, Any]) -> bool:
     return modulus is not None and float(modulus) < POLYMER
 
 
-def guess_cautions(part: Part, what: str = "") -> Iterator[Caution]:
+def guess_cautions(part: FurtherTable, what: str = "") -> Iterator[Caution]:
     """Yield one warning for each material in the table: how many guesses it has, limits on them,
     and whether notes.
     """

@@ -105,7 +105,7 @@ class Results(SolvedCases):
     def pareto(
         self, objectives: Mapping[str, str] | None = None, constraints: Iterable[str] | None = None
     ) -> xr.Dataset | None:
-        """Return the Pareto set of the designs, or of the cases where goals or constraints are
+        """Return the Pareto set of the candidates, or of the cases where goals or constraints are
         given.
 
         Parameters
@@ -114,7 +114,7 @@ class Results(SolvedCases):
             Outputs or factors, each with `min` or `max`. Default: the key `pareto` of the study
             file, otherwise the longest life with the lowest friction or pressure.
         constraints : iterable of str, optional
-            Comparisons that an allowed design must meet. Default: the key `constraints` of the
+            Comparisons that an allowed candidate must meet. Default: the key `constraints` of the
             study file.
 
         Returns
@@ -168,12 +168,12 @@ class Results(SolvedCases):
         return by_tests_of(self)
 
     def best(self, count: int = 5) -> pd.DataFrame:
-        """Return the best designs over all their conditions, the best one first.
+        """Return the best candidates over all their conditions, the best one first.
 
         Parameters
         ----------
         count : int
-            Number of designs.
+            Number of candidates.
 
         Returns
         -------
@@ -184,8 +184,9 @@ class Results(SolvedCases):
         Raises
         ------
         InputError
-            If no design repeats, as in most random samples, so that designs cannot be compared; or
-            if the study has no lives, and no stresses of one material that rank its designs.
+            If no candidate repeats, as in most random samples, so that candidates cannot be
+            compared; or if the study has no lives, and no stresses of one material that rank its
+            candidates.
         """
         candidates = self.candidates()
         if candidates is None:
@@ -225,5 +226,5 @@ for _name, _method in SHOWN.items():
 
 
 def shown_answer(results: Results) -> Answer:
-    """Return the answer to a study; of a search without one how its designs behave."""
+    """Return the answer to a study; of a search without one how its candidates behave."""
     return results.answer or answer_how_it_behaves(results)

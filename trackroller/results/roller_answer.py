@@ -19,9 +19,9 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from trackroller.damage import LIMITS, judged, limit_word, wear
+from trackroller.damage import LIMITS, checked_limits, limit_word, wear
+from trackroller.damage.first_limit import STATES
 from trackroller.damage.limit import OF_GUIDE
-from trackroller.damage.verdict import STATES
 from trackroller.damage.wear import KM_PER_HOUR
 from trackroller.errors import listing
 from trackroller.fit.stored import StoredFit, fits_of_case
@@ -29,7 +29,7 @@ from trackroller.materials import Material
 from trackroller.parameters import BODIES, PARAMETERS, REGIMES
 from trackroller.parameters.carriage_fields import long_name_of
 from trackroller.parameters.example import drive_question
-from trackroller.results.answer import Answer, Caution, Column, Part, Required, yes_or_blank
+from trackroller.results.answer import Answer, Caution, Column, FurtherTable, Required, yes_or_blank
 from trackroller.results.case_columns import at_surface
 from trackroller.results.friction import friction_cautions
 from trackroller.results.life_columns import FIRST_LIMIT, OF_PAIR
@@ -510,16 +510,16 @@ OF_ROLLER = (QUANTITY, Column("value", "Value", "", "", "whole"), UNIT)
 
 def _parts(
     ds: xr.Dataset, inputs: Mapping[str, Any], materials: Mapping[str, Material]
-) -> Iterable[Part]:
+) -> Iterable[FurtherTable]:
     """Yield the further tables of one roller: both contacts, the whole roller, and the lives by
     fatigue.
     """
     contacts = _contacts(ds)
     if not contacts.empty:
-        yield Part("contacts", "Contacts", contacts, OF_CONTACTS)
+        yield FurtherTable("contacts", "Contacts", contacts, OF_CONTACTS)
     whole = quantities(ds, shown())
     if not whole.empty:
-        yield Part("whole", "Slip, and loads on the bearing", whole, OF_ROLLER)
+        yield FurtherTable("whole", "Slip, and loads on the bearing", whole, OF_ROLLER)
     lives = lives_part(ds, inputs, materials, lifeless_bodies(ds, materials))
     if lives is not None:
         yield lives
@@ -597,7 +597,7 @@ def checks_left_out(ds: xr.Dataset, known: Collection[str] = ()) -> dict[str, tu
     if ds["regime"].ndim == 0 and REGIMES[int(ds["regime"])] == "failed":
         return {}
     checks: dict[str, list[str]] = {body: [] for body in BODIES}
-    for limit in (one for one in judged() if one.name not in known):
+    for limit in (one for one in checked_limits() if one.name not in known):
         for body in limit.bodies:
             why = ", ".join(_missing(ds, limit.name, body))
             if not _is_known(ds, limit.name, body):
@@ -674,7 +674,7 @@ def unchecked(ds: xr.Dataset) -> list[str]:
     """Return the names of the limits that were checked for neither body."""
     return [
         limit.name
-        for limit in judged()
+        for limit in checked_limits()
         if not any(_is_known(ds, limit.name, body) for body in limit.bodies)
     ]
 

@@ -17,7 +17,7 @@ from trackroller.damage.wear import KM_PER_HOUR
 from trackroller.fit.stored import StoredFit, fits_of_case
 from trackroller.materials import Material
 from trackroller.parameters import BODIES, FIRST_TO_FAIL, REGIMES
-from trackroller.results.answer import Column, Part, yes_or_blank
+from trackroller.results.answer import Column, FurtherTable, yes_or_blank
 from trackroller.results.life_columns import past_data
 from trackroller.results.margins import BROKEN, SKIDS, overrollings, worst_contact
 
@@ -68,7 +68,7 @@ def lives_part(
     inputs: Mapping[str, Any],
     materials: Mapping[str, Material],
     lifeless: Mapping[str, str],
-) -> Part | None:
+) -> FurtherTable | None:
     """Return the lives of a solved roller by fatigue; None for a result without lives.
 
     Parameters
@@ -96,7 +96,7 @@ def lives_part(
         rows, columns=[name for column in COLUMNS for name in (column.name, column.until) if name]
     )
     note = "Without scatter of its material a body has a median life alone."
-    return Part("lives", "Life by fatigue", table, COLUMNS, note)
+    return FurtherTable("lives", "Life by fatigue", table, COLUMNS, note)
 
 
 def _row(

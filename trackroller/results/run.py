@@ -93,7 +93,7 @@ def run_any(study: Study, results: Path | str = "results", **how: Any) -> Ledger
         )
     elif study.decides:
         # heavy: no job of a workflow needs it
-        from trackroller.results.search import search_designs as run
+        from trackroller.results.search import search_candidates as run
     else:
         run = run_study
     return run(study, results, **how)

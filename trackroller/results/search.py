@@ -1,12 +1,13 @@
-"""Search for the best designs of a study, `method: optimise`.
+"""Search for the best candidates of a study, `method: optimise`.
 
-The search draws a generation of designs, solves each of them at all its conditions, judges it by
+The search draws a generation of candidates, solves each of them at all its conditions, judges it by
 the goals and draws the next generation. Every generation is a design of the study whose cases go
 through plan and chunks, so a search that was stopped repeats its generations from the stored cases.
 
 A ladder of models saves time: the search uses the table of Kalker's tractions where the options
-allow it. The model of the study then decides among the designs on the best fronts, the recommended
-one is polished with it, and every reported optimum is solved again with the accuracy `reference`.
+allow it. The model of the study then decides among the candidates on the best fronts, the
+recommended one is polished with it, and every reported optimum is solved again with the accuracy
+`reference`.
 """
 
 from __future__ import annotations
@@ -45,7 +46,7 @@ from trackroller.study.store.put import put_text
 TABLE = "kalker_table"
 ELEMENTS = "kalker"
 REPORTED = 10  # optima that are solved again at reference, spread along the front
-DECIDED = 2  # designs of the best fronts that the study's model decides among, in populations
+DECIDED = 2  # candidates of the best fronts that the study's model decides among, in populations
 TOLERANCE = 0.05  # mm; a choice without the unit mm is changed by 1 % of its range
 POLISH_STEPS = (0.04, 0.02, 0.01, 0.005)  # shares of the range of a real choice
 REPEATED = 3  # times that each of these steps is taken
@@ -54,15 +55,15 @@ MOST_CATEGORIES = 12  # of a choice without an order whose levels are all tried 
 
 
 @dataclass
-class _Search:
-    """Solve designs of a study and judge them; solved cases are found in the store."""
+class _CandidateSearch:
+    """Solve candidates of a study and judge them; solved cases are found in the store."""
 
     study: Study
     folder: StudyFolder
     runner: Runner
 
     def of(self, study: Study, genes: np.ndarray) -> Study:
-        """Return a study with these designs, which stand in `designs.csv`."""
+        """Return a study with these candidates, which stand in `designs.csv`."""
         path = self.folder.root / "designs.csv"
         choices = study.drawn.meta["outer"]
         lines = [",".join(choices), *(",".join(repr(float(gene)) for gene in row) for row in genes)]
@@ -72,11 +73,11 @@ class _Search:
         return dataclasses.replace(study, config=config, path=path, inputs=inputs)
 
     def ledger(self, study: Study) -> Ledger:
-        """Return the ledger of a study of designs."""
+        """Return the ledger of a study of candidates."""
         return Ledger(StudyCases(study), self.folder)
 
     def judged(self, study: Study, genes: np.ndarray) -> Judged:
-        """Solve designs, as far as they are not solved yet, and judge them."""
+        """Solve candidates, as far as they are not solved yet, and judge them."""
         one = self.of(study, genes)
         ledger = self.ledger(one)
         if (ledger.state_number < 0).any():
@@ -105,8 +106,9 @@ def _with(study: Study, **values: str) -> Study:
     return dataclasses.replace(other, inputs=study.inputs)
 
 
-def search_designs(study: Study, results: Path | str = "results", **how: Any) -> Ledger:
-    """Search for the best designs of a study and gather the designs among which its model decided.
+def search_candidates(study: Study, results: Path | str = "results", **how: Any) -> Ledger:
+    """Search for the best candidates of a study and gather the candidates among which its model
+    decided.
 
     Parameters
     ----------
@@ -120,8 +122,8 @@ def search_designs(study: Study, results: Path | str = "results", **how: Any) ->
     Returns
     -------
     Ledger
-        The ledger of the gathered designs. The attribute `optimum` of `study.nc` holds the optima
-        (JSON).
+        The ledger of the gathered candidates. The attribute `optimum` of `study.nc` holds the
+        optima (JSON).
 
     Raises
     ------
@@ -133,7 +135,9 @@ def search_designs(study: Study, results: Path | str = "results", **how: Any) ->
     with Runner(results, **how) as runner, runner.deciding(study) as folder:
         tell = runner.tell
         runner.started(study.config.budget.designs * study.drawn.meta["inner_samples"], 0)
-        search = _Search(study, folder, dataclasses.replace(runner, tell=unheard, started=unheard))
+        search = _CandidateSearch(
+            study, folder, dataclasses.replace(runner, tell=unheard, started=unheard)
+        )
         known, facts = _evolve(search, cheaper(study), tell)
         if cheaper(study) is study:
             decided = known
@@ -144,9 +148,9 @@ def search_designs(study: Study, results: Path | str = "results", **how: Any) ->
         return _reported(search, decided, facts | {"reasons": known.reasons}, tell)
 
 
-def _evolve(search: _Search, study: Study, tell: Tell) -> tuple[Judged, dict[str, Any]]:
-    """Return all designs of the search and facts about it; stop at the budget or when no design is
-    left.
+def _evolve(search: _CandidateSearch, study: Study, tell: Tell) -> tuple[Judged, dict[str, Any]]:
+    """Return all candidates of the search and facts about it; stop at the budget or when no
+    candidate is left.
     """
     budget = study.config.budget
     choices = _choices(study)
@@ -190,18 +194,20 @@ def _choices(study: Study) -> dict[str, Factor]:
     return {name: study.drawn.factors[name] for name in study.drawn.meta["outer"]}
 
 
-def _reported(search: _Search, decided: Judged, facts: dict[str, Any], tell: Tell) -> Ledger:
-    """Polish the recommended design, solve the optima at reference, and gather the designs."""
+def _reported(
+    search: _CandidateSearch, decided: Judged, facts: dict[str, Any], tell: Tell
+) -> Ledger:
+    """Polish the recommended candidate, solve the optima at reference, and gather all."""
     study = search.study
     choices = _choices(search.study)
-    usable = decided.violation.min() < 1  # a design that is never valid is no optimum
+    usable = decided.violation.min() < 1  # a candidate that is never valid is no optimum
     if usable:
-        designs, reached = _with_corners(search, decided, choices)
+        candidates, reached = _with_corners(search, decided, choices)
     else:
-        designs = decided
+        candidates = decided
         reached = {}
-    front = np.flatnonzero(nondominated_ranks(designs.costs, designs.missed) == 0)
-    best = designs.take(front)
+    front = np.flatnonzero(nondominated_ranks(candidates.costs, candidates.missed) == 0)
+    best = candidates.take(front)
     chosen = recommended(best)
     corners = [best_in(best, goal) for goal in range(best.costs.shape[1])]
     if usable:
@@ -221,20 +227,21 @@ def _reported(search: _Search, decided: Judged, facts: dict[str, Any], tell: Tel
         moved = search.judged(study, np.array([genes for *_, genes in around]))
     else:
         moved = best.take(np.empty(0, int))
-    beside = f"{len(designs.genes) - len(decided.genes)} polished designs, {len(around)} neighbours"
+    polished = len(candidates.genes) - len(decided.genes)
+    beside = f"{polished} polished designs, {len(around)} neighbours"
     beside = f"solved beside the budget: {beside}, {len(shown)} optima at reference"
     if usable:
         tell(beside)
     else:
         tell("no design is valid, so there is no optimum to check")
     result = facts | {
-        "goals": dict(designs.goals),
+        "goals": dict(candidates.goals),
         "front": len(front),
         "recommended": int(front[chosen]),
         "polished": reached.get("", False),
         "corners": [
             {"goal": name, "design": int(front[row]), "solved": reached.get(name, False)}
-            for name, row in zip(designs.goals, corners, strict=True)
+            for name, row in zip(candidates.goals, corners, strict=True)
         ],
         "optima": [
             {"design": int(front[row])}
@@ -246,13 +253,13 @@ def _reported(search: _Search, decided: Judged, facts: dict[str, Any], tell: Tel
             for i, (name, step, _) in enumerate(around)
         ],
     }
-    with search.runner.solved(search.of(study, designs.genes)) as ledger:
+    with search.runner.solved(search.of(study, candidates.genes)) as ledger:
         gather(ledger, tell, {OPTIMUM: json.dumps(result)})
     return ledger
 
 
 def _optimum(of_search: Judged, checked: Judged) -> dict[str, Any]:
-    """Return the record of one design as the search solved it, and at `reference`."""
+    """Return the record of one candidate as the search solved it, and at `reference`."""
     ends = (of_search, checked)
     return {
         "values": of_search.values[0].tolist(),
@@ -264,24 +271,24 @@ def _optimum(of_search: Judged, checked: Judged) -> dict[str, Any]:
     }
 
 
-def _neighbour(design: Judged) -> dict[str, Any]:
-    """Return the record of one design beside the recommended one."""
+def _neighbour(candidate: Judged) -> dict[str, Any]:
+    """Return the record of one candidate beside the recommended one."""
     return {
-        "values": design.values[0].tolist(),
-        "violation": float(design.violation[0]),
-        "short": float(design.short[0]),
-        "life": float(design.life[0]),
+        "values": candidate.values[0].tolist(),
+        "violation": float(candidate.violation[0]),
+        "short": float(candidate.short[0]),
+        "life": float(candidate.life[0]),
     }
 
 
 def _with_corners(
-    search: _Search, decided: Judged, choices: Mapping[str, Factor]
+    search: _CandidateSearch, decided: Judged, choices: Mapping[str, Factor]
 ) -> tuple[Judged, dict[str, bool]]:
-    """Add designs about the recommended one, then about the best one in each of several goals.
+    """Add candidates about the recommended one, then about the best one in each of several goals.
 
     Returns
     -------
-    All designs, and whether no step improves the design any more: by goal, and `""` for the
+    All candidates, and whether no step improves the candidate any more: by goal, and `""` for the
     recommended one.
     """
     reached = {}
@@ -297,7 +304,7 @@ def _with_corners(
     return decided, reached
 
 
-def _is_spent(search: _Search, decided: Judged) -> bool:
+def _is_spent(search: _CandidateSearch, decided: Judged) -> bool:
     """Return whether the hours of the budget are spent."""
     hours = search.study.config.budget.hours
     return (
@@ -306,17 +313,17 @@ def _is_spent(search: _Search, decided: Judged) -> bool:
 
 
 def _polished(
-    search: _Search, decided: Judged, choices: Mapping[str, Factor], goal: int | None
+    search: _CandidateSearch, decided: Judged, choices: Mapping[str, Factor], goal: int | None
 ) -> tuple[Judged, bool]:
-    """Add designs about the best one in a goal, or about the recommended one, from the best one
+    """Add candidates about the best one in a goal, or about the recommended one, from the best one
     found so far.
 
-    The ends of each range come first, then steps that fall. A step is taken again from the design
-    that it has found, some times at most.
+    The ends of each range come first, then steps that fall. A step is taken again from the
+    candidate that it has found, some times at most.
 
     Returns
     -------
-    All designs, and whether neither an end nor the smallest step improves the last one.
+    All candidates, and whether neither an end nor the smallest step improves the last one.
     """
     repeated = CORNER_REPEATED
     if goal is None:
@@ -338,9 +345,10 @@ def _polished(
     return decided, all(genes.tobytes() in known for genes in around)
 
 
-def _leader(designs: Judged, goal: int | None) -> np.ndarray:
-    """Return the genes of the best design in a goal, or of the recommended one."""
-    front = designs.take(np.flatnonzero(nondominated_ranks(designs.costs, designs.missed) == 0))
+def _leader(candidates: Judged, goal: int | None) -> np.ndarray:
+    """Return the genes of the best candidate in a goal, or of the recommended one."""
+    ranks = nondominated_ranks(candidates.costs, candidates.missed)
+    front = candidates.take(np.flatnonzero(ranks == 0))
     if goal is None:
         row = recommended(front)
     else:
@@ -356,7 +364,9 @@ def _top(factor: Factor) -> float:
 
 
 def _ends(choices: Mapping[str, Factor], middle: np.ndarray) -> list[np.ndarray]:
-    """Return the designs that one choice takes to an end of its range, or to another category."""
+    """Return the candidates that one choice takes to an end of its range, or to another
+    category.
+    """
     ends = []
     for j, factor in enumerate(choices.values()):
         places = [0.0, _top(factor)]
@@ -369,7 +379,7 @@ def _ends(choices: Mapping[str, Factor], middle: np.ndarray) -> list[np.ndarray]
 
 
 def _steps(choices: Mapping[str, Factor], middle: np.ndarray, step: float) -> list[np.ndarray]:
-    """Return the designs a step beside one in each ordered choice; a listed choice moves to its
+    """Return the candidates a step beside one in each ordered choice; a listed choice moves to its
     next level.
     """
     steps = []
@@ -386,7 +396,7 @@ def _steps(choices: Mapping[str, Factor], middle: np.ndarray, step: float) -> li
 
 
 def _moved(genes: np.ndarray, place: int, value: float) -> np.ndarray:
-    """Return the genes of a design with another value of one of them."""
+    """Return the genes of a candidate with another value of one of them."""
     other = genes.copy()
     other[place] = value
     return other
@@ -395,7 +405,7 @@ def _moved(genes: np.ndarray, place: int, value: float) -> np.ndarray:
 def _neighbours(
     choices: Mapping[str, Factor], genes: np.ndarray
 ) -> list[tuple[str, str, np.ndarray]]:
-    """Return the designs that a tolerance makes of one: choice, change in words and genes."""
+    """Return the candidates that a tolerance makes of one: choice, change in words and genes."""
     out = []
     for j, (name, factor) in enumerate(choices.items()):
         if factor.discrete:

@@ -1,4 +1,4 @@
-"""Judge the designs of a search over their conditions, and choose among the best ones."""
+"""Judge the candidates of a search over their conditions, and choose among the best ones."""
 
 from __future__ import annotations
 
@@ -40,12 +40,12 @@ class Judged:
     genes : shape (n, choices)
     values : goals in their units, shape (n, goals); NaN where no condition gives a value
     costs : the same with smaller as better
-    violation : share of the conditions in which the design is not valid [1], shape (n,); 0 where
+    violation : share of the conditions in which the candidate is not valid [1], shape (n,); 0 where
         B10 or a probability counts these conditions, and where the requirement allows so many to
         fail
-    reasons : cases by what they break, of all designs together
+    reasons : cases by what they break, of all candidates together
     goals : what each column of `values` is, with `min` or `max`
-    short : how far a design is from the requirement of the study, see `shortfall`; shape (n,),
+    short : how far a candidate is from the requirement of the study, see `shortfall`; shape (n,),
         0 everywhere without one
     life : shortest life over the conditions, of a range its low end; shape (n,), 0 everywhere
         without lives
@@ -68,31 +68,32 @@ class Judged:
 
     @property
     def missed(self) -> np.ndarray:
-        """What a design misses, shape (n,): conditions in which it is not valid, and the
+        """What a candidate misses, shape (n,): conditions in which it is not valid, and the
         requirement; 0 for nothing.
 
-        A design that misses less is better, whatever its goals.
+        A candidate that misses less is better, whatever its goals.
         """
         return np.asarray(self.violation + self.short)
 
     def take(self, rows: np.ndarray) -> Judged:
-        """Return some of the designs."""
-        own: dict[str, Any] = {name: getattr(self, name)[rows] for name in _BY_DESIGN}
+        """Return some of the candidates."""
+        own: dict[str, Any] = {name: getattr(self, name)[rows] for name in _BY_CANDIDATE}
         return replace(self, **own)
 
     def __add__(self, other: Judged) -> Judged:
-        """Return the designs of both."""
+        """Return the candidates of both."""
         counts = {
             k: self.reasons.get(k, 0) + other.reasons.get(k, 0)
             for k in {**self.reasons, **other.reasons}
         }
         both: dict[str, Any] = {
-            name: np.concatenate((getattr(self, name), getattr(other, name))) for name in _BY_DESIGN
+            name: np.concatenate((getattr(self, name), getattr(other, name)))
+            for name in _BY_CANDIDATE
         }
         return replace(self, **both, reasons=counts)
 
 
-_BY_DESIGN = ("genes", "values", "costs", "violation", "short", "life", "share", "required")
+_BY_CANDIDATE = ("genes", "values", "costs", "violation", "short", "life", "share", "required")
 
 
 def goals_of_search(results: SolvedCases) -> dict[str, str]:
@@ -101,14 +102,14 @@ def goals_of_search(results: SolvedCases) -> dict[str, str]:
 
 
 def judge(results: SolvedCases, genes: np.ndarray | None = None) -> Judged:
-    """Judge each design of a solved search over its conditions.
+    """Judge each candidate of a solved search over its conditions.
 
     Parameters
     ----------
     results : SolvedCases
         A solved study with `method: optimise`.
     genes : numpy.ndarray, shape (n, choices), optional
-        Genes of the designs; by default those of the design.
+        Genes of the candidates; by default those of the design.
     """
     design = results.design
     goals = goals_of_search(results)
@@ -137,8 +138,8 @@ def judge(results: SolvedCases, genes: np.ndarray | None = None) -> Judged:
 
 
 def _beyond_spare(results: SolvedCases, lost: np.ndarray) -> np.ndarray:
-    """Return shares of conditions in which designs are not valid; 0 where the requirement allows so
-    many to fail.
+    """Return shares of conditions in which candidates are not valid; 0 where the requirement allows
+    so many to fail.
     """
     required = _to_meet(results).values()
     if not required or not all(own.in_shares for own in required):
@@ -148,8 +149,8 @@ def _beyond_spare(results: SolvedCases, lost: np.ndarray) -> np.ndarray:
 
 
 def _shortest(results: SolvedCases) -> np.ndarray:
-    """Return the shortest life of each design over its conditions, of a range its low end, shape
-    (designs,).
+    """Return the shortest life of each candidate over its conditions, of a range its low end, shape
+    (candidates,).
     """
     shape = results.design.meta["design_points"], results.design.meta["inner_samples"]
     life = life_of_search(results)
@@ -159,15 +160,15 @@ def _shortest(results: SolvedCases) -> np.ndarray:
 
 
 def _smallest_share(results: SolvedCases) -> np.ndarray:
-    """Return the smallest share of the conditions in which each design surely meets a requirement;
-    NaN without one.
+    """Return the smallest share of the conditions in which each candidate surely meets a
+    requirement; NaN without one.
     """
     nothing = np.full(results.design.meta["design_points"], np.nan)
     return np.asarray(np.fmin.reduce([nothing, *(own.sure for own in shares_of(results))]))
 
 
 def _required_values(results: SolvedCases) -> np.ndarray:
-    """Return the output of each requirement at its worst condition, shape (designs,
+    """Return the output of each requirement at its worst condition, shape (candidates,
     requirements).
     """
     shape = results.design.meta["design_points"], results.design.meta["inner_samples"]
@@ -183,8 +184,8 @@ def _required_values(results: SolvedCases) -> np.ndarray:
 
 
 def _values(results: SolvedCases) -> tuple[np.ndarray, np.ndarray]:
-    """Return the goals of each design, (designs, goals), and where all goals of a case are known,
-    (designs, cases).
+    """Return the goals of each candidate, (candidates, goals), and where all goals of a case are
+    known, (candidates, cases).
     """
     design = results.design
     shape = design.meta["design_points"], design.meta["inner_samples"]
@@ -205,12 +206,12 @@ def _values(results: SolvedCases) -> tuple[np.ndarray, np.ndarray]:
 
 
 def required(results: SolvedCases) -> bool:
-    """Return whether a search has a requirement that its designs have to meet."""
+    """Return whether a search has a requirement that its candidates have to meet."""
     return bool(_to_meet(results))
 
 
 def _to_meet(results: SolvedCases) -> dict[str, Requirement]:
-    """Return what the designs of a search have to meet.
+    """Return what the candidates of a search have to meet.
 
     An output whose probability is a goal has to meet its requirement in as many conditions as
     possible, unless the requirement says in how many.
@@ -226,7 +227,7 @@ def _to_meet(results: SolvedCases) -> dict[str, Requirement]:
 
 @made_once
 def judges_of(results: SolvedCases) -> list[tuple[Required, CaseRanges]]:
-    """Return each requirement that the designs of a search have to meet, with the output that
+    """Return each requirement that the candidates of a search have to meet, with the output that
     judges it.
     """
     own = Comparison.of(results)
@@ -237,7 +238,7 @@ def judges_of(results: SolvedCases) -> list[tuple[Required, CaseRanges]]:
 
 
 def life_of_search(results: SolvedCases) -> CaseRanges | None:
-    """Return the life that orders designs with the same goals, with its range; None in a study
+    """Return the life that orders candidates with the same goals, with its range; None in a study
     without lives.
     """
     if results.life is None:
@@ -247,13 +248,13 @@ def life_of_search(results: SolvedCases) -> CaseRanges | None:
 
 @dataclass(frozen=True)
 class Shares:
-    """The share of the conditions in which each design of a search meets one requirement.
+    """The share of the conditions in which each candidate of a search meets one requirement.
 
     Attributes
     ----------
     required : the requirement
     sure, may : shares of the conditions that surely meet it, and that may meet it [1], shape
-        (designs,)
+        (candidates,)
     least : share that is enough [1]
     """
 
@@ -269,7 +270,8 @@ class Shares:
 
 @made_once
 def shares_of(results: SolvedCases, exact: bool = False) -> list[Shares]:
-    """Return the share of the conditions in which each design meets each requirement of a search.
+    """Return the share of the conditions in which each candidate meets each requirement of a
+    search.
 
     All conditions have to meet a requirement without a probability; nine of ten where a goal is a
     B10.
@@ -291,8 +293,8 @@ def shares_of(results: SolvedCases, exact: bool = False) -> list[Shares]:
 
 
 def shortfall(results: SolvedCases, exact: bool = False) -> np.ndarray:
-    """Return how far each design of a search is from the requirement of the study, shape
-    (designs,).
+    """Return how far each candidate of a search is from the requirement of the study, shape
+    (candidates,).
 
     Parameters
     ----------
@@ -301,7 +303,7 @@ def shortfall(results: SolvedCases, exact: bool = False) -> np.ndarray:
 
     Returns
     -------
-    0 where the design meets every requirement; 1 where a range or an error leaves that open, 2
+    0 where the candidate meets every requirement; 1 where a range or an error leaves that open, 2
     where it misses one, plus a part below 1 by the share of the conditions that lacks, then by the
     life. 0 for all without a requirement.
     """
@@ -317,8 +319,8 @@ def shortfall(results: SolvedCases, exact: bool = False) -> np.ndarray:
 
 
 def _life_gap(results: SolvedCases) -> np.ndarray:
-    """Return how much the shortest life of each design lacks of the required one, 0 to 1, shape
-    (designs,).
+    """Return how much the shortest life of each candidate lacks of the required one, 0 to 1, shape
+    (candidates,).
     """
     gap = np.zeros(results.design.meta["design_points"])
     for one, own in judges_of(results):
@@ -337,8 +339,8 @@ def _met(results: SolvedCases, output: str) -> np.ndarray:
 
 
 def _over_conditions(raw: np.ndarray, good: np.ndarray, kind: str, way: str) -> np.ndarray:
-    """Return a statistic of a result over the conditions of each design, shape (n, conditions) ->
-    (n,).
+    """Return a statistic of a result over the conditions of each candidate, shape (n, conditions)
+    -> (n,).
     """
     if kind == "b10":
         return np.array([b10(lives)[0] for lives in np.where(good, raw, 0.0)])
@@ -374,11 +376,11 @@ def _reasons(results: SolvedCases, known: np.ndarray) -> dict[str, int]:
 
 
 def recommended(best: Judged) -> int:
-    """Return the design of a front that is nearest to the best of all goals, each normalised over
-    the front.
+    """Return the candidate of a front that is nearest to the best of all goals, each normalised
+    over the front.
 
-    Only the designs that miss least count. Lives count by their logarithm, because they span
-    decades. Of equal designs, the first goal decides, then the longer life.
+    Only the candidates that miss least count. Lives count by their logarithm, because they span
+    decades. Of equal candidates, the first goal decides, then the longer life.
     """
     shares = normalised(best.costs)
     return int(
@@ -387,8 +389,8 @@ def recommended(best: Judged) -> int:
 
 
 def best_in(best: Judged, goal: int) -> int:
-    """Return the design of a front that is best in one goal; of equal ones the other goals decide,
-    then the life.
+    """Return the candidate of a front that is best in one goal; of equal ones the other goals
+    decide, then the life.
     """
     others = np.delete(best.costs, goal, axis=1).T
     return int(np.lexsort((-best.life, *others, best.costs[:, goal], best.missed))[0])
@@ -415,8 +417,8 @@ def normalised(costs: np.ndarray) -> np.ndarray:
 
 
 def spread(costs: np.ndarray, count: int) -> np.ndarray:
-    """Return the indices of at most `count` designs along a front: the least crowded ones, its ends
-    first.
+    """Return the indices of at most `count` candidates along a front: the least crowded ones, its
+    ends first.
     """
     left = np.arange(len(costs))
     while len(left) > count:
@@ -434,14 +436,14 @@ def optimum_of(results: SolvedCases) -> dict[str, Any] | None:
 
 
 def choices_of(results: SolvedCases, number: int) -> dict[str, Any]:
-    """Return the choices of a design of a search by name."""
+    """Return the choices of a candidate of a search by name."""
     design = results.design
     row = number * design.meta["inner_samples"]
     return {name: readable(design.columns[name][row : row + 1])[0] for name in design.meta["outer"]}
 
 
 def goal_column(results: SolvedCases, goal: str) -> Column:
-    """Return the values (n,) of a goal by design, its units and its name in words."""
+    """Return the values (n,) of a goal by candidate, its units and its name in words."""
     kind, output = judged_by(goal)
     values = _values(results)[0][:, list(goals_of_search(results)).index(goal)]
     if kind == "probability":
@@ -456,8 +458,8 @@ def goal_column(results: SolvedCases, goal: str) -> Column:
 
 
 def ends_of_goal(results: SolvedCases, goal: str) -> tuple[np.ndarray, np.ndarray] | None:
-    """Return both ends of the range of a life that is a goal, shape (designs,) each; None if it has
-    no range.
+    """Return both ends of the range of a life that is a goal, shape (candidates,) each; None if it
+    has no range.
     """
     kind, output = judged_by(goal)
     if not is_life(output) or kind == "probability" or f"{output}_low" not in results.data:
@@ -476,7 +478,7 @@ def ends_of_goal(results: SolvedCases, goal: str) -> tuple[np.ndarray, np.ndarra
 
 
 def beyond_data(results: SolvedCases, goal: str) -> np.ndarray:
-    """Return for which designs a life that is a goal rests on a life beyond the S-N data, shape
+    """Return for which candidates a life that is a goal rests on a life beyond the S-N data, shape
     (n,).
     """
     kind, output = judged_by(goal)

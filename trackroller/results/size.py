@@ -30,9 +30,11 @@ from trackroller.results.load_ratio import EXACT, FORCES, LoadRatios, load_ratio
 from trackroller.results.mounting import Mounting, rollers_by_place
 from trackroller.results.results import Results
 from trackroller.results.run import run
-from trackroller.results.size_spectrum import VERDICTS, spectrum_table
+from trackroller.results.size_spectrum import spectrum_table, spectrum_with
+from trackroller.results.size_verdicts import PERMITTED, RATIO, VERDICTS, RollerVerdicts
 from trackroller.roller.aliases import OTHER_OPTIONS, with_options
 from trackroller.roller.duty import OVERROLLINGS
+from trackroller.roller.output_names import is_life
 from trackroller.roller.requirement import DEFAULT
 from trackroller.study.design.carriage_cases import common_values
 from trackroller.study.file.config import IN_STUDY
@@ -53,10 +55,15 @@ OF_STUDY = ("factors", "base", "name", "design", "method")
 OF_CARRIAGE = ("mass", "rollers", "cases")  # keys that every carriage file has
 # columns of the table of a sizing, which a shelf has no columns of its own for
 OF_SIZING = (
-    *("verdict", "life_hours", "life_ratio", "ends", "overload", "load_ratio", "load_ends"),
-    "excluded_by",
+    *("verdict", "life_hours", "life_ratio", "ends", *RATIO.values()),
+    *("second_model", "overload", "load_ratio", "load_ends", "excluded_by"),
 )
-OVERLOAD = "overload"  # end of the name of the study with all forces times the safety
+# what a sizing may require, and by what rollers rank; arguments of `size`
+REQUIRED = ("life", "failures", "safety", *PERMITTED, "least")
+AT_LOADS = "loads"  # kind of the study at the forces of the case
+OVERLOAD = "overload"  # kind of the study with all forces times the safety, and end of its name
+# groups of outputs on which verdicts rest
+JUDGED = ("forces", "contact", "peak_stress", "life", "limits")
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,11 +74,14 @@ class Sizing:
     ----------
     table : pandas.DataFrame
         One row a roller, the least one that is enough first: `roller`, `verdict` (one of
-        `VERDICTS`), the columns of the shelf, `life_hours` (low end of the life to the first limit,
-        worst condition), `life_ratio` (over the required life), `ends` (what ends it),
-        `second_model` (a second model that turns the verdict, with its life), `overload`
-        (held, exceeded or not judged), `load_ratio` (all forces times it reach the first limit),
-        `load_ends` (that limit) and `excluded_by`.
+        `trackroller.results.size_verdicts.VERDICTS`), the columns of the shelf, `life_hours` (low
+        end of the life to the first limit, worst condition), `life_ratio` (over the required life),
+        `ends` (what ends it), `temperature_ratio` (permitted temperature rise over the rise),
+        `wear_ratio` (life to the permitted wear depth over the required life), each further output
+        that the file requires with `NAME_ratio`, `second_model` (a second model that turns the
+        verdict, with its life), `load_ratio` (all forces times it reach the first
+        limit), `load_ends` (that limit), `overload` (held, exceeded or not judged) and
+        `excluded_by`. A requirement is met where its ratio is 1 or more.
     least : str
         Name of the roller to take; '' if none is surely enough.
     least_of : str
@@ -79,7 +89,7 @@ class Sizing:
     unranked : tuple of str
         Rollers of which this value is not known, so that they do not rank by it.
     results : Results, optional
-        The study at the loads of the case; None if no life is required.
+        The study at the loads of the case; None if nothing but a safety is required.
     overload : Results, optional
         The study with all forces times the safety; None without a safety.
     ratios : LoadRatios, optional
@@ -90,6 +100,9 @@ class Sizing:
         The roller of each place of a carriage, if each takes its own.
     not_given : mapping of str to object
         Parameters that nobody gave, with the values of the paper's example that were used.
+    spectrum : mapping
+        Keys of the spectrum file with the least roller, of which no study is kept; {} for another
+        file, and if no roller is surely enough.
     """
 
     table: pd.DataFrame
@@ -102,6 +115,7 @@ class Sizing:
     units: Mapping[str, str] = field(default_factory=dict, repr=False)
     mounting: Mounting | None = field(default=None, repr=False)
     not_given: Mapping[str, Any] = field(default_factory=dict, repr=False)
+    spectrum: Mapping[str, Any] = field(default_factory=dict, repr=False)
 
     @property
     def open_and_less(self) -> tuple[str, ...]:
@@ -150,6 +164,8 @@ def size(  # noqa: PLR0913 - a requirement has many parts
     life: str | float | None = None,
     failures: str | float | None = None,
     safety: str | float | None = None,
+    temperature: str | float | None = None,
+    wear_depth: str | float | None = None,
     least: str | None = None,
     each: bool = False,
     results: Path | str | None = None,
@@ -173,14 +189,22 @@ def size(  # noqa: PLR0913 - a requirement has many parts
         0.5.
     safety : str or float, optional
         Factor >= 1 on all forces at which no limit may be exceeded [1].
+    temperature : str or float, optional
+        Permissible temperature of roller and guide [degC], such as "60 degC"; takes the place of
+        `permissible_temperature` of the case.
+    wear_depth : str or float, optional
+        Permissible wear depth of roller and guide [mm], such as "0.05 mm", that the required life,
+        or the `required_travel` of the case, must not exceed; takes the place of
+        `permissible_wear_depth` of the case.
     least : str, optional
         Column of the shelf or result of which the least roller is sought, such as "price". Rollers
-        that are equal in it rank by their life. Default: the longest life.
+        that are equal in it rank by their life, then by their load ratio. Default: the longest
+        life.
     each : bool
         Whether each place of a carriage takes its own roller, see `Sizing.mounting`.
     results : path, optional
         Parent of the folders of the studies, as for `trackroller.run`. By default nothing is
-        written.
+        written. A spectrum has no study: `Sizing.spectrum` is the spectrum with the least roller.
     progress : bool
         Whether to show a progress bar.
 
@@ -192,7 +216,11 @@ def size(  # noqa: PLR0913 - a requirement has many parts
     Raises
     ------
     InputError
-        If neither life nor safety is required, or case, shelf or a value is not allowed.
+        If nothing is required, or case, shelf or a value is not allowed.
+
+    Notes
+    -----
+    Any requirement may stand alone. What the file requires under `requirement` counts too.
 
     Examples
     --------
@@ -208,6 +236,8 @@ def size(  # noqa: PLR0913 - a requirement has many parts
         "life": life,
         "failures": failures,
         "safety": safety,
+        "temperature": temperature,
+        "wear_depth": wear_depth,
         "least": least,
     }
     if is_spectrum(case):
@@ -215,21 +245,22 @@ def size(  # noqa: PLR0913 - a requirement has many parts
             remedy = "Leave it out, or give a carriage file."
             raise InputError("each", True, "a carriage, which has places", remedy)
         return _sized_spectrum(case, shelf, required)
-    studies = sizing_studies(case, shelf, **required)
+    studies = sizing_studies(case, shelf, required)
     solved = {
         kind: run(study, progress=progress, results=results) for kind, study in studies.items()
     }
-    sizing = sizing_of(
-        solved.get("life"), solved.get(OVERLOAD), least or "", ratios_of(studies, safety), safety
-    )
+    ratios = ratios_of(studies, safety)
+    sizing = sizing_of(solved.get(AT_LOADS), solved.get(OVERLOAD), required, ratios)
     if not each:
         return sizing
     factor = 1.0
     if safety is not None:
         factor = finite_number(safety, "-", "safety")
-    by_life = studies.get("life", studies.get(OVERLOAD))
+    by_life = studies.get(AT_LOADS, studies.get(OVERLOAD))
     assert by_life is not None
-    return replace(sizing, mounting=rollers_by_place(by_life, factor, least or ""))
+    permitted = tuple(name for name in PERMITTED if required[name] is not None)
+    mounting = rollers_by_place(by_life, factor, least or "", permitted)
+    return replace(sizing, mounting=mounting)
 
 
 def ratios_of(studies: Mapping[str, Study], safety: str | float | None = None) -> LoadRatios:
@@ -242,57 +273,88 @@ def ratios_of(studies: Mapping[str, Study], safety: str | float | None = None) -
     safety : str or float, optional
         The factor on the forces of the study `overload` [1].
     """
-    if "life" in studies:
-        return load_ratios(studies["life"], ROLLER)
+    if AT_LOADS in studies:
+        return load_ratios(studies[AT_LOADS], ROLLER)
     return load_ratios(studies[OVERLOAD], ROLLER).times(finite_number(safety, "-", "safety"))
 
 
 def sizing_studies(
-    case: Path | str | Mapping[str, Any],
-    shelf: Path | str,
-    *,
-    life: str | float | None,
-    failures: str | float | None,
-    safety: str | float | None,
-    least: str | None,
+    case: Path | str | Mapping[str, Any], shelf: Path | str, required: Mapping[str, Any]
 ) -> dict[str, Study]:
-    """Return the studies of a sizing: `life` with the requirement, and `overload`; see `size`."""
-    _check_required(life, safety)
+    """Return the studies of a sizing: `AT_LOADS` with the requirement, and `OVERLOAD`.
+
+    Parameters
+    ----------
+    case, shelf
+        As for `size`.
+    required : mapping of str to object
+        The arguments of `size` by the names of `REQUIRED`, None where nothing is required.
+    """
+    life = required["life"]
+    safety = required["safety"]
+    least = required["least"]
     keys = _keys_of(case, shelf)
-    if failures is not None:
-        keys = _with_failures(keys, failures)
+    _check_required(required, keys)
+    if required["failures"] is not None:
+        keys = _with_failures(keys, required["failures"])
+    keys = _with_permitted(keys, required)
     on_carriage = keys.get("carriage") is not None
-    studies = {}
+    at_loads = keys
     if life is not None:
-        required = {**(keys.get("requirement") or {}), _life_of(keys): {"min": life}}
-        added: dict[str, Any] = {"requirement": required}
-        if least:
-            added["pareto"] = {least: "min"}
-        studies["life"] = keys | added
-    elif on_carriage:
-        studies["life"] = keys
+        own = {**(keys.get("requirement") or {}), _life_of(keys): {"min": life}}
+        at_loads = at_loads | {"requirement": own}
+    judged = any(required[name] is not None for name in ("life", *PERMITTED))
+    judged = judged or bool(keys.get("requirement")) or on_carriage
+    if least and (life is not None or keys.get("requirement")):
+        at_loads = at_loads | {"pareto": {least: "min"}}
+    studies = {}
+    if judged:
+        studies[AT_LOADS] = at_loads
     if safety is not None:
         overloaded = _overloaded(keys, safety)
         if not on_carriage:  # the load ratios judge the forces that statics gives
             studies[OVERLOAD] = overloaded
-    arguments = {"life": life, "failures": failures, "least": least or None}
-    with _as_arguments(arguments, _life_of(keys)):
+    with _as_arguments(required, _life_of(keys)):
         checked = {kind: _checked(own, shelf) for kind, own in studies.items()}
     for study in checked.values():
         known = [name for name, factor in study.columns_of_shelves.items() if factor.numeric]
-        if least and "life" not in studies and least not in known:
+        if least and not study.config.pareto and least not in known:
             raise unknown_name("least", least, known)
     return checked
 
 
-def _check_required(life: Any, safety: Any) -> None:
-    """Refuse a sizing that requires neither life nor safety, and a safety below 1."""
-    if life is None and safety is None:
-        raise InputError(
-            "size", None, "a required life, or a safety", 'Give life="3 years", for example.'
-        )
+def _check_required(required: Mapping[str, Any], keys: Mapping[str, Any]) -> None:
+    """Refuse a sizing that requires nothing, a safety below 1, and a wear depth after no travel;
+    `keys` are those of a file.
+    """
+    safety = required["safety"]
+    alone = [name for name in ("life", "safety", *PERMITTED) if required[name] is not None]
+    if not alone and not keys.get("requirement"):
+        remedy = 'Give life="3 years", for example.'
+        allowed = "a required life, a safety, a temperature or a wear depth"
+        raise InputError("size", None, allowed, remedy)
     if safety is not None and not finite_number(safety, "-", "safety") >= 1.0:
         raise InputError("safety", safety, "a number >= 1", "For example 1.5.")
+    travels = required["life"] is not None or (keys.get("base") or {}).get("required_travel")
+    travels = travels or any(is_life(name) for name in keys.get("requirement") or {})
+    if required["wear_depth"] is not None and not travels:
+        allowed = "a wear depth beside the life or travel after which it counts"
+        remedy = "Give a life too, or required_travel: 500 km in the file."
+        raise InputError("wear_depth", required["wear_depth"], allowed, remedy)
+
+
+def _with_permitted(keys: Mapping[str, Any], required: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the keys of a study with the permitted temperature and wear depth, of the rollers of
+    its carriage too.
+    """
+    given = {PERMITTED[name]: required[name] for name in PERMITTED if required[name] is not None}
+    out = {**keys, "base": {**(keys.get("base") or {}), **given}}
+    if given and keys.get("carriage") is not None:
+        places = {}
+        for place, entry in keys["carriage"]["rollers"].items():
+            places[place] = {**entry, "roller": {**entry["roller"], **given}}
+        out["carriage"] = {**keys["carriage"], "rollers": places}
+    return out
 
 
 @contextmanager
@@ -301,6 +363,7 @@ def _as_arguments(arguments: Mapping[str, Any], life: str) -> Iterator[None]:
     that receive them; `life` is the output whose least value is required.
     """
     keys = {f"requirement.{life}": "life", CHANCE: "failures", "pareto": "least"}
+    keys |= {f"base.{field}": name for name, field in PERMITTED.items()}
     given = {key: name for key, name in keys.items() if arguments[name] is not None}
     try:
         yield
@@ -312,6 +375,11 @@ def _of_argument(
     error: InputError, names: Mapping[str, str], arguments: Mapping[str, Any]
 ) -> InputError:
     """Return an error on a key of a study as one on the argument that the key receives."""
+    for name, parameter in PERMITTED.items():
+        if arguments[name] is not None and error.field == f"factors.{ROLLER}.{parameter}":
+            remedy = f"Leave it out, or remove the column {parameter} of the shelf."
+            wrong = "stands in the shelf too"
+            return InputError(name, arguments[name], "one permitted value", remedy, wrong)
     for key, name in names.items():
         if f"{error.field}.".startswith(f"{key}."):
             return InputError(name, arguments[name], error.allowed, error.remedy, error.wrong)
@@ -340,27 +408,35 @@ def _sized_spectrum(
     case: Path | str | Mapping[str, Any], shelf: Path | str, required: Mapping[str, Any]
 ) -> Sizing:
     """Return which rollers of a shelf are enough for a load spectrum."""
-    _check_required(required["life"], required["safety"])
     values = with_options(_values_of(case))
+    _check_required(required, values)
     if required["failures"] is not None:
         values[CHANCE] = finite_number(required["failures"], "-", "failures")
     path = _path_of(case)
-    keys: dict[str, Any] = {"name": "shelf", "base": dict(values.get("base") or {})}
+    keys = _with_permitted({"name": "shelf", "base": values.get("base")}, required)
     study = _checked(_with_shelf(keys, shelf), shelf)
     safety = required["safety"]
     if safety is not None:
         safety = finite_number(safety, "-", "safety")
-    least = required["least"]
     with _as_arguments(required, DEFAULT):
         table, ratios = spectrum_table(
-            values, path, study, life=required["life"], safety=safety, least=least
+            values,
+            path,
+            study,
+            life=required["life"],
+            safety=safety,
+            least=required["least"],
+            permitted=tuple(name for name in PERMITTED if required[name] is not None),
         )
     table = table[[*(name for name in table if name != "excluded_by"), "excluded_by"]]
     units = study.parsed[ROLLER].units
     example = _example_values(study)
     not_given = {name: value for name, value in example.items() if name not in LOAD_FIELDS}
-    ranked = _ranked(table, least or "", None, None)
-    return replace(ranked, ratios=ratios, units=units, not_given=not_given)
+    ranked = _ranked(table, required["least"] or "", None, None)
+    chosen: dict[str, Any] = {}
+    if ranked.least:
+        chosen = spectrum_with(values, study, ranked.least)
+    return replace(ranked, ratios=ratios, units=units, not_given=not_given, spectrum=chosen)
 
 
 def _keys_of(case: Path | str | Mapping[str, Any], shelf: Path | str) -> dict[str, Any]:
@@ -392,6 +468,8 @@ def _keys_of(case: Path | str | Mapping[str, Any], shelf: Path | str) -> dict[st
         )
     keys["name"] = name_of_study(f"size-{keys.get('name', stem)}-{Path(shelf).stem}")
     keys["question"] = "decide"
+    if keys.get("outputs") is not None:
+        keys["outputs"] = list(dict.fromkeys((*keys["outputs"], *JUDGED)))
     return _with_shelf(keys, shelf)
 
 
@@ -506,36 +584,37 @@ def _overloaded(keys: Mapping[str, Any], safety: str | float) -> dict[str, Any]:
 def sizing_of(
     at_loads: Results | None,
     overload: Results | None,
-    least: str = "",
+    required: Mapping[str, Any],
     ratios: LoadRatios | None = None,
-    safety: str | float | None = None,
 ) -> Sizing:
     """Return which rollers are enough by the answers to the studies of a sizing.
 
     Parameters
     ----------
     at_loads : Results, optional
-        The study with the required life.
+        The study at the loads of the case.
     overload : Results, optional
         The study with all forces times the safety.
-    least : str
-        Column of the shelf or result by which rollers rank.
+    required : mapping of str to object
+        The arguments of `size` by the names of `REQUIRED`.
     ratios : LoadRatios, optional
         Load ratios of the rollers at the forces of the case.
-    safety : str or float, optional
-        The required factor on all forces [1].
     """
     solved = at_loads or overload
     assert solved is not None
-    goods = [name for name in solved.goods if name != ROLLER]
+    least = required["least"] or ""
+    safety = required["safety"]
     levels = solved.study.parsed[ROLLER].levels
     table = pd.DataFrame({ROLLER: list(levels)}).set_index(ROLLER)
-    for name in goods:
+    for name in [name for name in solved.goods if name != ROLLER]:
         table[name] = _by_roller(solved, solved.table[name].to_numpy())
-    table["verdict"] = VERDICTS[0]
-    table["excluded_by"] = ""
-    if at_loads is not None and at_loads.config.requirement:
-        table = _with_life(table, at_loads)
+    table = table.assign(verdict=VERDICTS[0], excluded_by="")
+    if at_loads is not None:
+        permitted = tuple(name for name in PERMITTED if required[name] is not None)
+        judged = RollerVerdicts(at_loads, permitted).table()
+        table = table.assign(**{str(name): judged[name] for name in judged})
+        if "life_hours" in table:
+            table = _without_unknown_lives(table, at_loads)
     if ratios is not None:
         table["load_ratio"] = ratios.least.reindex(table.index)
         table["load_ends"] = ratios.first.reindex(table.index)
@@ -544,9 +623,14 @@ def sizing_of(
     table = table[[*(name for name in table if name != "excluded_by"), "excluded_by"]]
     if least and least not in table:
         table[least] = _by_roller(solved, solved.quantity(least)[0])
-    units = solved.study.parsed[ROLLER].units
+    units = {**solved.study.parsed[ROLLER].units, **_units_of(solved)}
     ranked = _ranked(table, least, at_loads, overload)
     return replace(ranked, ratios=ratios, units=units, not_given=_example_values(solved.study))
+
+
+def _units_of(results: Results) -> dict[str, str]:
+    """Return the units of the outputs that a study requires."""
+    return {name: results.quantity(name)[1] for name in results.config.requirement}
 
 
 def _example_values(study: Study) -> dict[str, Any]:
@@ -566,58 +650,6 @@ def _by_roller(results: Results, values: np.ndarray) -> list[Any]:
     if values.dtype.kind == "f":
         return list(grouped.max().reindex(own))
     return list(grouped.first().reindex(own))
-
-
-def _answer_rows(results: Results) -> pd.DataFrame:
-    """Return the table of the answer to a study by roller."""
-    answer = results.answer
-    assert answer is not None
-    rows = answer.table
-    if ROLLER not in rows:
-        rows = rows.assign(**{ROLLER: results.study.parsed[ROLLER].levels[0]})
-    return rows.set_index(ROLLER)
-
-
-def _with_life(table: pd.DataFrame, results: Results) -> pd.DataFrame:
-    """Return the table with the life of each roller, its ratio to the required life, and the
-    verdict of the answer.
-    """
-    rows = _answer_rows(results).reindex(table.index)
-    name = next(
-        name for name in (DEFAULT, "roller_life_hours") if name in results.config.requirement
-    )
-    required = results.config.requirement[name].least
-    table = table.assign(
-        life_hours=rows["low"], life_ratio=rows["low"] / required, ends=rows["ends"]
-    )
-    words = {"met": VERDICTS[0], "open": VERDICTS[1]}
-    table["verdict"] = [words.get(str(state), VERDICTS[2]) for state in rows["state"]]
-    why = []
-    shown = rows[["state", "low", "ends", "exceeded", "error"]]
-    for state, low, ends, exceeded, error in shown.itertuples(index=False):
-        text = ""
-        if state == "missed":
-            text = f"life: {ends} after {low:.4g} h"
-        elif state == "open":
-            text = f"open: {ends} after {low:.4g} h, with a told error of {100 * error:.0f} %"
-        elif state != "met":
-            text = str(exceeded or ends or "no condition is held")
-        why.append(text)
-    second = [_turned_by(row) for _, row in rows.iterrows()]
-    if any(second):
-        table = table.assign(second_model=second)
-    return _without_unknown_lives(table.assign(excluded_by=why), results)
-
-
-def _turned_by(row: pd.Series) -> str:
-    """Return the second model of an end, such as a catalogue, that turns the verdict of a roller,
-    with its life; '' where none does.
-    """
-    state = str(row["second_state"])
-    if state in ("", str(row["state"])):
-        return ""
-    verbs = {"met": "meets", "open": "leaves open", "missed": "misses"}
-    return f"{row['second']} {verbs[state]} the life: {row['second_low']:.3g} h"
 
 
 def _without_unknown_lives(table: pd.DataFrame, results: Results) -> pd.DataFrame:
@@ -644,39 +676,31 @@ def _without_unknown_lives(table: pd.DataFrame, results: Results) -> pd.DataFram
 
 def _with_overload(table: pd.DataFrame, results: Results, safety: float) -> pd.DataFrame:
     """Return the table with what becomes of each roller at the forces times the safety."""
-    rows = _answer_rows(results).reindex(table.index)
-    lacks = np.zeros(len(table), dtype=bool)
-    if "load_ratio" in table:
-        lacks = (table["load_ratio"] < safety * (1.0 - EXACT)).to_numpy()
-    texts = []
-    for place, name in enumerate(table.index):
-        row = rows.loc[name]
-        if row["exceeded"]:  # by a second model too, such as a catalogue
-            texts.append(str(row["exceeded"]))
-        elif lacks[place]:
-            ends, ratio = table.loc[name, ["load_ends", "load_ratio"]]
-            texts.append(f"{ends} at {ratio:.3g} times the forces")
-        elif row["holds"] == row["of"]:
-            texts.append("held")
-        elif row["judged"] == row["of"]:
-            texts.append("does not roll")
-        else:
-            texts.append("not judged")
-    table = table.assign(overload=texts)
-    is_held = table["overload"] == "held"
-    unknown = table["overload"] == "not judged"
-    verdict = np.where(is_held, table["verdict"], np.where(unknown, VERDICTS[1], VERDICTS[2]))
-    table["verdict"] = np.where(table["verdict"] == VERDICTS[2], VERDICTS[2], verdict)
-    added = [f"overload: {text}" if text not in ("held", "not judged") else "" for text in texts]
-    both = zip(table["excluded_by"], added, strict=True)
-    return table.assign(excluded_by=["; ".join(filter(None, pair)) for pair in both])
+    judged = RollerVerdicts(results)
+    table = table.copy()
+    rows = zip(table.index, judged.holding(), judged.rows["exceeded"], strict=True)
+    for name, (verdict, text), exceeded in rows:
+        ratio = table.loc[name].get("load_ratio", math.nan)
+        if ratio < safety * (1.0 - EXACT) and not exceeded:
+            verdict = VERDICTS[2]
+            text = f"{table.loc[name, 'load_ends']} at {ratio:.3g} times the forces"
+        table.loc[name, "overload"] = text
+        if verdict == VERDICTS[0]:
+            continue
+        if verdict == VERDICTS[1]:
+            text = f"open: {text}"
+        parts = filter(None, [str(table.loc[name, "excluded_by"]), f"overload: {text}"])
+        table.loc[name, "excluded_by"] = "; ".join(parts)
+        worse = max(verdict, str(table.loc[name, "verdict"]), key=VERDICTS.index)
+        table.loc[name, "verdict"] = worse
+    return table
 
 
 def _ranked(
     table: pd.DataFrame, least: str, at_loads: Results | None, overload: Results | None
 ) -> Sizing:
-    """Return the sizing with its rollers in order: by verdict, by what is to be least, then the
-    longer life.
+    """Return the sizing with its rollers in order: by verdict, by what is to be least, the longer
+    life, the larger load ratio, then their names.
     """
     place = [VERDICTS.index(word) for word in table["verdict"]]
     priority = np.zeros(len(table))
@@ -687,7 +711,11 @@ def _ranked(
     life = np.zeros(len(table))
     if "life_hours" in table:
         life = np.nan_to_num(table["life_hours"].to_numpy(dtype=float), nan=-1.0)
-    keys = (-life, np.where(np.isnan(priority), np.inf, priority), np.array(place))
+    ratio = np.zeros(len(table))
+    if "load_ratio" in table:
+        ratio = np.nan_to_num(table["load_ratio"].to_numpy(dtype=float), nan=-1.0)
+    names = np.array([str(name) for name in table.index])
+    keys = (names, -ratio, -life, np.where(np.isnan(priority), np.inf, priority), np.array(place))
     order = np.lexsort(keys)
     table = table.iloc[order].reset_index()
     enough = table[(table["verdict"] == VERDICTS[0]) & ~table[ROLLER].isin(unranked)]

@@ -1,11 +1,13 @@
 """Size the roller of a load spectrum: the life of each roller of a shelf under all blocks.
 
-Damage adds up over the blocks, limit by limit, as in the page of a spectrum. The spectrum of each
-roller is solved by itself, so that there is no study.
+Damage adds up over the blocks, limit by limit, as in the page of a spectrum. A row of a study is
+one case with a life of its own, and a spectrum has one life of many cases. So each roller has its
+own spectrum and there is no study; the spectrum with the least roller is returned as a file.
 """
 
 from __future__ import annotations
 
+import json
 import math
 from collections.abc import Mapping
 from pathlib import Path
@@ -13,20 +15,28 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
+import xarray as xr
 
 from trackroller.errors import unknown_name
 from trackroller.files import files_beside
-from trackroller.results.answer import Answer
+from trackroller.numerics.plain import plain
+from trackroller.parameters import BODIES, MAPPING_FIELDS
 from trackroller.results.load_ratio import EXACT, LoadRatios, load_ratios_of_cases
+from trackroller.results.roller_answer import material_name
+from trackroller.results.size_verdicts import (
+    RATIO,
+    VERDICTS,
+    is_permitted_known,
+    lacks_in_words,
+    permitted_ratios,
+)
 from trackroller.results.spectrum_answer import answer_of_spectrum
 from trackroller.roller.requirement import DEFAULT, checked_requirement
-from trackroller.study.design.entries import CASE_FIELDS
+from trackroller.study.design.factor_names import CASE_FIELDS
 from trackroller.study.file.shelf import ROLLER
 from trackroller.study.file.study import Study
 from trackroller.study.spectrum.file import Spectrum
 from trackroller.study.spectrum.solve import solve_spectrum
-
-VERDICTS = ("enough", "open", "not enough")
 
 
 def spectrum_table(
@@ -37,6 +47,7 @@ def spectrum_table(
     life: str | float | None,
     safety: float | None,
     least: str | None,
+    permitted: tuple[str, ...] = (),
 ) -> tuple[pd.DataFrame, LoadRatios]:
     """Return the rollers of a shelf with their verdicts under a load spectrum, and load ratios.
 
@@ -54,6 +65,8 @@ def spectrum_table(
         Factor on all forces at which no limit may be exceeded [1].
     least : str, optional
         Column of the shelf by which rollers rank.
+    permitted : tuple of str
+        The permitted values that are required, of `trackroller.results.size_verdicts.PERMITTED`.
 
     Returns
     -------
@@ -64,13 +77,12 @@ def spectrum_table(
     known = [name for name, factor in shelf.columns_of_shelves.items() if factor.numeric]
     if least and least not in known:
         raise unknown_name("least", least, known)
-    levels = [str(level) for level in shelf.parsed[ROLLER].levels]
+    levels = _levels(shelf)
     columns = shelf.drawn.columns
     spectra = []
-    for place in range(len(levels)):
-        row = {name: column[place] for name, column in columns.items() if name in CASE_FIELDS}
+    for name in levels:
         with files_beside(path):
-            spectra.append(Spectrum.from_dict({**values, "base": _base(shelf, row)}))
+            spectra.append(Spectrum.from_dict(spectrum_with(values, shelf, name)))
     required = math.nan
     if life is not None:
         entry = checked_requirement({DEFAULT: {"min": life}}, spectra[0].duty)
@@ -78,8 +90,8 @@ def spectrum_table(
     ratios = _ratios(spectra, levels, shelf)
     rows = []
     for own in spectra:
-        answer = answer_of_spectrum(solve_spectrum(own, shelf.materials))
-        rows.append(_judged(answer, own, required))
+        ds = solve_spectrum(own, shelf.materials)
+        rows.append(_judged(ds, own, required, permitted))
     table = pd.DataFrame(rows, pd.Index(levels, name=ROLLER))
     if life is None:
         table = table.drop(columns="life_ratio")
@@ -93,12 +105,39 @@ def spectrum_table(
     return table, ratios
 
 
+def _levels(shelf: Study) -> list[str]:
+    """Return the names of the rollers of a shelf."""
+    return [str(level) for level in shelf.parsed[ROLLER].levels]
+
+
+def spectrum_with(values: Mapping[str, Any], shelf: Study, name: str) -> dict[str, Any]:
+    """Return the keys of a spectrum file with a roller of a shelf.
+
+    Parameters
+    ----------
+    values : mapping
+        Keys of a spectrum file.
+    shelf : Study
+        As for `spectrum_table`.
+    name : str
+        Name of the roller.
+    """
+    place = _levels(shelf).index(name)
+    columns = shelf.drawn.columns
+    row = {key: column[place] for key, column in columns.items() if key in CASE_FIELDS}
+    return {**values, "base": _base(shelf, row)}
+
+
 def _base(shelf: Study, row: Mapping[str, Any]) -> dict[str, Any]:
     """Return the `base` of the spectrum of a roller: what the user gave, and the row of the
     shelf.
     """
     given = {name: v for name, v in shelf.config.base.items() if name not in shelf.not_given}
-    return given | {name: value for name, value in row.items() if not _is_missing(value)}
+    own = {name: plain(value) for name, value in row.items() if not _is_missing(value)}
+    for name in MAPPING_FIELDS:
+        if isinstance(own.get(name), str):
+            own[name] = json.loads(own[name])
+    return given | own
 
 
 def _is_missing(value: Any) -> bool:
@@ -118,9 +157,13 @@ def _ratios(spectra: list[Spectrum], levels: list[str], shelf: Study) -> LoadRat
     return load_ratios_of_cases(cases, labels, options, shelf.materials)
 
 
-def _judged(answer: Answer, own: Spectrum, required: float) -> dict[str, Any]:
-    """Return verdict, life and what excludes a roller by the record of its spectrum."""
-    head = answer.headline
+def _judged(
+    ds: xr.Dataset, own: Spectrum, required: float, permitted: tuple[str, ...]
+) -> dict[str, Any]:
+    """Return verdict, life and what excludes a roller by its solved spectrum."""
+    head = answer_of_spectrum(ds).headline
+    unknown = [one for one in permitted if not is_permitted_known(ds, one).all()]
+    ratios = {RATIO[one]: permitted_ratios(ds, one, required) for one in permitted}
     ends = " or ".join(head["ends"])
     over = [_exceeded(one) for one in (*head["broken"], *head["exceeded"])]
     lacking = [body for body in head["unknown"] if body == "roller" or _rolls_over(own)]
@@ -135,6 +178,10 @@ def _judged(answer: Answer, own: Spectrum, required: float) -> dict[str, Any]:
     elif lacking and not math.isnan(required):
         verdict = VERDICTS[1]
         why = f"open: the life of the {' and '.join(lacking)} is not known"
+    elif unknown:
+        verdict = VERDICTS[1]
+        names = {material_name(ds, body) for body in BODIES}
+        why = f"open: {'; '.join(lacks_in_words(ds, one, names) for one in unknown)}"
     elif head["not_judged"]:
         verdict = VERDICTS[1]
         why = f"open: {'; '.join(head['not_judged'])}"
@@ -146,6 +193,7 @@ def _judged(answer: Answer, own: Spectrum, required: float) -> dict[str, Any]:
         "life_hours": head["low"],
         "life_ratio": head["low"] / required,
         "ends": ends,
+        **{name: float(np.nanmin(values)) for name, values in ratios.items()},
         "excluded_by": why,
     }
 

@@ -29,7 +29,7 @@ from trackroller.results.factor_levels import MOST_LEVELS, levels, numeric, orde
 from trackroller.results.life_columns import BESIDE, FIRST_LIMIT, LIVES, OF_PAIR, body_lives
 from trackroller.results.own_outputs import with_own_outputs
 from trackroller.roller.output_names import body_of
-from trackroller.study.design.entries import CASE_FIELDS, OPTION_FACTORS
+from trackroller.study.design.factor_names import CASE_FIELDS, OPTION_FACTORS
 from trackroller.study.design.roles import roles_of
 from trackroller.study.file.config import StudyFile
 from trackroller.study.file.goals import names_in

@@ -22,12 +22,12 @@ import pandas as pd
 import xarray as xr
 
 from trackroller.damage import LIMITS
-from trackroller.damage.verdict import STATES
+from trackroller.damage.first_limit import STATES
 from trackroller.numerics.numbers import number_or_nan
 from trackroller.parameters import BODIES, PARAMETERS, REGIME_LABELS, REGIMES
 from trackroller.parameters.carriage_fields import long_name_of
 from trackroller.parameters.example import drive_question, is_absent
-from trackroller.results.answer import Answer, Caution, Column, Part, Required, yes_or_blank
+from trackroller.results.answer import Answer, Caution, Column, FurtherTable, Required, yes_or_blank
 from trackroller.results.friction import friction_cautions
 from trackroller.results.life_columns import FIRST_LIMIT, past_data
 from trackroller.results.margins import First, Margin, is_guessed
@@ -483,19 +483,21 @@ def _why_unknown(ds: xr.Dataset, body: str) -> tuple[str, float]:
     return "; ".join(reasons), bound
 
 
-def _parts(ds: xr.Dataset, lives: pd.DataFrame) -> Iterable[Part]:
+def _parts(ds: xr.Dataset, lives: pd.DataFrame) -> Iterable[FurtherTable]:
     """Yield the further tables of a spectrum: its blocks, the lives by fatigue, and
     placeholders.
     """
     yield _blocks(ds)
     columns = tuple(one for one in OF_LIVES if one.name != "shifts" or not _by_share(ds))
-    yield Part("lives", "Life by fatigue", lives, columns, f"{ds.attrs['life_conventions']}.")
+    yield FurtherTable(
+        "lives", "Life by fatigue", lives, columns, f"{ds.attrs['life_conventions']}."
+    )
     guesses = placeholders_part(ds)
     if not guesses.table.empty:
         yield guesses
 
 
-def _blocks(ds: xr.Dataset) -> Part:
+def _blocks(ds: xr.Dataset) -> FurtherTable:
     """Return the blocks with their loads, the regime, and stress and damage of both bodies, and
     their sum.
     """
@@ -543,7 +545,7 @@ def _blocks(ds: xr.Dataset) -> Part:
     if _by_share(ds):
         title = "Blocks of an hour of travel"
     note = f"Together {sums}; {'; '.join(notes)}. {strokes_words(ds)}".strip()
-    return Part("blocks", title, table, tuple(columns), note)
+    return FurtherTable("blocks", title, table, tuple(columns), note)
 
 
 def _not_checked(ds: xr.Dataset) -> Mapping[str, tuple[str, ...]]:

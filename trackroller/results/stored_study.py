@@ -21,7 +21,7 @@ from trackroller.results.results import Results
 from trackroller.roller.dataset import VARIABLES
 from trackroller.roller.stored_inputs import NOT_GIVEN
 from trackroller.study.design.carriage_cases import ROW
-from trackroller.study.design.entries import CASE_FIELDS
+from trackroller.study.design.factor_names import CASE_FIELDS
 from trackroller.study.design.stored import restored, solved_part
 from trackroller.study.file.load import checked_keys, with_present_keys
 from trackroller.study.file.study import Study

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from trackroller.damage import LIMITS, limit_word, verdict
+from trackroller.damage import LIMITS, first_limit, limit_word
 from trackroller.parameters import BODIES
 from trackroller.parameters.carriage_fields import long_name_of
 from trackroller.parameters.example import is_absent
@@ -84,7 +84,7 @@ def checks_left_out(results: SolvedCases) -> dict[str, tuple[str, ...]]:
         rows = results.of_one_model()
     known = _known(results)
     for name, limit in LIMITS.items():
-        if limit.verdict is None:
+        if limit.use is None:
             continue
         for place, body in enumerate(BODIES):
             if body not in limit.bodies:
@@ -104,8 +104,8 @@ def _known(results: SolvedCases) -> dict[str, np.ndarray]:
         return _without_limits(results)
     lives = flat(data, "life_hours_by_limit", results.dims)
     uses = flat(data, "utilisation", results.dims)
-    if verdict.AT_MOST in data:
-        uses = np.fmax(uses, flat(data, verdict.AT_MOST, results.dims))
+    if first_limit.AT_MOST in data:
+        uses = np.fmax(uses, flat(data, first_limit.AT_MOST, results.dims))
     out = {}
     for place, name in enumerate(str(one) for one in data["limit"].values):
         timed = ~np.isnan(lives[:, place])
@@ -128,7 +128,7 @@ def _without_limits(results: SolvedCases) -> dict[str, np.ndarray]:
 def unchecked_names(results: SolvedCases) -> list[str]:
     """Return the names of the limits that were checked for no body."""
     known = _known(results)
-    judged = [name for name, limit in LIMITS.items() if limit.verdict is not None]
+    judged = [name for name, limit in LIMITS.items() if limit.use is not None]
     return [name for name in judged if name not in known or not known[name].any()]
 
 
@@ -349,12 +349,12 @@ def _conditions_apart(own: Comparison) -> list[str]:
     levels.
     """
     table = own.results.table[own.own]
-    place = own.place[own.own]
+    candidate = own.candidate[own.own]
     apart = []
     for name in own.conditions:
         levels = own.results.levels(name)
-        pairs = pd.DataFrame({"place": place, "level": table[name].to_numpy()}).drop_duplicates()
-        everywhere = pairs.groupby("level").size() == own.count
+        pairs = pd.DataFrame({"candidate": candidate, "level": table[name].to_numpy()})
+        everywhere = pairs.drop_duplicates().groupby("level").size() == own.count
         if not everywhere.all():
             ends = " to ".join(level_text(name, level) for level in (levels[0], levels[-1]))
             apart.append(f"{long_name_of(name)} ({ends})")

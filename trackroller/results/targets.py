@@ -27,7 +27,7 @@ from trackroller.study.outputs import Output, outputs
 CLASSES = 4  # of a number with more than `MOST_LEVELS` levels
 ENDS = ("", "_low", "_high")
 # probability and its bounds, shape (targets,) each
-Found = tuple[np.ndarray, np.ndarray, np.ndarray]
+Estimates = tuple[np.ndarray, np.ndarray, np.ndarray]
 
 
 class Level(NamedTuple):
@@ -174,7 +174,7 @@ def _all(hits: np.ndarray, names: list[str]) -> np.ndarray:
     )
 
 
-def _of_points(hits: np.ndarray, design: Design) -> tuple[list[Level], list[Found]]:
+def _of_points(hits: np.ndarray, design: Design) -> tuple[list[Level], list[Estimates]]:
     """Return the levels of the outer factors, and the probabilities at all points and at each
     level.
     """
@@ -192,7 +192,7 @@ def _of_points(hits: np.ndarray, design: Design) -> tuple[list[Level], list[Foun
     ]
 
 
-def at_points(hits: np.ndarray, design: Design) -> Found:
+def at_points(hits: np.ndarray, design: Design) -> Estimates:
     """Return the probability of events and its bounds at each design point of an inner/outer array.
 
     Parameters
@@ -215,7 +215,7 @@ def at_points(hits: np.ndarray, design: Design) -> Found:
     return bounds[0], bounds[1], bounds[2]
 
 
-def _at_level(hits: np.ndarray, design: Design, level: Level, whole: Found) -> Found:
+def _at_level(hits: np.ndarray, design: Design, level: Level, whole: Estimates) -> Estimates:
     """Return the mean probability of the design points of a level and its bounds.
 
     Points with different numbers of samples get the mean of their bounds, which is wide enough for
@@ -238,7 +238,7 @@ def _first(sample: tuple[np.ndarray, ...], size: int) -> tuple[np.ndarray, ...]:
     return ()
 
 
-def _of_rows(hits: np.ndarray, design: Design) -> tuple[list[Level], list[Found]]:
+def _of_rows(hits: np.ndarray, design: Design) -> tuple[list[Level], list[Estimates]]:
     """Return the levels of the factors, and the probabilities over all rows and at each level."""
     rows = design.method.independent_rows(design)
     levels = [

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -11,9 +12,12 @@ import numpy as np
 
 from trackroller.damage import LIMITS
 from trackroller.parameters import BODIES
+from trackroller.results.answer import Required
+from trackroller.results.case_ranges import CaseRanges
 from trackroller.results.comparison import Comparison
 from trackroller.results.first_limits import COEFFICIENT, reached_by_body
 from trackroller.results.life_columns import BESIDE, FIRST_LIMIT
+from trackroller.results.solved_cases import SolvedCases
 from trackroller.roller.limit_notes import Placeholder, placeholders_of
 from trackroller.study.outputs import flat
 
@@ -141,7 +145,7 @@ class Turning:
                         first_met = int(np.argmin(ahead))
                     else:
                         first_met = int(np.argmax(ahead))
-                    placeholder = self.record_of(one, first_met)
+                    placeholder = record_of(one, first_met)
         return placeholder
 
     def decides(self, number: int, least: float) -> dict[str, Any] | None:
@@ -166,70 +170,25 @@ class Turning:
             if enough[-1] and not enough[0]:
                 step = int(np.argmax(enough))
             widest = width
-            placeholder = self.record_of(one, step)
+            placeholder = record_of(one, step)
         return placeholder
-
-    def record_of(self, one: Placeholder, step: int) -> dict[str, Any]:
-        """Return a placeholder with the value at one of `STEPS`, -1 for none; only a wear
-        coefficient has one.
-        """
-        turn = np.nan
-        if step >= 0 and one.name.startswith("wear_coefficient") and one.low > 0:
-            turn = float(one.high * (one.low / one.high) ** STEPS[step])
-        return {
-            "what": one.name,
-            "of": one.material,
-            "on": one.on,
-            "turn": turn,
-            "units": one.units,
-            "low": one.low,
-            "high": one.high,
-        }
 
     def of_open_limit(self, number: int) -> dict[str, Any] | None:
         """Return the placeholder that leaves a limit without hours open for a candidate; None if
         none is open.
-
-        The use of the shakedown limit is inversely proportional to the yield strength, so that its
-        turn is known.
         """
+        return value_of_open_limit(self.own.results, self.own.ranges, self._counted(number))
+
+    def behind(self, number: int) -> dict[str, Any] | None:
+        """Return the value whose range leaves the requirement open for a candidate; None without
+        one.
+        """
+        return value_behind(self.own.results, self.own.judges, self._counted(number))
+
+    def _counted(self, number: int) -> np.ndarray:
+        """Return the numbers of the cases of a candidate that count, shape (k,)."""
         rows = self.own.rows[number]
-        results = self.own.results
-        hours = self.own.hours_by_limit("")
-        for limit, hit in self.own.ranges.open_limits.items():
-            own = rows[hit[rows] & self.own.reachable[rows]]
-            place = results.data["limit"].values.tolist().index(limit)
-            has_hours = hours is not None and not np.isnan(hours[own, place]).all()
-            if not len(own) or has_hours:
-                continue
-            use = flat(results.data, "utilisation", results.dims)[own, place].astype(float)
-            row, body = np.unravel_index(np.nanargmax(use), use.shape)
-            material = str(self.materials[BODIES[body]][own[row]])
-            known = [
-                one
-                for one in placeholders_of(results.data)
-                if (one.limit, one.material) == (limit, material)
-            ]
-            if not known:
-                return {
-                    "what": LIMITS[limit].word,
-                    "of": material,
-                    "on": "",
-                    "turn": np.nan,
-                    "units": "",
-                }
-            placeholder = self.record_of(known[0], -1)
-            if len(known) > 1:
-                placeholder["what"] = " or ".join(dict.fromkeys(one.name for one in known))
-            if known[0].name == "yield_strength":
-                stored = json.loads(str(results.data.attrs.get("materials", "{}"))).get(
-                    material, {}
-                )
-                placeholder["turn"] = float(stored.get("yield_strength", np.nan)) * float(
-                    np.nanmax(use)
-                )
-            return placeholder
-        return None
+        return np.asarray(rows[self.own.reachable[rows]])
 
     def of_span(self, leader: int, rivals: list[int]) -> dict[str, Any] | None:
         """Return the placeholder whose range a factor spans if a rival leads over a tenth of it or
@@ -261,9 +220,7 @@ class Turning:
         if own.spans[0] != COEFFICIENT and known is not None and 0 < mine.min() < mine.max():
             target = max(self._middle(rival, levels) for rival in overtaking)
             share = np.log(target / mine.min()) / np.log(mine.max() / mine.min())
-            return self.record_of(
-                known, int(np.clip(np.searchsorted(STEPS, share), 0, len(STEPS) - 1))
-            )
+            return record_of(known, int(np.clip(np.searchsorted(STEPS, share), 0, len(STEPS) - 1)))
         name = own.spans[0]
         values = own.results.levels(name)
         what = name
@@ -306,3 +263,137 @@ class Turning:
             for level in levels
         ]
         return np.array(at_level)
+
+
+def record_of(one: Placeholder, step: int = -1) -> dict[str, Any]:
+    """Return a placeholder with the value at one of `STEPS`, -1 for none; only a wear coefficient
+    has one.
+    """
+    turn = np.nan
+    if step >= 0 and one.name.startswith("wear_coefficient") and one.low > 0:
+        turn = float(one.high * (one.low / one.high) ** STEPS[step])
+    return {
+        "what": one.name,
+        "of": one.material,
+        "on": one.on,
+        "turn": turn,
+        "units": one.units,
+        "low": one.low,
+        "high": one.high,
+    }
+
+
+def value_behind(
+    results: SolvedCases, judges: Sequence[tuple[Required, CaseRanges]], rows: np.ndarray
+) -> dict[str, Any] | None:
+    """Return the value whose range leaves a requirement open, as `Turning.leads` does; None where
+    no range does.
+
+    Parameters
+    ----------
+    results : SolvedCases
+        The solved study.
+    judges : sequence of pairs
+        Each requirement with the output that judges it.
+    rows : numpy.ndarray of int, shape (k,)
+        Cases of one design.
+    """
+    for required, ranges in judges:
+        of_limit = value_of_open_limit(results, ranges, rows)
+        if of_limit is not None:
+            return of_limit
+        sure, may = ranges.meets(required, exact=True)
+        unsettled = rows[(may & ~sure & ranges.holds)[rows]]
+        if not len(unsettled):
+            continue
+        widest = unsettled[np.argmax(_width(ranges, unsettled))]
+        values = _values_behind(results, ranges, int(widest))
+        if values:
+            return record_of(max(values, key=_turns))
+    return None
+
+
+def _width(ranges: CaseRanges, rows: np.ndarray) -> np.ndarray:
+    """Return the width of the range of some cases on a logarithmic scale, shape (k,)."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        width = np.log(ranges.high[rows]) - np.log(ranges.low[rows])
+    return np.asarray(np.nan_to_num(width, nan=0.0, posinf=np.inf))
+
+
+def _turns(one: Placeholder) -> float:
+    """Return how many times a placeholder may be larger than at its low end; 0 without a range."""
+    if np.isnan(one.low):
+        return 0.0
+    if one.low <= 0.0:
+        return np.inf
+    return one.high / one.low
+
+
+def _values_behind(results: SolvedCases, ranges: CaseRanges, row: int) -> list[Placeholder]:
+    """Return the placeholders of the limit that ends a case at its worse end, and the tests of a
+    fitted material.
+    """
+    end = "_high"
+    if ranges.rises:
+        end = "_low"
+    limit, guide = (part[row] for part in ranges.first_at(end))
+    bodies = (BODIES[int(guide)], BODIES[1 - int(guide)])
+    material, other = (str(results.material(body)[row]) for body in bodies)
+    values = [
+        one
+        for one in placeholders_of(results.data)
+        if (one.limit, one.material) == (limit, material) and one.on in ("", other)
+    ]
+    if limit == "fatigue" and material in ranges.tested:
+        values.append(Placeholder("fatigue", material, "tests"))
+    return values
+
+
+def value_of_open_limit(
+    results: SolvedCases, ranges: CaseRanges, rows: np.ndarray
+) -> dict[str, Any] | None:
+    """Return the placeholder that leaves a limit without hours open in some cases of a design, as
+    `Turning.leads` does; None if none is open.
+
+    The use of the shakedown limit is inversely proportional to the yield strength, so that its turn
+    is known.
+    """
+    for limit, hit in ranges.open_limits.items():
+        own = rows[hit[rows]]
+        place = results.data["limit"].values.tolist().index(limit)
+        if not len(own) or _has_hours(results, own, place):
+            continue
+        use = flat(results.data, "utilisation", results.dims)[own, place].astype(float)
+        row, body = np.unravel_index(np.nanargmax(use), use.shape)
+        material = str(results.material(BODIES[body])[own[row]])
+        known = [
+            one
+            for one in placeholders_of(results.data)
+            if (one.limit, one.material) == (limit, material)
+        ]
+        if not known:
+            return {
+                "what": LIMITS[limit].word,
+                "of": material,
+                "on": "",
+                "turn": np.nan,
+                "units": "",
+            }
+        placeholder = record_of(known[0])
+        if len(known) > 1:
+            placeholder["what"] = " or ".join(dict.fromkeys(one.name for one in known))
+        if known[0].name == "yield_strength":
+            stored = json.loads(str(results.data.attrs.get("materials", "{}"))).get(material, {})
+            placeholder["turn"] = float(stored.get("yield_strength", np.nan)) * float(
+                np.nanmax(use)
+            )
+        return placeholder
+    return None
+
+
+def _has_hours(results: SolvedCases, rows: np.ndarray, place: int) -> bool:
+    """Return whether the hours to a limit are known in some cases."""
+    name = "life_hours_by_limit"
+    if name not in results.data:
+        return False
+    return not bool(np.isnan(flat(results.data, name, results.dims)[rows, place]).all())

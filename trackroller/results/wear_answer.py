@@ -21,7 +21,7 @@ import xarray as xr
 from trackroller.damage.wear import KM_PER_HOUR
 from trackroller.parameters import BODIES
 from trackroller.parameters.carriage_fields import long_name_of
-from trackroller.results.answer import Answer, Caution, Column, Part, Required
+from trackroller.results.answer import Answer, Caution, Column, FurtherTable, Required
 from trackroller.results.friction import friction_cautions
 from trackroller.results.life_columns import OF_PAIR
 from trackroller.results.placeholders import guess_cautions, placeholders_part
@@ -238,7 +238,7 @@ def _not_given(ds: xr.Dataset) -> dict[str, str]:
     return {name: value for name, value in words.items() if name != "travel"}
 
 
-def states_part(ds: xr.Dataset) -> Part:
+def states_part(ds: xr.Dataset) -> FurtherTable:
     """Return the states of the contact that wears more: depth, pressure, patch, forces, stress and
     damage.
     """
@@ -260,10 +260,12 @@ def states_part(ds: xr.Dataset) -> Part:
     for name, words, unit in (row for row in OF_CONTACT if row[0] in own):
         table[name] = own[name].values.astype(float)
         columns.append(Column(name, words, unit, "", "whole"))
-    return Part("states", f"States of contact {contact}", pd.DataFrame(table), tuple(columns))
+    return FurtherTable(
+        "states", f"States of contact {contact}", pd.DataFrame(table), tuple(columns)
+    )
 
 
-def _warnings(ds: xr.Dataset, guesses: Part) -> Iterator[Caution]:
+def _warnings(ds: xr.Dataset, guesses: FurtherTable) -> Iterator[Caution]:
     """Yield the flags of all states, placeholders, and values that were not given."""
     for flag in flags_of(ds):
         yield Caution(CODES.get(flag.name, "flagged"), 1, 1, f"{flag.sentence} {flag.remedy}", "")

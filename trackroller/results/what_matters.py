@@ -29,7 +29,7 @@ from trackroller.results.study_facts import (
 )
 from trackroller.results.subgroups import level_text
 from trackroller.roller.output_names import is_life
-from trackroller.study.design.entries import OPTION_FACTORS
+from trackroller.study.design.factor_names import OPTION_FACTORS
 from trackroller.study.outputs import default_names
 
 # indices of pairs of factors, the most exact first

@@ -13,7 +13,7 @@ _PLAIN = ("regime", "converged", "bits", "model", "rung", "stopped")  # fields w
 
 
 @dataclass
-class Block:
+class BlockResults:
     """Results of n cases; the first axis of every array is the case.
 
     Attributes
@@ -42,14 +42,14 @@ class Block:
     def __len__(self) -> int:
         return len(self.regime)
 
-    def take(self, rows: np.ndarray) -> Block:
+    def take(self, rows: np.ndarray) -> BlockResults:
         """Return the cases `rows`; a row may occur more than once."""
         values = {name: array[rows] for name, array in self.values.items()}
         plain = {name: getattr(self, name)[rows] for name in _PLAIN}
         bodies = None
         if self.bodies is not None:
             bodies = self.bodies[rows]
-        return Block(values, **plain, bodies=bodies)
+        return BlockResults(values, **plain, bodies=bodies)
 
     def fail(self, rows: list[int]) -> None:
         """Mark the cases `rows` as failed, without results."""
@@ -62,7 +62,7 @@ class Block:
                 array[rows] = np.nan
 
 
-def join(parts: Sequence[Block]) -> Block:
+def join(parts: Sequence[BlockResults]) -> BlockResults:
     """Return blocks joined along the case; NaN fills missing values and the ends of shorter
     grids.
     """
@@ -81,7 +81,7 @@ def join(parts: Sequence[Block]) -> Block:
     bodies = None
     if len(flags) == len(parts):
         bodies = np.concatenate(flags)
-    return Block(values, **plain, bodies=bodies)
+    return BlockResults(values, **plain, bodies=bodies)
 
 
 def _joined(arrays: list[np.ndarray], lengths: list[int]) -> np.ndarray:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from trackroller import __version__
-from trackroller.damage import verdict, with_limits
+from trackroller.damage import first_limit, with_limits
 from trackroller.damage.limit import variables
 from trackroller.numerics.variable import ESTIMATE, LARGEST, SUM
 from trackroller.parameters import CONTACT_MODELS, FIRST_TO_FAIL, LIMITS, REGIMES
@@ -320,7 +320,11 @@ _GROUPS = {
 
 VARIABLES = with_limits(
     {v.name: v for group, rows in _GROUPS.items() for v in variables(group, *rows)},
-    (v for rows in (*(limit.results for limit in LIMITS.values()), verdict.RESULTS) for v in rows),
+    (
+        v
+        for rows in (*(limit.results for limit in LIMITS.values()), first_limit.RESULTS)
+        for v in rows
+    ),
     "a result",
 )
 
@@ -369,7 +373,7 @@ FLAGS: dict[str, tuple[str, Sequence[str]]] = {
     "limiting_mechanism": ("limit of the body that is reached first", (*LIMITS, "unknown")),
     "limit_state": (
         "whether a limit is kept; open: exceeded at one end of a range of placeholders",
-        verdict.STATES,
+        first_limit.STATES,
     ),
     "stopped": ("the condition of stop_if holds: no peak stress is searched for", ("no", "yes")),
 }

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from trackroller.damage import groups_of
-from trackroller.damage.verdict import GROUP as VERDICT
+from trackroller.damage.first_limit import GROUP as LIMITS_GROUP
 from trackroller.errors import InputError, unknown_name
 from trackroller.materials import MaterialDatabase, load_database
 from trackroller.numerics.brackets import narrowed
@@ -39,7 +39,7 @@ STATUS = "status"  # group of results that are always there
 
 
 @dataclass(frozen=True)
-class Found:
+class FoundRange:
     """The range of a parameter in which a condition is met.
 
     Attributes
@@ -142,7 +142,7 @@ def find(
     between: tuple[float, float] | None = None,
     database: MaterialDatabase | None = None,
     **options: Any,
-) -> Found:
+) -> FoundRange:
     """Find the values of a parameter for which a roller meets a condition.
 
     Parameters
@@ -167,7 +167,7 @@ def find(
 
     Returns
     -------
-    Found
+    FoundRange
         The range of values that meet the condition and holds the case's value, or is next to it.
 
     Raises
@@ -206,7 +206,7 @@ def find(
         raise InputError(
             "find", name, "a parameter with a number in the case", f"Give the case a finite {name}."
         )
-    search = _Search(given, name, condition, database, options)
+    search = _RangeSearch(given, name, condition, database, options)
     notes: list[str] = []
     if between is not None:
         between, notes = _cut(PARAMETERS[name], float(start), between)
@@ -295,7 +295,7 @@ def _run_around(is_met: np.ndarray, distance: np.ndarray) -> tuple[int, int]:
     return first, last
 
 
-class _Search:
+class _RangeSearch:
     """Solve a roller at values of one parameter, and compare its results."""
 
     def __init__(
@@ -318,7 +318,7 @@ class _Search:
         self.results = sorted(used & set(PARTS))
         self.parameters = sorted(used & set(PARAMETERS))
         groups = {PARTS[result].variable.group for result in self.results} - {STATUS}
-        if VERDICT in groups:
+        if LIMITS_GROUP in groups:
             groups |= set(groups_of("find", ["all"]))
         self.options = {**options, "outputs": tuple(sorted(groups | {"forces"}))}
         self.ranged: set[str] = set()
@@ -413,7 +413,9 @@ class _Search:
         of_case = doubts_of_case(self.case, database)
         return [text for text in doubts_of_case(changed, database) if text not in of_case]
 
-    def range_around(self, start: float, values: np.ndarray, notes: Iterable[str] = ()) -> Found:
+    def range_around(
+        self, start: float, values: np.ndarray, notes: Iterable[str] = ()
+    ) -> FoundRange:
         """Return the range of values that meet the condition and holds the start, or is next to it.
 
         The `notes` are added to those of the search.
@@ -426,7 +428,7 @@ class _Search:
             nearest = answers[int(np.argmin(np.abs(values - start)))][1]
             why = f"now {nearest}"
             none = math.nan
-            return Found(
+            return FoundRange(
                 self.name,
                 unit,
                 self.condition,
@@ -462,6 +464,6 @@ class _Search:
         low, high = ends
         odd = dict.fromkeys(text for end in (low, high) for text in self.odd_at(end))
         notes = (*self.notes(), *notes, *(f"Doubtful: {text}" for text in odd))
-        return Found(
+        return FoundRange(
             self.name, unit, self.condition, start, low, high, tried, texts[0], texts[1], notes
         )

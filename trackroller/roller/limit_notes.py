@@ -8,6 +8,7 @@ on the words.
 
 from __future__ import annotations
 
+import json
 import re
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
@@ -15,9 +16,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from trackroller.damage import fields_of, judged, limits_of
+from trackroller.damage import checked_limits, fields_of, limits_of
 from trackroller.damage.limit import SN_SCATTER, Limit, SolvedRollers, missing
 from trackroller.damage.sn_curve import TYPICAL_SCATTER
+from trackroller.damage.stud import FIELD as STUD_FIELD
+from trackroller.damage.stud import LIMIT as STUD
+from trackroller.damage.stud import MATERIAL, without_scatter
 from trackroller.damage.wear import TABLE as WEAR_TABLE
 from trackroller.materials.energy_wear import FIELD as ENERGY_WEAR
 from trackroller.materials.material import UNNAMED
@@ -213,6 +217,11 @@ def notes_on_limits(table: CaseTable, options: Options) -> list[str]:
                 placeholders.append(Placeholder(limit.name, material, *TYPICAL))
             if placeholders:
                 out.append(placeholder_line(placeholders))
+        if limit.name == STUD.name and limit in served and _is_off_median(solved):
+            typical = without_scatter(solved.cases)
+            texts = dict.fromkeys(solved.cases[STUD_FIELD.name][typical].tolist())
+            own = dict.fromkeys(_material_of_stud(text) for text in texts)
+            out += [placeholder_line([Placeholder(STUD.name, name, *TYPICAL)]) for name in own]
     return list(dict.fromkeys(out))
 
 
@@ -220,8 +229,18 @@ def _typical_scatter(limit: Limit, solved: SolvedRollers) -> np.ndarray:
     """Return where a limit takes the typical scatter, because its material gives none, (n, 2)."""
     materials = solved.materials
     unknown = np.isnan(materials["scatter_in_cycles"]) & np.isnan(materials["scatter_in_stress"])
-    off_median = solved.options["failure_probability"] != 0.5
-    return np.asarray(unknown & (off_median and limit.distribution == SN_SCATTER))
+    counts = _is_off_median(solved) and limit.distribution == SN_SCATTER
+    return np.asarray(unknown & counts)
+
+
+def _is_off_median(solved: SolvedRollers) -> bool:
+    """Return whether lives are those at another failure probability than 50 %."""
+    return bool(solved.options["failure_probability"] != 0.5)
+
+
+def _material_of_stud(text: str) -> str:
+    """Return the name of the material of a stud that is given as JSON; 'stud' without one."""
+    return str(json.loads(text).get(MATERIAL, STUD.name))
 
 
 def _lacks(limit: Limit, solved: SolvedRollers, names: Mapping[str, np.ndarray]) -> Iterator[Lack]:
@@ -287,7 +306,8 @@ def given_in_vain(values: Mapping[str, Any], idle: Iterable[str]) -> dict[str, l
         any study may have.
     """
     users = {
-        name: [limit.name for limit in judged() if name in fields_of(limit)] for name in values
+        name: [limit.name for limit in checked_limits() if name in fields_of(limit)]
+        for name in values
     }
     unused = {
         name: own for name, own in users.items() if own and {*own} <= {*idle} and name != "travel"

@@ -19,7 +19,7 @@ from trackroller.contact.profiles import PointRows
 from trackroller.errors import Collector, InputError
 from trackroller.files import find_beside, read_bytes, text_of
 from trackroller.numerics.numbers import number_or_nan
-from trackroller.numerics.table_cells import Refused
+from trackroller.numerics.table_cells import RefusedCell
 from trackroller.roller.simpack_profile import is_simpack, simpack_points
 from trackroller.tables.table_kind import TableKind
 from trackroller.tables.user_table import UserTable, read_user_table
@@ -173,7 +173,7 @@ def _width(cells: list[str], name: str) -> float:
 
 def _length(cell: str, name: str) -> float:
     """Return the number of a cell in mm, NaN for a cell without a number."""
-    if isinstance(cell, Refused):
+    if isinstance(cell, RefusedCell):
         return math.nan
     return number_or_nan(cell, AXES[name], name)
 
@@ -187,7 +187,7 @@ def _points(
     for number, line in table.lines.items():
         cells = [line[place] for place in places]
         # the reader has added their errors
-        if any(isinstance(cell, Refused) or not cell for cell in cells):
+        if any(isinstance(cell, RefusedCell) or not cell for cell in cells):
             continue
         try:
             points[number] = [_length(cell, name) for cell, name in zip(cells, names, strict=True)]

@@ -9,14 +9,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numba.core.registry import cpu_target
 
-from trackroller.damage import fatigue, judged, limits_of, verdict
+from trackroller.damage import checked_limits, fatigue, first_limit, limits_of
 from trackroller.damage.limit import Limit
 from trackroller.errors import InputError
 from trackroller.materials import load_database
 from trackroller.parameters import CONTACT_MODELS, MECHANICAL_MAPPINGS, OPTIONS
 from trackroller.parameters.accuracy import RUNGS, Accuracy
 from trackroller.roller import distinct_contacts, temperature
-from trackroller.roller.block_results import Block, join
+from trackroller.roller.block_results import BlockResults, join
 from trackroller.roller.case import Case, CaseTable, is_single, to_table
 from trackroller.roller.dataset import NOTES, VARIABLES, build, file_attributes, joined
 from trackroller.roller.expected_errors import tell_errors
@@ -226,7 +226,9 @@ def _solve_table(table: CaseTable, options: Options, single: bool) -> xr.Dataset
         assemble(block, options, single), worn, options, temperature.reasons(block) | lost
     )
     tell_errors(ds, worn, options)
-    checks_limits = verdict.GROUP in options.outputs or options.life_criterion in fatigue.STRESS_OF
+    checks_limits = (
+        first_limit.GROUP in options.outputs or options.life_criterion in fatigue.STRESS_OF
+    )
     warm = temperature.notes(worn, block)
     if checks_limits or warm or any(limit.shared for limit in limits_of(options.outputs)):
         ds.attrs[NOTES] = "\n".join([*notes_on_limits(worn, options), *warm])
@@ -252,7 +254,7 @@ def _cut(table: CaseTable, size: int) -> Iterator[CaseTable]:
         yield table.take(np.arange(i, min(i + size, len(table))))
 
 
-def _solve_window(table: CaseTable, options: Options) -> Block:
+def _solve_window(table: CaseTable, options: Options) -> BlockResults:
     """Solve each distinct mechanics once; then compute power, life and warnings of every case."""
     if options.shortcuts:
         one_handed, mirrored = handed(table)
@@ -260,7 +262,7 @@ def _solve_window(table: CaseTable, options: Options) -> Block:
         one_handed = table
         mirrored = np.zeros(len(table), bool)
 
-    def solve_all(cases: CaseTable) -> Block:
+    def solve_all(cases: CaseTable) -> BlockResults:
         return join([meet(few, options, _solve_block) for few in _cut(cases, BLOCK)])
 
     distinct = one_handed
@@ -284,7 +286,7 @@ def _solve_window(table: CaseTable, options: Options) -> Block:
     return block
 
 
-def _solve_block(table: CaseTable, options: Options) -> Block:
+def _solve_block(table: CaseTable, options: Options) -> BlockResults:
     """Solve cases together that share a contact model, a friction law and profiles."""
     groups = list(_groups(table, options))
     if len(groups) == 1:  # its rows are in order
@@ -317,7 +319,7 @@ def _groups(table: CaseTable, options: Options) -> Iterator[tuple[str, int, np.n
         yield options.contact_model, 1, np.arange(0)
 
 
-def _solve_group(table: CaseTable, options: Options, across: int) -> Block:
+def _solve_group(table: CaseTable, options: Options, across: int) -> BlockResults:
     scene = stages.prepare(table, options, across)
     results = StageResults.start(scene, balance(scene))
     results.flag(
@@ -326,7 +328,7 @@ def _solve_group(table: CaseTable, options: Options, across: int) -> Block:
     return block_of(results, options)
 
 
-def block_of(results: StageResults, options: Options) -> Block:
+def block_of(results: StageResults, options: Options) -> BlockResults:
     """Return the results of balanced rollers with the stages that the outputs need."""
     scene = results.scene
     outputs = set(options.outputs)
@@ -356,7 +358,7 @@ def block_of(results: StageResults, options: Options) -> Block:
     rung = np.zeros(scene.n, dtype=np.int8)
     if settings in RUNGS:
         rung[:] = RUNGS.index(settings)
-    return Block(
+    return BlockResults(
         results.values,
         results.regime,
         results.converged,
@@ -372,7 +374,7 @@ def _limits(table: CaseTable, options: Options) -> tuple[Limit, ...]:
     return stages_outcome.to_compute(stages_outcome.solved_of(table, {}, options), options)
 
 
-def assemble(block: Block, options: Options, single: bool) -> xr.Dataset:
+def assemble(block: BlockResults, options: Options, single: bool) -> xr.Dataset:
     """Return a block of finished cases as a labelled data set; `single` drops the dimension
     `case`.
     """
@@ -382,13 +384,13 @@ def assemble(block: Block, options: Options, single: bool) -> xr.Dataset:
         if (
             name in VARIABLES
             and VARIABLES[name].group in options.outputs
-            and name != verdict.AT_MOST
+            and name != first_limit.AT_MOST
         )
         or name == "residual"
-        or (name == verdict.AT_MOST and options.at_most)
+        or (name == first_limit.AT_MOST and options.at_most)
         or (name == "error_estimate" and "peak_stress" in options.outputs)
         # the materials of these results are those at this temperature
-        or (name == "bulk_temperature_rise" and verdict.GROUP in options.outputs)
+        or (name == "bulk_temperature_rise" and first_limit.GROUP in options.outputs)
     ]
     attrs: dict[str, Any] = {
         **file_attributes("Forces, stresses and life of track rollers", "solved"),
@@ -404,15 +406,15 @@ def assemble(block: Block, options: Options, single: bool) -> xr.Dataset:
         flags["accuracy_used"] = block.rung
     grouped = {
         "first_to_fail": "life",
-        "limiting_mechanism": verdict.GROUP,
-        "limit_state": verdict.GROUP,
+        "limiting_mechanism": first_limit.GROUP,
+        "limit_state": first_limit.GROUP,
     }
     flags |= {
         name: block.values[name] for name, group in grouped.items() if group in options.outputs
     }
-    if verdict.GROUP in options.outputs:
+    if first_limit.GROUP in options.outputs:
         attrs["limits"] = " ".join(
-            limit.name for limit in judged(options.outputs, options.not_checked)
+            limit.name for limit in checked_limits(options.outputs, options.not_checked)
         )
     if options.stop_if is not None:
         flags["stopped"] = block.stopped

@@ -21,7 +21,7 @@ import numpy as np
 from trackroller.errors import InputError, check_names
 from trackroller.numerics.units import without_units
 from trackroller.parameters import BODIES, PARAMETERS, REGIMES
-from trackroller.parameters.expressions import Comparison, comparisons, condition, names
+from trackroller.parameters.expressions import Relation, comparisons, condition, names
 from trackroller.roller.dataset import VARIABLES
 from trackroller.roller.output_names import CONTACTS, PARTS, unit_of
 
@@ -51,7 +51,7 @@ LEFT = (
 )
 
 
-def compared(comparison: Comparison) -> str:
+def compared(comparison: Relation) -> str:
     """Return the variable on the left side of a comparison."""
     if comparison.name in PARTS:
         return PARTS[comparison.name].variable.name
@@ -66,7 +66,7 @@ def stops_at(text: str | None) -> set[str]:
 
 
 @lru_cache(maxsize=64)
-def parse_condition(text: str) -> tuple[Comparison, ...]:
+def parse_condition(text: str) -> tuple[Relation, ...]:
     """Return the comparisons of a condition.
 
     Parameters
@@ -76,7 +76,7 @@ def parse_condition(text: str) -> tuple[Comparison, ...]:
 
     Returns
     -------
-    tuple of Comparison
+    tuple of Relation
         The comparisons in the order of the text.
 
     Raises
@@ -102,12 +102,12 @@ def parse_condition(text: str) -> tuple[Comparison, ...]:
     return parts
 
 
-def holds(comparison: Comparison, value: np.ndarray, table: Any) -> np.ndarray:
+def holds(comparison: Relation, value: np.ndarray, table: Any) -> np.ndarray:
     """Mark the cases for which a comparison holds in any contact and body.
 
     Parameters
     ----------
-    comparison : Comparison
+    comparison : Relation
         Part of a condition.
     value : numpy.ndarray, shape (n,), (n, 2) or (n, 2, 2)
         Values of the left side, by contact and body. The comparison never holds for NaN or an

@@ -23,7 +23,7 @@ import numpy as np
 
 from trackroller.materials.temperature import FOLLOW_STRENGTH, TABLED, TemperatureTable
 from trackroller.parameters import BODIES
-from trackroller.roller.block_results import Block, join
+from trackroller.roller.block_results import BlockResults, join
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -45,8 +45,11 @@ _table = lru_cache(maxsize=256)(lambda text: TemperatureTable(**json.loads(text)
 
 
 def settle(
-    table: CaseTable, block: Block, options: Options, solve: Callable[[CaseTable], Block]
-) -> tuple[CaseTable, Block]:
+    table: CaseTable,
+    block: BlockResults,
+    options: Options,
+    solve: Callable[[CaseTable], BlockResults],
+) -> tuple[CaseTable, BlockResults]:
     """Solve cases whose materials have tables again until their temperatures stay.
 
     Parameters
@@ -62,7 +65,7 @@ def settle(
     -------
     table : CaseTable
         The cases with the values at their temperatures.
-    block : Block
+    block : BlockResults
         Their results, with `unsettled`, (n,), if a case was solved again. Cases without a table
         keep theirs.
     """
@@ -92,7 +95,7 @@ def settle(
     return warm, block
 
 
-def temperatures(table: CaseTable, block: Block) -> np.ndarray:
+def temperatures(table: CaseTable, block: BlockResults) -> np.ndarray:
     """Return the temperature of roller and guide, (n, body) [degC]; NaN where `heat` does not know
     the rise.
     """
@@ -145,14 +148,14 @@ def _differ(one: CaseTable, other: CaseTable) -> np.ndarray:
     )
 
 
-def reasons(block: Block) -> dict[int, str]:
+def reasons(block: BlockResults) -> dict[int, str]:
     """Return why cases did not settle, by row."""
     return dict.fromkeys(
         np.flatnonzero(block.values.get(UNSETTLED, np.zeros(0)) > 0).tolist(), REASON
     )
 
 
-def notes(table: CaseTable, block: Block) -> list[str]:
+def notes(table: CaseTable, block: BlockResults) -> list[str]:
     """Return one sentence on each table that results rest on, and on each that a temperature
     leaves.
     """

@@ -22,7 +22,7 @@ from trackroller.roller.options import model_in_use
 if TYPE_CHECKING:
     import xarray as xr
 
-    from trackroller.roller.block_results import Block
+    from trackroller.roller.block_results import BlockResults
     from trackroller.roller.case import Case, CaseTable
     from trackroller.roller.options import Options
 
@@ -35,7 +35,7 @@ PEAKS = ("below_surface", "at_surface")
 ORDINARY_FRICTION = 0.4  # largest friction of the designs that the factors were measured on
 
 
-def calibrate(table: CaseTable, block: Block, options: Options) -> None:
+def calibrate(table: CaseTable, block: BlockResults, options: Options) -> None:
     """Scale the estimated errors of a block of solved cases, in place.
 
     Cases with more friction than ordinary ones, falling friction, a film, solved patches and
@@ -45,7 +45,7 @@ def calibrate(table: CaseTable, block: Block, options: Options) -> None:
     ----------
     table : CaseTable
         The n cases.
-    block : Block
+    block : BlockResults
         Their results. Errors of F_N, F_T, F_A and friction energy have the shape (n, 2), those of
         peaks (n, 2, 2).
     options : Options

@@ -11,7 +11,7 @@ import numpy as np
 
 from trackroller.damage import fatigue
 from trackroller.parameters.accuracy import RUNGS, Tolerance
-from trackroller.roller.block_results import Block, join
+from trackroller.roller.block_results import BlockResults, join
 from trackroller.roller.dataset import validity_bit
 from trackroller.roller.expected_errors import least_errors
 from trackroller.roller.stages.outcome import solved_of
@@ -27,7 +27,9 @@ FORCE_ERRORS = (
 )
 
 
-def meet(table: CaseTable, options: Options, solve: Callable[[CaseTable, Options], Block]) -> Block:
+def meet(
+    table: CaseTable, options: Options, solve: Callable[[CaseTable, Options], BlockResults]
+) -> BlockResults:
     """Solve cases on the rungs of accuracy until their estimated errors are within the tolerance.
 
     Parameters
@@ -41,7 +43,7 @@ def meet(table: CaseTable, options: Options, solve: Callable[[CaseTable, Options
 
     Returns
     -------
-    Block
+    BlockResults
         The results. With a tolerance they have `error_over_tolerance` (n,), NaN for cases that did
         not converge, and the flag `tolerance_missed` where no rung keeps the tolerance. Such a case
         has the result of the rung with the smallest estimated error.
@@ -54,7 +56,7 @@ def meet(table: CaseTable, options: Options, solve: Callable[[CaseTable, Options
     tolerance = options.tolerance
     if tolerance is None:
         return solve(table, options)
-    blocks: list[Block] = []
+    blocks: list[BlockResults] = []
     row_of_best = np.full(len(table), -1)  # of the best result so far
     best = np.full(len(table), np.inf)  # its error
     unmet = np.arange(len(table))
@@ -95,7 +97,9 @@ def _peak_tolerance(table: CaseTable, options: Options, tolerance: Tolerance) ->
     return np.fmin(tolerance.peak, tolerance.life / np.fmax(exponent.max(axis=(1, 2)), 1.0))
 
 
-def _over(table: CaseTable, block: Block, options: Options, tolerance: Tolerance) -> np.ndarray:
+def _over(
+    table: CaseTable, block: BlockResults, options: Options, tolerance: Tolerance
+) -> np.ndarray:
     """Return the largest estimated error of each case over its tolerance, (n,); NaN for cases
     without convergence.
     """

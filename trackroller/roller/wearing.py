@@ -308,7 +308,7 @@ class Wearing:
         if not self._law or self.end(results):
             return False
         t = surface_tractions(results)
-        work = np.hypot(t.shear_lateral, t.shear_rolling) * np.hypot(t.slip_lateral, t.slip_rolling)
+        work = t.shear * t.slip
         return bool(leaves_table(work, self._law).any())
 
     def _leaning(self, results: StageResults, table: CaseTable) -> np.ndarray:

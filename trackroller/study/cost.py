@@ -7,7 +7,7 @@ from itertools import product
 from typing import TYPE_CHECKING, Any
 
 from trackroller.contact.friction_laws import law_of
-from trackroller.damage import verdict
+from trackroller.damage import first_limit
 from trackroller.methods import METHODS
 from trackroller.parameters import OPTIONS
 from trackroller.parameters.accuracy import PEAK_OUTPUTS, tolerance_of
@@ -17,7 +17,7 @@ from trackroller.parameters.contact_models import (
     YARDSTICK,
     measured_costs,
 )
-from trackroller.study.design.entries import OPTION_FACTORS
+from trackroller.study.design.factor_names import OPTION_FACTORS
 
 if TYPE_CHECKING:
     from trackroller.study.file.study import Study
@@ -86,15 +86,17 @@ def _seconds_of_limits(
 ) -> float:
     """Return the expected time of the limits of a case on one core; those of forces take none."""
     ratios: dict[str, float] = measured_costs()["limits"]
-    spent = sum(ratio for name, ratio in ratios.items() if name in groups and name != verdict.GROUP)
-    if verdict.GROUP in groups:
+    spent = sum(
+        ratio for name, ratio in ratios.items() if name in groups and name != first_limit.GROUP
+    )
+    if first_limit.GROUP in groups:
         heats = set(fields) >= _HEATED and not {"heat"} & {*groups, *not_checked}
         shakes = not {"shakedown"} & {*groups, *not_checked}
         # the materials of the database have what shakedown needs
         if shakes:
-            spent += ratios[verdict.GROUP]
+            spent += ratios[first_limit.GROUP]
         if heats:
-            spent += max(ratios[_WITH_HEAT] - ratios[verdict.GROUP], 0.0)
+            spent += max(ratios[_WITH_HEAT] - ratios[first_limit.GROUP], 0.0)
     return YARDSTICK * spent
 
 

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 import xarray as xr
 
-from trackroller.damage import verdict
+from trackroller.damage import first_limit
 from trackroller.errors import InputError, unknown_name
 from trackroller.parameters import (
     BODIES,
@@ -20,7 +20,7 @@ from trackroller.parameters import (
 )
 from trackroller.roller.dataset import FLAGS, VARIABLES
 from trackroller.roller.output_names import PARTS, Part, declared, parts_of
-from trackroller.study.design.entries import CASE_FIELDS
+from trackroller.study.design.factor_names import CASE_FIELDS
 
 BOOKKEEPING = {  # variables that describe how a case was solved; an analysis compares other results
     *(*FLAGS, "validity", "validity_body", "reason", "material_pair", "residual"),
@@ -80,7 +80,7 @@ def of_fatigue(name: str) -> bool:
 def of_first_limit(name: str) -> bool:
     """Return whether a result is a life to the first limit that is reached."""
     variable = declared(name)
-    return variable.group == verdict.GROUP and variable.life and "limit" not in variable.dims
+    return variable.group == first_limit.GROUP and variable.life and "limit" not in variable.dims
 
 
 def case_dims(ds: xr.Dataset, factors: Iterable[str]) -> tuple[str, ...]:
@@ -272,9 +272,9 @@ def _countable(
 
 def _check_number(ds: xr.Dataset, part: Part) -> None:
     """Refuse a utilisation that a bound stands for in some cases: it is no number to compare."""
-    if part.variable.name != "utilisation" or verdict.AT_MOST not in ds:
+    if part.variable.name != "utilisation" or first_limit.AT_MOST not in ds:
         return
-    count = int(replace(part, variable=VARIABLES[verdict.AT_MOST]).values(ds).notnull().sum())
+    count = int(replace(part, variable=VARIABLES[first_limit.AT_MOST]).values(ds).notnull().sum())
     if count:
         group = LIMITS[part.at["limit"]].group
         raise InputError(

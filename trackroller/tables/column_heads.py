@@ -10,7 +10,7 @@ from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 
 from trackroller.errors import Collector, InputError, listing
-from trackroller.numerics.table_cells import Refused, is_number, plain_quantity, split_head
+from trackroller.numerics.table_cells import RefusedCell, is_number, plain_quantity, split_head
 from trackroller.numerics.units import PLAIN, in_unit, split_quantity
 from trackroller.tables.table_kind import Row, Source, TableKind
 from trackroller.tables.totals import value_of
@@ -25,7 +25,9 @@ def is_comment(cells: Sequence[str]) -> bool:
     """
     first = cells[0]
     return (
-        first.startswith("#") and not isinstance(first, Refused) and not _EXCEL_ERROR.match(first)
+        first.startswith("#")
+        and not isinstance(first, RefusedCell)
+        and not _EXCEL_ERROR.match(first)
     )
 
 
@@ -191,7 +193,7 @@ def head_names_and_units(
 
 def _check_named(head: str, name: str, unit: str, used: Collection[str], kind: TableKind) -> None:
     """Refuse a head that is not clear, and a unit that nothing would convert."""
-    if isinstance(head, Refused):
+    if isinstance(head, RefusedCell):
         raise InputError(kind.field, head, *head.message)
     if name in kind.units and unit:
         check_unit(name, unit, kind.units)

@@ -15,7 +15,7 @@ from pathlib import Path
 
 from trackroller.errors import InputError
 from trackroller.files import cell_as_meant
-from trackroller.numerics.table_cells import SEPARATORS, Refused, is_number, stated_separator
+from trackroller.numerics.table_cells import SEPARATORS, RefusedCell, is_number, stated_separator
 
 BLANK = " "
 _QUOTED = re.compile(r'"[^"]*"')
@@ -29,7 +29,7 @@ def csv_lines(
     """Return numbers and cells of the lines of a CSV file, and the character between its cells.
 
     Spaces around a cell are left out. A cell that holds a formula, or that has swallowed the next
-    lines because a quotation mark is missing, is `Refused`.
+    lines because a quotation mark is missing, is `RefusedCell`.
 
     Parameters
     ----------
@@ -121,15 +121,15 @@ def _cells(
 
 
 def _cell(cell: str, separator: str) -> str:
-    """Return a cell without blanks around it, `Refused` if it is no value."""
+    """Return a cell without blanks around it, `RefusedCell` if it is no value."""
     cell = cell.strip()
     if cell.startswith("="):
-        return Refused(
+        return RefusedCell(
             cell,
             "a value; this is a formula",
             "Write its value; if it is a name, write ' before it.",
         )
     if "\n" in cell and separator in cell:
         allowed = "the text of one cell; this one goes over several lines"
-        return Refused(cell, allowed, "Close its quotation marks.")
+        return RefusedCell(cell, allowed, "Close its quotation marks.")
     return cell_as_meant(cell)

@@ -28,7 +28,7 @@ from trackroller.errors import Collector, InputError, checked_text, listing
 from trackroller.files import read_bytes, text_of
 from trackroller.numerics.numbers import number_or_nan
 from trackroller.numerics.table_cells import (
-    Refused,
+    RefusedCell,
     Stored,
     decimal_signs,
     is_number,
@@ -406,7 +406,7 @@ def _columns_of_numbers(table: UserTable, used: Collection[str]) -> list[int]:
 
 def _read_numbers(table: UserTable, numbers: list[int], small: bool) -> None:
     """Write the numbers of the table plainly, with their units; cells that are not clear become
-    `Refused`.
+    `RefusedCell`.
     """
     columns = [table.column(j) for j in range(len(table.names))]
     cells = [cell for j in numbers for cell in columns[j]]
@@ -425,7 +425,7 @@ def _read_numbers(table: UserTable, numbers: list[int], small: bool) -> None:
 
 def _with_one_sign(column: list[str], cells: list[str], signs: frozenset[str]) -> list[str]:
     """Return a column in which numbers with another decimal sign than the first of all cells are
-    `Refused`.
+    `RefusedCell`.
     """
     certain = []
     if len(signs) > 1:
@@ -437,7 +437,7 @@ def _with_one_sign(column: list[str], cells: list[str], signs: frozenset[str]) -
     checked = []
     for cell in column:
         if decimal_signs([cell]) - sign:
-            cell = Refused(cell, allowed, "Write all numbers in the same way.")
+            cell = RefusedCell(cell, allowed, "Write all numbers in the same way.")
         checked.append(cell)
     return checked
 
@@ -464,7 +464,7 @@ def _plain_numbers(cells: list[str], j: int, table: UserTable) -> Sequence[str]:
 
 def _stored(cell: str) -> str:
     """Return a cell of a further column, whose number is not read again."""
-    if isinstance(cell, Refused):
+    if isinstance(cell, RefusedCell):
         return cell
     return Stored(cell)
 
@@ -479,22 +479,22 @@ def _in_unit_of_head(cell: str, unit: str) -> str:
 def _beside_units(cell: str) -> str:
     """Return a cell of a column in which other cells have units.
 
-    A number without a unit is returned as `Refused`, because it could be in their unit; its message
-    is raised where the cell is used.
+    A number without a unit is returned as `RefusedCell`, because it could be in their unit; its
+    message is raised where the cell is used.
     """
     if not _is_without_unit(cell) or number_or_nan(cell) == 0.0:
         return cell
     remedy = f"Write the unit behind {cell}, or at the head of the column."
-    return Refused(cell, "a number with its unit, as in other cells of the column", remedy)
+    return RefusedCell(cell, "a number with its unit, as in other cells of the column", remedy)
 
 
 def _is_without_unit(cell: str) -> bool:
-    return not isinstance(cell, Refused) and not math.isnan(number_or_nan(cell))
+    return not isinstance(cell, RefusedCell) and not math.isnan(number_or_nan(cell))
 
 
 def _with_unit(cell: str) -> bool:
     parts = split_quantity(cell)
-    return parts is not None and parts[1] != "" and not isinstance(cell, Refused)
+    return parts is not None and parts[1] != "" and not isinstance(cell, RefusedCell)
 
 
 def _refuse_totals(table: UserTable, numbers: list[int], source: Source) -> None:
@@ -521,8 +521,8 @@ def _refuse_mixtures(table: UserTable, numbers: list[int], used: Collection[str]
         if not is_free or table.all(j, lambda cell: math.isnan(value_of(cell))):
             continue
         for line in table.lines.values():
-            if line[j] and not isinstance(line[j], Refused) and not is_number(line[j]):
-                line[j] = Refused(line[j], allowed, remedy)
+            if line[j] and not isinstance(line[j], RefusedCell) and not is_number(line[j]):
+                line[j] = RefusedCell(line[j], allowed, remedy)
 
 
 def _check_cells(table: UserTable, source: Source) -> None:
@@ -537,7 +537,7 @@ def _check_cells(table: UserTable, source: Source) -> None:
         if not cell and name not in optional:
             remedy = "Fill the cell, or remove the line."
             source.refuse(number, name, cell, "a value; the cell is empty", remedy)
-        elif isinstance(cell, Refused):
+        elif isinstance(cell, RefusedCell):
             source.refuse(number, name, str(cell), *cell.message)
         if len(source.wrong.errors) > MOST_ERRORS:
             break

@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from trackroller.errors import InputError, raise_all
-from trackroller.numerics.table_cells import Refused, Stored
+from trackroller.numerics.table_cells import RefusedCell, Stored
 
 MAX_UNPACKED = 25_000_000  # bytes of all parts: openpyxl needs some twenty times as much memory
 MAX_CELLS = 500_000  # also empty ones between others
@@ -64,8 +64,8 @@ def sheet_lines(
     -------
     list of tuple of int and list of str
         Numbers are `Stored`, and cells that a person reads otherwise than the program would are
-        `Refused`. A row ends with its last cell that is not empty, or with the width of the first
-        row.
+        `RefusedCell`. A row ends with its last cell that is not empty, or with the width of the
+        first row.
 
     Raises
     ------
@@ -250,7 +250,7 @@ def _texts(row: Sequence[Any]) -> list[str]:
 
 def _checked(values: Sequence[Any], formulas: Sequence[Any], computed_on_load: bool) -> list[str]:
     """Return the texts of a row; formulas without their value, and sums of the cells above, are
-    `Refused`.
+    `RefusedCell`.
 
     XlsxWriter stores 0 for every formula, and asks Excel to compute the workbook as it opens it.
     """
@@ -263,15 +263,15 @@ def _checked(values: Sequence[Any], formulas: Sequence[Any], computed_on_load: b
         is_empty = stored is None and values[j].data_type == "n"
         if is_empty or (computed_on_load and stored == 0):
             remedy = "Open the workbook in Excel or LibreOffice and save it there."
-            cells[j] = Refused(
+            cells[j] = RefusedCell(
                 text, "a value; the workbook holds a formula without its value", remedy
             )
-        elif _takes_several(text, formula.column_letter) and not isinstance(cells[j], Refused):
+        elif _takes_several(text, formula.column_letter) and not isinstance(cells[j], RefusedCell):
             allowed = (
                 "a value of its own; this formula sums up the lines above, or takes several of them"
             )
             remedy = "Remove the line, or put it into another sheet; if it counts, write its value."
-            cells[j] = Refused(text, allowed, remedy)
+            cells[j] = RefusedCell(text, allowed, remedy)
     return cells
 
 
@@ -295,9 +295,9 @@ def _text(cell: Any) -> str:
     # Excel makes dates of 1-2 and 3/4
     if isinstance(value, (datetime.date, datetime.time, datetime.timedelta)):
         allowed = "a number or a text; the sheet holds a date"
-        return Refused(str(value), allowed, "Give the cell the format of a number or a text.")
+        return RefusedCell(str(value), allowed, "Give the cell the format of a number or a text.")
     if cell.data_type == "e":
-        return Refused(
+        return RefusedCell(
             str(value), "a value; the formula of this cell has an error", "Correct the formula."
         )
     if isinstance(value, bool):
@@ -306,7 +306,7 @@ def _text(cell: Any) -> str:
         return _formatted(value, cell.number_format)
     text = str(value)
     if len(text) > MAX_LETTERS:
-        return Refused(
+        return RefusedCell(
             f"{text[:40]}...", f"a text of at most {MAX_LETTERS:,} characters", "Shorten the text."
         )
     return text.strip()
@@ -328,7 +328,7 @@ def _formatted(value: float, code: str) -> str:
     digits = _WORDS.sub("", section)
     if not _shows_number(digits) or not _shows_minus(value, code, words):
         allowed = "a number that is shown; the format of this cell hides it, or a part of it"
-        return Refused(number, allowed, "Give the cell the format General.")
+        return RefusedCell(number, allowed, "Give the cell the format General.")
     if "%" in digits:
         return f"{100 * value:.15g} %"
     if re.fullmatch("0{2,}", digits) and value == int(value):  # a label such as 007 or P-007

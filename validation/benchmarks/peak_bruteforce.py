@@ -17,7 +17,7 @@ import numpy as np
 
 from trackroller.contact.quantities import Ellipse
 from trackroller.contact.slip import Slip
-from trackroller.halfspace.ellipse import NO_FIELD, Room, near_parts, patch_rows, unit_rule
+from trackroller.halfspace.ellipse import NO_FIELD, RayRoom, near_parts, patch_rows, unit_rule
 from trackroller.halfspace.peak import find_peaks
 from trackroller.halfspace.stress import von_mises
 from trackroller.parameters.accuracy import PRESETS
@@ -47,7 +47,7 @@ def stresses(row: np.ndarray, nu: np.ndarray, u: np.ndarray, order: int) -> np.n
     """Return the von Mises stress (m, 2) of roller and guide at points u (m, 3) over (a, b, smaller semi-axis)."""
     points = np.ascontiguousarray(u * np.array([row[0], row[1], min(row[0], row[1])]))
     rule = unit_rule(order)
-    parts = near_parts(row, NO_FIELD, points, (rule, rule), Room.empty())
+    parts = near_parts(row, NO_FIELD, points, (rule, rule), RayRoom.empty())
     bodies = [parts[:, 0] + nu[k] * parts[:, 1] + s * (parts[:, 2] + nu[k] * parts[:, 3]) for k, s in ((0, 1), (1, -1))]
     return np.stack([von_mises(stress) for stress in bodies], axis=1)
 

@@ -94,7 +94,7 @@ def _continued(nodes: Nodes, values: np.ndarray) -> tuple[tuple[np.ndarray, ...]
     return (nodes.rho, chi, theta, nodes.log_g), values
 
 
-def spline(nodes: Nodes, values: np.ndarray) -> table.Spline:
+def spline(nodes: Nodes, values: np.ndarray) -> table.TensorSpline:
     """Interpolate fields (rho, chi, theta, ln g, fields) by cubic splines along each axis in turn."""
     axes, values = _continued(nodes, values)
     knots = []
@@ -104,7 +104,7 @@ def spline(nodes: Nodes, values: np.ndarray) -> table.Spline:
         first, last = np.searchsorted(s.t[4:-4], low, "right"), np.searchsorted(s.t[4:-4], high, "left")
         knots.append(s.t[first : last + 8])
         values = np.moveaxis(s.c[first : last + 4], 0, axis)  # scipy keeps the axis of the knots in front
-    return table.Spline(tuple(knots), np.ascontiguousarray(values))
+    return table.TensorSpline(tuple(knots), np.ascontiguousarray(values))
 
 
 def poisson_fields(levels: Sequence[np.ndarray]) -> np.ndarray:
@@ -122,14 +122,14 @@ def poisson_fields(levels: Sequence[np.ndarray]) -> np.ndarray:
     return np.concatenate(list(np.einsum("pk,k...->p...", powers, differences)), axis=-1)
 
 
-def join(levels: Sequence[dict[str, np.ndarray]]) -> dict[str, table.Spline]:
+def join(levels: Sequence[dict[str, np.ndarray]]) -> dict[str, table.TensorSpline]:
     """Return the splines `forces` and `poisson` from the arrays of all levels of `solve_level`, in their order."""
     forces = _fields(FORCES, table.POISSON, [level["forces"] for level in levels])
     changes = poisson_fields([level["poisson"] for level in levels if "poisson" in level])
     return {"forces": spline(FORCES, forces), "poisson": spline(POISSON, changes)}
 
 
-def write(path: Path, splines: dict[str, table.Spline], errors: dict[str, float]) -> None:
+def write(path: Path, splines: dict[str, table.TensorSpline], errors: dict[str, float]) -> None:
     """Write knots, coefficients (single precision) and measured errors to an npz file."""
     arrays: dict[str, np.ndarray] = {
         "error_names": np.array(list(errors), dtype="U40"),

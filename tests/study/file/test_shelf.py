@@ -258,3 +258,60 @@ def test_a_search_takes_a_shelf(tmp_path, monkeypatch):
     found = study(tmp_path, monkeypatch, rows, budget={"designs": 12, "population": 4}, **keys)
     results = tr.run(found, results=tmp_path / "out", progress=False)
     assert results.answer.table["roller"].tolist()[0] == "small"
+
+
+TABLE = "roller,radial_force,axial_force\nlarge,-300,20\nsmall,-200,0\nlarge,-150,10\n"
+
+
+def of_table(folder, monkeypatch, text=TABLE, **keys):
+    """Return the study of a table whose column `roller` names rows of the shelf."""
+    (folder / "cases.csv").write_text(text, encoding="utf-8")
+    use = {"motor_force": 0, "friction_coefficient": 0.2, "guide_overrollings_per_hour": 100}
+    keys = {"base": use, "factors": {"roller": {"file": "rollers.csv"}}} | keys
+    return study(folder, monkeypatch, method="table", table="cases.csv", **keys)
+
+
+def test_a_table_of_cases_names_rows_of_a_shelf(tmp_path, monkeypatch):
+    results = tr.run(of_table(tmp_path, monkeypatch), results=tmp_path / "out", progress=False)
+    kept = tr.open_study(tmp_path / "out" / "shelf")
+    rows = {row.split(";")[0]: row.split(";") for row in ROWS}
+    for place, line in enumerate(TABLE.splitlines()[1:]):
+        name, radial, axial = line.split(",")
+        _, axis, groove, material, _, price, order = rows[name]
+        case = {"axis_distance": axis, "roller_profile_radius": groove, "roller_material": material}
+        case |= {"radial_force": radial, "axial_force": axial, "motor_force": 0, "friction_coefficient": 0.2}
+        alone = tr.solve(case | {"guide_overrollings_per_hour": 100}, **QUICK)
+        assert same(alone, results.data.isel(case=place))
+        own = kept.table.iloc[place]
+        assert (own["roller"], own["price"], own["order_number"]) == (name, float(price), order)
+    assert results.goods == kept.goods == ("mass", "price", "order_number")
+
+
+def test_names_of_rows_may_be_figures(tmp_path, monkeypatch):
+    rows = [row.replace("small", "00608").replace("large", "608") for row in ROWS]
+    text = TABLE.replace("small", "00608").replace("large", "608")
+    drawn = of_table(tmp_path, monkeypatch, text, rows=rows).drawn
+    assert drawn.columns["roller"].tolist() == ["608", "00608", "608"]
+    assert drawn.columns["axis_distance"].tolist() == [25.0, 20.0, 25.0]
+
+
+@pytest.mark.parametrize(
+    ("text", "more", "message"),
+    [
+        (TABLE.replace("small", "smal"), {}, r"cases.csv, line 3: roller = 'smal' is not known.*'small'"),
+        (
+            TABLE.replace("axial_force", "axis_distance").replace(",0\n", ",9\n"),
+            {},
+            "column axis_distance is in factors.roller too",
+        ),
+        (TABLE.replace("roller,", "own,"), {}, "Add a column roller to the table"),
+        (TABLE, {"radial_force": {"values": [-1, -2]}}, "Remove it, or the column radial_force of the table"),
+        (TABLE, {"velocity": {"values": [10, 20]}}, "Only expressions and shelves may stand beside a table"),
+    ],
+)
+def test_what_stands_beside_a_table_in_vain_is_refused(text, more, message, tmp_path, monkeypatch):
+    factors = {"roller": {"file": "rollers.csv"}} | more
+    with pytest.raises(InputError, match=message):
+        of_table(tmp_path, monkeypatch, text, factors=factors)
+    if "smal," in text:  # as the message says
+        assert of_table(tmp_path, monkeypatch, TABLE, factors=factors).drawn.size == 3

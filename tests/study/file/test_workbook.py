@@ -5,14 +5,17 @@ from __future__ import annotations
 import datetime
 import io
 import sys
+import tracemalloc
 import zipfile
 
+import numpy as np
 import pandas as pd
 import pytest
 from command_line import trackroller
 
 import trackroller as tr
 from trackroller.errors import Collector
+from trackroller.report import workbook
 from trackroller.report.workbook import write_cases, write_results
 from trackroller.study.design.read_table import table
 from trackroller.study.file.user_columns import column_names, read_table
@@ -91,6 +94,41 @@ def test_a_workbook_of_a_study_has_units_words_and_limits_and_its_inputs_are_a_t
     design = tr.load_study(tmp_path / "s.yaml").design()
     assert design.axial_force.values.tolist() == [0, 0, 300, 300]
     assert design.radial_force.values.tolist() == [-200, -150, -200, -150]
+
+
+def test_a_long_workbook_is_written_block_by_block_and_packed(tmp_path, monkeypatch):
+    """The file is the same, and only a block of it is in memory: 20,000 lines are 3.8 MB of XML."""
+    count = 20_000
+    numbers = np.random.default_rng(1).random((count, 5))
+    table = pd.DataFrame(numbers, columns=[f"x{i}" for i in range(5)]).assign(regime=np.arange(count) % 3)
+    whole = write_cases(table, tmp_path / "whole.xlsx").read_bytes()
+    monkeypatch.setattr(workbook, "BLOCK", 300)
+    tracemalloc.start()
+    path = write_cases(table, tmp_path / "blocks.xlsx")
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert path.read_bytes() == whole
+    with zipfile.ZipFile(path) as book:
+        sheet = book.getinfo("xl/worksheets/sheet1.xml")
+        assert book.read(sheet).count(b"<row>") == count + 2
+    assert sheet.compress_size < 0.5 * sheet.file_size and sheet.file_size > 3e6
+    assert peak < 0.5 * sheet.file_size
+    last = pd.read_excel(path, skiprows=[1]).iloc[-1]
+    assert (last[:5] == numbers[-1]).all() and last["regime"] == "full slip"
+
+
+def test_a_workbook_that_no_spreadsheet_opens_is_refused_and_csv_takes_it(tmp_path, monkeypatch):
+    table = pd.DataFrame({"axial_force": [0.1, 0.2, 0.3], "regime": [0, 0, 2]})
+    for name, bound, told in (
+        ("MOST_ROWS", 2, "at most 2 cases in a workbook"),
+        ("MOST_CELLS", 5, "3 cases of 2 columns.*at most 5 cells in a workbook"),
+    ):
+        with monkeypatch.context() as patch:
+            patch.setattr(workbook, name, bound)
+            with pytest.raises(tr.InputError, match=rf"{told}.*Write them as \.csv"):
+                write_cases(table, tmp_path / "cases.xlsx")
+            assert not list(tmp_path.glob("*.xlsx"))
+            assert len(pd.read_csv(write_cases(table, tmp_path / "cases.csv"))) == 3
 
 
 def test_errors_name_the_row_of_the_sheet(tmp_path):

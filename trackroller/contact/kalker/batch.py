@@ -115,7 +115,7 @@ class Report(NamedTuple):
             return np.where(work != 0, self.dissipation / work - 1.0, 0.0)
 
 
-class Found(NamedTuple):
+class SolvedPatches(NamedTuple):
     """Start and result of n patches.
 
     traction (n, 2, ny, nx) over mu p_max: first the start, then the result; slip (n, 2, ny, nx) per
@@ -130,7 +130,7 @@ class Found(NamedTuple):
     report: Report
 
     @classmethod
-    def start(cls, traction: np.ndarray, law: FrictionLaw) -> Found:
+    def start(cls, traction: np.ndarray, law: FrictionLaw) -> SolvedPatches:
         """Return room for the result of an iteration that starts from `traction` (n, 2, ny, nx)."""
         n, _, ny, nx = traction.shape
         factor = np.ones((n, 1, 1) if law.is_constant else (n, ny, nx))
@@ -322,7 +322,9 @@ def _pressed_slip(batch: Batch, i: int, a: float, b: float) -> np.ndarray:
     return coupling_slip(batch.height[i], 2.0 * a / nx, 2.0 * b / ny)
 
 
-def _solve_piece(batch: Batch, law: FrictionLaw, control, out: Found, piece: _Piece) -> None:
+def _solve_piece(
+    batch: Batch, law: FrictionLaw, control, out: SolvedPatches, piece: _Piece
+) -> None:
     """Solve the patches of a piece."""
     _, ny, nx = batch.height.shape
     which, a, b, poisson_ratio, film = piece
@@ -338,7 +340,7 @@ def _solve_piece(batch: Batch, law: FrictionLaw, control, out: Found, piece: _Pi
     _solve_patches(which, batch, functions, pressed, (law.speed, law.factor), limits, out)
 
 
-def solve_batch(batch: Batch, law: FrictionLaw, control, out: Found) -> None:
+def solve_batch(batch: Batch, law: FrictionLaw, control, out: SolvedPatches) -> None:
     """Solve all patches of a batch, one per thread at a time.
 
     Parameters
@@ -349,7 +351,7 @@ def solve_batch(batch: Batch, law: FrictionLaw, control, out: Found) -> None:
         Friction over its value at rest by slip speed.
     control : KalkerSettings
         Tolerance, Newton steps and Krylov space.
-    out : Found
+    out : SolvedPatches
         Start of the iteration, overwritten by the result.
     """
 

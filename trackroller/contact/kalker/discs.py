@@ -83,7 +83,7 @@ def _level(
     travel,
     settings: KalkerSettings,
     elements: int,
-) -> batch.Found:
+) -> batch.SolvedPatches:
     """Solve on a line of elements, from zero tractions."""
     n = len(friction)
     bound = friction * line.max_pressure
@@ -106,7 +106,7 @@ def _level(
         elastic.film * elastic.shear_modulus,
         True,
     )
-    found = batch.Found.start(np.zeros((n, 2, elements, 1)), settings.law_in_use)
+    found = batch.SolvedPatches.start(np.zeros((n, 2, elements, 1)), settings.law_in_use)
     batch.solve_batch(patches, settings.law_in_use, settings, found)
     return found
 

@@ -33,7 +33,7 @@ def _level(
     travel,
     settings: KalkerSettings,
     start: np.ndarray,
-) -> batch.Found:
+) -> batch.SolvedPatches:
     """Solve on the grid of the tractions `start` (n, 2, elements, elements), which the result
     overwrites.
     """
@@ -60,7 +60,7 @@ def _level(
         elastic.film * elastic.shear_modulus,
         False,
     )
-    solution = batch.Found.start(start, settings.law_in_use)
+    solution = batch.SolvedPatches.start(start, settings.law_in_use)
     batch.solve_batch(patches, settings.law_in_use, settings, solution)
     return solution
 
@@ -126,7 +126,7 @@ def _coarse(
 
 
 def on_elements(
-    ellipse: Ellipse | GridPatch, solution: batch.Found | PatchSolution, elements: int
+    ellipse: Ellipse | GridPatch, solution: batch.SolvedPatches | PatchSolution, elements: int
 ) -> np.ndarray:
     """Return the tractions of a solution, interpolated to `elements` along each axis, (n, 2,
     elements, elements).
@@ -148,7 +148,7 @@ def shares(
 
 
 def _integrals(
-    ellipse, friction, solution: batch.Found, settings: KalkerSettings
+    ellipse, friction, solution: batch.SolvedPatches, settings: KalkerSettings
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return the resultants (n, 3) and the share of the adhesion area (n,) of one grid: see
     `subgrid.integrals`.

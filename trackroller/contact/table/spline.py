@@ -30,7 +30,7 @@ POISSON = 0.3  # Poisson's ratio of the finer of both splines
 FIELDS = ("lateral", "driving", "spin", "stick")
 
 
-class Spline(NamedTuple):
+class TensorSpline(NamedTuple):
     """Tensor product of cubic splines: four knot vectors, and coefficients (n1, n2, n3, n4,
     fields).
     """
@@ -81,7 +81,8 @@ def _basis(knots, x, out):
 
 @fast
 def evaluate(spline, place, basis, line, out):
-    """Write the values of a `Spline` at a place (4,) between its outer knots into `out` (fields,).
+    """Write the values of a `TensorSpline` at a place (4,) between its outer knots into `out`
+    (fields,).
 
     basis (4, 4) and line (4 fields,) are work space.
     """
@@ -114,17 +115,17 @@ class Tables:
 
     Attributes
     ----------
-    forces : Spline
+    forces : TensorSpline
         The four fields at nu = 0.3, over (rho, chi, theta, ln g).
-    poisson : Spline
+    poisson : TensorSpline
         First and second coefficient of the fields in nu - 0.3, eight in all, over the same
         coordinates.
     errors : dict of str to float
         Differences from the exact solver, measured by `validation.kalker_table`.
     """
 
-    forces: Spline
-    poisson: Spline
+    forces: TensorSpline
+    poisson: TensorSpline
     errors: dict[str, float]
 
     def force_error(self, level: str) -> float:
@@ -142,9 +143,9 @@ def read(path) -> Tables:
         return Tables(forces, poisson, {str(name): float(value) for name, value in errors})
 
 
-def _read_spline(arrays, name: str) -> Spline:
+def _read_spline(arrays, name: str) -> TensorSpline:
     knots = (np.ascontiguousarray(arrays[f"{name}_knots_{i}"], float) for i in range(4))
-    return Spline(tuple(knots), np.ascontiguousarray(arrays[f"{name}_values"], float))
+    return TensorSpline(tuple(knots), np.ascontiguousarray(arrays[f"{name}_values"], float))
 
 
 @lru_cache(maxsize=1)

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from trackroller.report.explorer.rows import Column
+from trackroller.report.explorer.rows import ExplorerColumn
 from trackroller.report.figures.style import colours
 from trackroller.study.design.levels import OF_MATERIALS
 
@@ -25,7 +25,7 @@ MOST_COLOURS = 40  # levels that get a colour each, the same as in the figures
 RARE = 1_000  # all cases of a state are kept if it has at most so many cases
 
 
-def pack(columns: Sequence[Column]) -> tuple[list[dict[str, Any]], str]:
+def pack(columns: Sequence[ExplorerColumn]) -> tuple[list[dict[str, Any]], str]:
     """Compress the columns.
 
     Parameters
@@ -66,7 +66,7 @@ def pack(columns: Sequence[Column]) -> tuple[list[dict[str, Any]], str]:
     return header, base64.b64encode(zlib.compress(b"".join(parts), 9)).decode("ascii")
 
 
-def affordable_rows(columns: Sequence[Column]) -> int:
+def affordable_rows(columns: Sequence[ExplorerColumn]) -> int:
     """Return how many cases a page can show in `MOST_BYTES`, `MOST_ROWS` at most.
 
     The bytes a case needs are measured on evenly spaced cases, because compression decides them.
@@ -77,7 +77,7 @@ def affordable_rows(columns: Sequence[Column]) -> int:
     return min(MOST_ROWS, int(MOST_BYTES * count / len(pack(probe)[1])))
 
 
-def _numbers(column: Column) -> np.ndarray:
+def _numbers(column: ExplorerColumn) -> np.ndarray:
     if column.levels is None:
         kind = "<f8"
         if column.values.dtype == np.float32:

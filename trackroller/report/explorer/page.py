@@ -14,9 +14,15 @@ from typing import Any
 import markupsafe
 import numpy as np
 
-from trackroller.report.explorer.designs import design_columns
+from trackroller.report.explorer.candidate_columns import candidate_columns
 from trackroller.report.explorer.pack import affordable_rows, extreme_rows, pack, sample_rows
-from trackroller.report.explorer.rows import STATES, Column, collect, solve_inputs, strengths
+from trackroller.report.explorer.rows import (
+    STATES,
+    ExplorerColumn,
+    collect,
+    solve_inputs,
+    strengths,
+)
 from trackroller.report.html import render
 from trackroller.report.numbers import count, lives_in_years
 from trackroller.results.pareto import pareto
@@ -24,7 +30,7 @@ from trackroller.results.results import Results
 from trackroller.study.outputs import flat
 from trackroller.study.store.put import put_text
 
-MODEL = "contact_model"  # a Pareto set compares designs solved with one model
+MODEL = "contact_model"  # a Pareto set compares candidates solved with one model
 POLICY = "@content-security-policy@"  # stands in the templates where the policy is filled in
 
 
@@ -45,8 +51,8 @@ def explorer(results: Results) -> dict[str, Any]:
     columns = collect(results)
     settings, setting_columns = solve_inputs(results, {c.name: c for c in columns})
     columns += setting_columns
-    of_designs, lists = design_columns(results)
-    columns += of_designs
+    of_candidates, lists = candidate_columns(results)
+    columns += of_candidates
     state = next(c for c in columns if c.name == "state").values
     cases = len(state)
     chosen = pareto_rows(results, cases) | extreme_rows(
@@ -55,10 +61,10 @@ def explorer(results: Results) -> dict[str, Any]:
     rows = sample_rows(state, chosen, affordable_rows(columns))
     if len(rows) < cases:
         columns = [dataclasses.replace(c, values=c.values[rows]) for c in columns]
-        columns.append(Column("row", "Row", "", "row", rows.astype(float)))
+        columns.append(ExplorerColumn("row", "Row", "", "row", rows.astype(float)))
     numbers = _numbers(results)
     if numbers is not None:
-        columns.append(Column("case", "Case", "", "row", numbers[rows].astype(float)))
+        columns.append(ExplorerColumn("case", "Case", "", "row", numbers[rows].astype(float)))
     packed, block = pack(columns)
     compared = ""
     if MODEL in results.factors:

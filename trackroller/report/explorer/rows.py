@@ -61,7 +61,7 @@ DETAILS = (*CONTACT_RESULTS, *(n for n in BODY_RESULTS if n != "error_estimate")
 
 
 @dataclass(frozen=True)
-class Column:
+class ExplorerColumn:
     """One column of the explorer, a value for each case.
 
     Attributes
@@ -86,7 +86,7 @@ class Column:
     log: bool = False
 
 
-def collect(results: Results) -> list[Column]:
+def collect(results: Results) -> list[ExplorerColumn]:
     """Return the columns of a gathered study.
 
     Parameters
@@ -112,7 +112,7 @@ def collect(results: Results) -> list[Column]:
     return columns
 
 
-def _setting(results: Results, name: str, role: str) -> Column:
+def _setting(results: Results, name: str, role: str) -> ExplorerColumn:
     """Return the column of a factor or of an input that follows from factors."""
     values = results.table[name].to_numpy()
     parameter = parameter_of(name)
@@ -122,7 +122,7 @@ def _setting(results: Results, name: str, role: str) -> Column:
     label = capital(long_name(name))
     few = not results.numeric(name) or results.grid or len(results.levels(name)) <= 12
     if not few or (role == "input" and results.numeric(name)):
-        return Column(
+        return ExplorerColumn(
             name,
             label,
             unit,
@@ -140,11 +140,11 @@ def _setting(results: Results, name: str, role: str) -> Column:
     )
 
 
-def _good(results: Results, name: str) -> Column:
+def _good(results: Results, name: str) -> ExplorerColumn:
     """Return a column of the user's own of a shelf, such as the price of a roller."""
     values = results.table[name].to_numpy()
     if values.dtype.kind == "f":
-        return Column(
+        return ExplorerColumn(
             name,
             capital(long_name(name)),
             str(results.data[name].attrs.get("units", "")),
@@ -161,7 +161,7 @@ def coded(
     values: Sequence[Any] | np.ndarray,
     texts: Sequence[str] = (),
     unit: str = "",
-) -> Column:
+) -> ExplorerColumn:
     """Return a column of few values as positions in the list of its values.
 
     Numbers are sorted, texts stay in order of appearance. Without `texts` the values stand for
@@ -174,12 +174,12 @@ def coded(
         levels = different.astype(float).tolist()
     else:
         levels = different.astype(str).tolist()
-    return Column(
+    return ExplorerColumn(
         name, label, unit, role, codes, tuple(levels), tuple(texts) or tuple(map(str, levels))
     )
 
 
-def _results(ds: xr.Dataset, dims: tuple[str, ...], results: Results) -> list[Column]:
+def _results(ds: xr.Dataset, dims: tuple[str, ...], results: Results) -> list[ExplorerColumn]:
     """Return the usual outputs and those that the study file names as goals."""
     named = [
         n for text in results.config.constraints for n in goals.names_in(text) if n != "regime"
@@ -190,7 +190,7 @@ def _results(ds: xr.Dataset, dims: tuple[str, ...], results: Results) -> list[Co
     return [_output(one, "output", results) for one in _outputs(ds, dims, list(names))]
 
 
-def _beyond(results: Results, columns: Sequence[Column]) -> list[Column]:
+def _beyond(results: Results, columns: Sequence[ExplorerColumn]) -> list[ExplorerColumn]:
     """Mark the lives that lie beyond the S-N data: for each column with a life in it a column
     `NAME:beyond` of 0 and 1.
 
@@ -202,12 +202,14 @@ def _beyond(results: Results, columns: Sequence[Column]) -> list[Column]:
         if marks.any():
             name = f"{column.name}:beyond"
             remarks.append(
-                Column(name, BEYOND, "", "remark", marks.astype(int), (0.0, 1.0), ("", BEYOND))
+                ExplorerColumn(
+                    name, BEYOND, "", "remark", marks.astype(int), (0.0, 1.0), ("", BEYOND)
+                )
             )
     return remarks
 
 
-def _in_years(results: Results, columns: Sequence[Column]) -> list[Column]:
+def _in_years(results: Results, columns: Sequence[ExplorerColumn]) -> list[ExplorerColumn]:
     """Return the lives in years, for the card of a chosen case; none if the duty of the roller is
     not known.
     """
@@ -216,7 +218,8 @@ def _in_years(results: Results, columns: Sequence[Column]) -> list[Column]:
         return []
     lives = [c for c in columns if c.unit == "h" and is_life(c.name)]
     return [
-        Column(f"{c.name}:years", c.label, "years", "detail", years(c.values, duty)) for c in lives
+        ExplorerColumn(f"{c.name}:years", c.label, "years", "detail", years(c.values, duty))
+        for c in lives
     ]
 
 
@@ -224,7 +227,7 @@ def _outputs(ds: xr.Dataset, dims: tuple[str, ...], names: list[str]) -> list[Ou
     return outputs(ds, dims, names, REGIMES[:3], scale="natural", unlimited=True)
 
 
-def _output(one: Output, role: str, results: Results) -> Column:
+def _output(one: Output, role: str, results: Results) -> ExplorerColumn:
     # a roller that skids, and a body above its tensile strength, have no fatigue life
     if is_life(one.name):
         body = ""
@@ -239,12 +242,14 @@ def _output(one: Output, role: str, results: Results) -> Column:
     else:
         values = one.values
     log = declared(one.name).scale == "log10"
-    return Column(one.name, capital(one.long_name), unit_text(one.units), role, values, log=log)
+    return ExplorerColumn(
+        one.name, capital(one.long_name), unit_text(one.units), role, values, log=log
+    )
 
 
 def _details(
     ds: xr.Dataset, dims: tuple[str, ...], known: set[str], results: Results
-) -> list[Column]:
+) -> list[ExplorerColumn]:
     """Return figures of each contact and body, under names such as `peak_stress_roller_1`."""
     parts = parts_in(ds, [n for n in DETAILS if n in ds and set(ds[n].dims) >= set(dims)], dims)
     names = [
@@ -255,7 +260,7 @@ def _details(
     return [_output(one, "detail", results) for one in _outputs(ds, dims, names)]
 
 
-def _states(ds: xr.Dataset, dims: tuple[str, ...], results: Results) -> list[Column]:
+def _states(ds: xr.Dataset, dims: tuple[str, ...], results: Results) -> list[ExplorerColumn]:
     """Return regime, state, validity flags (of each body where they are known), and reason of
     failure.
     """
@@ -263,8 +268,8 @@ def _states(ds: xr.Dataset, dims: tuple[str, ...], results: Results) -> list[Col
     rolls = np.where(results.inside, 6, np.where(results.rolling, 1, 5))
     state = np.where(results.valid, 0, np.where(regime > 0, regime + 1, rolls))
     columns = [
-        Column("regime", "Regime", "", "state", regime, REGIMES, REGIME_LABELS),
-        Column("state", "State", "", "state", state, STATES, STATES),
+        ExplorerColumn("regime", "Regime", "", "state", regime, REGIMES, REGIME_LABELS),
+        ExplorerColumn("state", "State", "", "state", state, STATES, STATES),
     ]
     for name in ("validity", *(f"validity_{body}" for body in BODIES)):
         if name in results.table and results.flags:
@@ -279,7 +284,7 @@ def _states(ds: xr.Dataset, dims: tuple[str, ...], results: Results) -> list[Col
     if results.allowed is not None:
         met = ("met", "not met")
         columns.append(
-            Column(
+            ExplorerColumn(
                 "constraints",
                 "Constraints of the study",
                 "",
@@ -300,7 +305,7 @@ def _states(ds: xr.Dataset, dims: tuple[str, ...], results: Results) -> list[Col
     return columns
 
 
-def _first_limits(results: Results) -> list[Column]:
+def _first_limits(results: Results) -> list[ExplorerColumn]:
     """Return the limit that ends the pair first, and the first one of each body; nothing without
     limits.
     """
@@ -334,8 +339,8 @@ def flag_text(mask: int, flags: Sequence[str]) -> str:
 
 
 def solve_inputs(
-    results: Results, known: dict[str, Column]
-) -> tuple[list[list[Any]], list[Column]]:
+    results: Results, known: dict[str, ExplorerColumn]
+) -> tuple[list[list[Any]], list[ExplorerColumn]]:
     """Return what `trackroller solve --set` needs to repeat a case.
 
     Parameters
@@ -370,9 +375,9 @@ def solve_inputs(
     return settings, columns
 
 
-def _input(name: str, values: np.ndarray) -> Column:
+def _input(name: str, values: np.ndarray) -> ExplorerColumn:
     if values.dtype.kind in "fiu":
-        return Column(name, plain(name), "", "input", values.astype(float))
+        return ExplorerColumn(name, plain(name), "", "input", values.astype(float))
     return coded(name, plain(name), "input", values.astype(str))
 
 

@@ -21,7 +21,7 @@ from matplotlib.ticker import MaxNLocator
 
 from trackroller.errors import InputError
 from trackroller.report.figures import style
-from trackroller.report.figures.contact_outline import Patch, case_text, outline, patches_of
+from trackroller.report.figures.contact_outline import DrawnPatch, case_text, outline, patches_of
 from trackroller.report.figures.contact_sections import sections
 from trackroller.report.numbers import number, rounded
 from trackroller.study.store.put import replacing
@@ -33,14 +33,14 @@ PANEL_MM = 70.0  # width of a map
 LIGHT = ListedColormap(matplotlib.colormaps["YlGnBu"](np.linspace(0, 0.62, 64)))
 
 
-def _shapes(patches: list[Patch]) -> str:
+def _shapes(patches: list[DrawnPatch]) -> str:
     if patches[0].solved:
         return "the loaded part of both contact patches"
     return "both contact ellipses"
 
 
 def _canvas(
-    patches: list[Patch], profile: bool = False
+    patches: list[DrawnPatch], profile: bool = False
 ) -> tuple[Figure, list[Axes], Axes | None, bool]:
     """Return a figure with the patches side by side and, on request, axes for a profile.
 
@@ -79,7 +79,7 @@ def _canvas(
     return figure, maps, profile_axes, to_scale
 
 
-def _fill(axes: Axes, patch: Patch, values: np.ndarray, top: float, cmap: Any) -> Any:
+def _fill(axes: Axes, patch: DrawnPatch, values: np.ndarray, top: float, cmap: Any) -> Any:
     """Draw filled contours clipped to the edge of the patch, and return them."""
     levels = np.linspace(0, top, 17)
     if patch.solved:
@@ -124,7 +124,7 @@ def shear_arrows(ds: xr.Dataset) -> style.Drawn:
     return figure, style.FigureInfo("contact_shear", caption, sentence)
 
 
-def _arrows(axes: Axes, patch: Patch, top: float, to_scale: bool) -> None:
+def _arrows(axes: Axes, patch: DrawnPatch, top: float, to_scale: bool) -> None:
     if patch.a >= patch.b:
         count = ARROWS
     else:
@@ -154,7 +154,7 @@ def _every(length: int, count: int) -> np.ndarray:
     return np.arange((length - 1) % step // 2, length, step)
 
 
-def _pole(axes: Axes, patch: Patch) -> None:
+def _pole(axes: Axes, patch: DrawnPatch) -> None:
     if patch.spin_pole is None:
         return
     x, y = patch.spin_pole

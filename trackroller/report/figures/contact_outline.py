@@ -18,7 +18,7 @@ from trackroller.roller.stored_inputs import CASE, inputs_of, is_default
 SLIGHT = 1e-3
 
 
-class Patch:
+class DrawnPatch:
     """One contact: x (nx), y (ny) [mm], fields (ny, nx), and where it carries pressure."""
 
     def __init__(self, ds: xr.Dataset, contact: int) -> None:
@@ -90,11 +90,11 @@ class Patch:
         return float(self.ds["spin_pole_lateral"]), float(self.ds.get("spin_pole_rolling", 0.0))
 
 
-def patches_of(ds: xr.Dataset, *names: str) -> list[Patch]:
+def patches_of(ds: xr.Dataset, *names: str) -> list[DrawnPatch]:
     """Return the contacts that exist, or none if a field of `names` is missing."""
     if not all(n in ds for n in ("patch_x", "patch_y", *names)):
         return []
-    return [p for p in (Patch(ds, int(c)) for c in ds["contact"].values) if p.there]
+    return [p for p in (DrawnPatch(ds, int(c)) for c in ds["contact"].values) if p.there]
 
 
 def _bears(part: xr.Dataset) -> np.ndarray:
@@ -136,7 +136,7 @@ def widths(part: xr.Dataset, axis: str) -> list[tuple[float, float]]:
     return [(middle - float(part[semi]), middle + float(part[semi]))]
 
 
-def outline(patch: Patch) -> Path:
+def outline(patch: DrawnPatch) -> Path:
     """Return the edge of a patch: an ellipse, or the closed lines around its loaded elements."""
     if not patch.solved:
         circle = Path.unit_circle()

@@ -16,7 +16,7 @@ from matplotlib.patches import PathPatch
 
 from trackroller.halfspace.stress import FRICTION_SIGNS, stress_on_grid, von_mises
 from trackroller.report.figures import style
-from trackroller.report.figures.contact_outline import Patch, case_text, outline, widths
+from trackroller.report.figures.contact_outline import DrawnPatch, case_text, outline, widths
 from trackroller.report.numbers import near, rounded
 from trackroller.results.case_columns import at_surface
 from trackroller.roller.stored_inputs import MATERIALS, materials_of
@@ -62,7 +62,11 @@ def sections(ds: xr.Dataset, contact: int) -> style.Drawn:
             image = _section(axes, part.sel(body=body), body, plane, (top, to_scale))
         if body in surfaces:
             _surface(
-                row[2], Patch(ds, contact), part.sel(body=body), surfaces[body], (top, to_scale)
+                row[2],
+                DrawnPatch(ds, contact),
+                part.sel(body=body),
+                surfaces[body],
+                (top, to_scale),
             )
     style.colour_bar(figure, image, list(grid.ravel()), "Von Mises stress [MPa]")
     style.head(figure, f"Von Mises stress under contact {contact}")
@@ -113,7 +117,7 @@ def surface_stress(
     """
     patch = None
     if {"patch_x", "patch_y", *TRACTIONS} <= set(ds.variables):
-        patch = Patch(ds, contact)
+        patch = DrawnPatch(ds, contact)
     if patch is None or not patch.there or MATERIALS not in ds.attrs:
         return None
     margin = [max(1, int(np.ceil(AROUND * v.size))) for v in (patch.y, patch.x)]
@@ -192,7 +196,7 @@ def _labels(axes: Axes, across: str) -> None:
 
 
 def _surface(
-    axes: Axes, patch: Patch, part: xr.Dataset, field: tuple, drawn: tuple[float, bool]
+    axes: Axes, patch: DrawnPatch, part: xr.Dataset, field: tuple, drawn: tuple[float, bool]
 ) -> None:
     """Draw the stress on the surface of one body, as far as the sections reach, with the edge of
     the patch.

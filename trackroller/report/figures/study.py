@@ -9,9 +9,9 @@ from functools import partial
 from pathlib import Path
 
 from trackroller.report.figures import sensitivity, style
-from trackroller.report.figures.designs import pareto_front
 from trackroller.report.figures.loads import forces_against_axial, stress_against_fit
 from trackroller.report.figures.maps import life_map, regime_map
+from trackroller.report.figures.pareto_front import pareto_front
 from trackroller.report.figures.sn_diagram import sn_diagram
 from trackroller.report.numbers import lives_in_years
 from trackroller.results.pareto import given_pareto

@@ -16,7 +16,7 @@ from typing import Any
 
 from markupsafe import Markup
 
-from trackroller.damage import judged
+from trackroller.damage import checked_limits
 from trackroller.files import inert_cell
 from trackroller.report.headlines import WARNING_HEADS, headline_of, warning_rows
 from trackroller.report.numbers import carried, count, long_name, on_duty, plain, unit_text
@@ -28,14 +28,14 @@ from trackroller.report.pictures.picture import row_names
 from trackroller.report.pictures.uses import UseBars
 from trackroller.report.tables.rows import (
     MOST_SHOWN,
-    Rows,
+    ShownTable,
     definitions,
     ends_table,
     fit_columns,
     rows_before_fold,
     rows_of,
 )
-from trackroller.results.answer import Answer, Part
+from trackroller.results.answer import Answer, FurtherTable
 
 MOST_TRANSPOSED = 4  # rows of a table that may stand beside its picture as columns
 MOST_EFFECTS = 4  # of the first screen; the others stand under Why
@@ -75,7 +75,7 @@ class Shown:
     of : all rows of the answer
     """
 
-    rows: Rows
+    rows: ShownTable
     bars: tuple[Drawn, ...]
     key: tuple[tuple[Markup, str], ...]
     first: int
@@ -135,7 +135,7 @@ def screen_of(answer: Answer) -> dict[str, Any]:
             "outputs": _outputs(answer),
             "definitions": list(definitions(answer)),
             "limits": [
-                (limit.word, limit.title) for limit in judged() if limit.word != limit.title
+                (limit.word, limit.title) for limit in checked_limits() if limit.word != limit.title
             ],
             "parts": [(part, part_rows(answer, part)) for part in answer.parts],
             "download": download_of(answer),
@@ -254,12 +254,12 @@ def _drawn(answer: Answer, names: Sequence[str]) -> Iterator[Drawn]:
         yield Drawn(bars.head(), drawn, bars.title, bars.units, meaning, place + (uses is not None))
 
 
-def part_rows(answer: Answer, part: Part) -> Rows:
+def part_rows(answer: Answer, part: FurtherTable) -> ShownTable:
     """Return heads and cells of a further table of an answer."""
     return rows_of(replace(answer, table=part.table, columns=part.columns, required=()))
 
 
-def _others(answer: Answer) -> Rows | None:
+def _others(answer: Answer) -> ShownTable | None:
     """Return the columns that do not fit the first screen, with the names of their rows."""
     fit = fit_columns(answer, _bar_columns(answer))
     if not fit.others:

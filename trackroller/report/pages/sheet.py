@@ -12,7 +12,7 @@ import numpy as np
 import xarray as xr
 
 from trackroller.damage import LIMITS
-from trackroller.damage.verdict import STATES
+from trackroller.damage.first_limit import STATES
 from trackroller.parameters import FIRST_TO_FAIL, REGIME_LABELS, REGIMES
 from trackroller.report import html
 from trackroller.report.figures.roller_section import drawing

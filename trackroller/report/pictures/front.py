@@ -36,10 +36,10 @@ MOST_POINTS = 800
 
 
 def draw_front(answer: Answer, data: Mapping[str, Any]) -> Picture | None:
-    """Draw a front: its designs as dots, other ones as rings, the named ones large; upwards the
+    """Draw a front: its candidates as dots, other ones as rings, the named ones large; upwards the
     first goal.
 
-    None is drawn where no design has two known goals.
+    None is drawn where no candidate has two known goals.
     """
     values = np.asarray(data["goals"], dtype=float)[:, [1, 0]]
     known = np.isfinite(values).all(axis=1)
@@ -107,7 +107,7 @@ def _named_dots(
 
     Parameters
     ----------
-    named : designs with `x`, `y` and `title`
+    named : candidates with `x`, `y` and `title`
     across, up : axes of both goals
     drawn : both goals of each dot, shape (n, 2)
     """

@@ -1,4 +1,4 @@
-"""The best value of a search with one goal over its designs."""
+"""The best value of a search with one goal over its candidates."""
 
 from __future__ import annotations
 

@@ -53,7 +53,7 @@ IN_FILES = "file"  # role of columns that stand in files alone
 
 
 @dataclass(frozen=True)
-class Head:
+class ShownHead:
     """The head of a column: title, unit, definition, and its classes."""
 
     name: str
@@ -64,7 +64,7 @@ class Head:
 
 
 @dataclass(frozen=True)
-class Cell:
+class ShownCell:
     """A cell: what it says, and its classes."""
 
     text: str
@@ -73,7 +73,7 @@ class Cell:
 
 
 @dataclass(frozen=True)
-class Rows:
+class ShownTable:
     """The table of an answer as it is shown.
 
     Attributes
@@ -83,12 +83,12 @@ class Rows:
     shared : what all rows share, in words
     """
 
-    heads: tuple[Head, ...]
-    cells: tuple[tuple[Cell, ...], ...]
+    heads: tuple[ShownHead, ...]
+    cells: tuple[tuple[ShownCell, ...], ...]
     shared: tuple[str, ...]
 
 
-def rows_of(answer: Answer, columns: Iterable[Column] | None = None) -> Rows:
+def rows_of(answer: Answer, columns: Iterable[Column] | None = None) -> ShownTable:
     """Return the table of an answer; columns that are equal in all rows are said once."""
     shared = answer.shared
     if columns is None:
@@ -110,7 +110,7 @@ def rows_of(answer: Answer, columns: Iterable[Column] | None = None) -> Rows:
     ]
     if any(column.units == "h" for column in shown):
         notes.append(year_words())
-    return Rows(heads, cells, tuple(text for text in notes if text))
+    return ShownTable(heads, cells, tuple(text for text in notes if text))
 
 
 def _is_hidden(column: Column) -> bool:
@@ -118,9 +118,9 @@ def _is_hidden(column: Column) -> bool:
     return column.name in UNDRAWN or column.role == IN_FILES
 
 
-def head_of(answer: Answer, column: Column) -> Head:
+def head_of(answer: Answer, column: Column) -> ShownHead:
     """Return the head of a column."""
-    return Head(
+    return ShownHead(
         column.name,
         capital(column.title),
         unit_of(column),
@@ -170,12 +170,12 @@ def _is_number(answer: Answer, column: Column) -> bool:
     return not any(isinstance(value, str) for value in answer.table[column.name])
 
 
-def cell_of(answer: Answer, column: Column, row: Mapping[Any, Any], kind: str) -> Cell:
+def cell_of(answer: Answer, column: Column, row: Mapping[Any, Any], kind: str) -> ShownCell:
     """Return a cell of a row with the classes of its column."""
     value = row[column.name]
     if column.kind == "state":
-        return Cell(STATE_SIGNS.get(str(value), str(value)), kind, str(value))
-    return Cell(text_of(answer, column, row), kind)
+        return ShownCell(STATE_SIGNS.get(str(value), str(value)), kind, str(value))
+    return ShownCell(text_of(answer, column, row), kind)
 
 
 def text_of(answer: Answer, column: Column, row: Mapping[Any, Any]) -> str:

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 
 import xarray as xr
 
-from trackroller.damage import LIMITS, verdict
+from trackroller.damage import LIMITS, first_limit
 from trackroller.materials import Material
 from trackroller.materials.properties import PROPERTIES
 from trackroller.report.numbers import capital, listing, number, plain, unit_text
@@ -59,8 +59,8 @@ def _computed(ds: xr.Dataset) -> list[str]:
             return ["fatigue"]
         return []
     known = ds.variables["utilisation"].notnull() | ds.variables["life_hours_by_limit"].notnull()
-    if verdict.AT_MOST in ds:
-        known = known | ds.variables[verdict.AT_MOST].notnull()
+    if first_limit.AT_MOST in ds:
+        known = known | ds.variables[first_limit.AT_MOST].notnull()
     return (
         ds["limit"].values[known.any([dim for dim in known.dims if dim != "limit"]).values].tolist()
     )

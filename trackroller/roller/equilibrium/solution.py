@@ -83,7 +83,7 @@ class Equilibrium:
 
 
 @dataclass
-class _Answer:
+class _Progress:
     """Solution in progress: regime, residual, jamming, shift (n,), normal forces (2, n), contact
     forces (3, 2, n).
     """
@@ -96,7 +96,7 @@ class _Answer:
     forces: np.ndarray
 
     @classmethod
-    def of(cls, n: int) -> _Answer:
+    def of(cls, n: int) -> _Progress:
         """Return n rollers without a solution."""
         nan = np.full((7, n), np.nan)
         regime = np.full(n, FAILED, dtype=np.int8)
@@ -146,7 +146,7 @@ def solve_equilibrium(loads: RollerLoads, law: ContactLaw) -> Equilibrium:
     F_Motor = 0, and every motor force causes full slip.
     """
     loads = replace(loads, friction=np.where(loads.friction < LEAST_FRICTION, 0.0, loads.friction))
-    answer = _Answer.of(loads.radial_force.size)
+    answer = _Progress.of(loads.radial_force.size)
     rows = np.flatnonzero(np.isfinite(loads.shape.lateral))
     slides = rows[(loads.friction[rows] == 0) & (loads.motor_force[rows] != 0)]
     rolls = np.setdiff1d(rows, slides)
@@ -158,7 +158,7 @@ def solve_equilibrium(loads: RollerLoads, law: ContactLaw) -> Equilibrium:
 
 
 def _solve_rolling(
-    loads: RollerLoads, law: ContactLaw, rows: np.ndarray, answer: _Answer
+    loads: RollerLoads, law: ContactLaw, rows: np.ndarray, answer: _Progress
 ) -> np.ndarray:
     """Fill the rolling rows of `answer`; return the rows whose friction cannot transmit the drive
     torque.
@@ -190,7 +190,7 @@ def _solve_rolling(
 
 
 def _record(
-    answer: _Answer, roller: Roller, solution: Solution, bounds: Bounds, *, lift, slides, rubs
+    answer: _Progress, roller: Roller, solution: Solution, bounds: Bounds, *, lift, slides, rubs
 ) -> None:
     """Write regime, forces and residual of rolling candidates; `rubs` marks rollers with friction,
     (m,).
@@ -314,7 +314,7 @@ def _forces_at(roller: Roller, w: np.ndarray) -> np.ndarray:
 
 
 def _solve_full_slip(
-    loads: RollerLoads, law: ContactLaw, rows: np.ndarray, answer: _Answer
+    loads: RollerLoads, law: ContactLaw, rows: np.ndarray, answer: _Progress
 ) -> None:
     """Fill the rows of `answer` that slip completely along the track.
 

@@ -311,7 +311,7 @@ def _largest_shear(results: StageResults) -> np.ndarray:
     known: the ratio of the two pressures corrects the shear.
     """
     t = surface_tractions(results)
-    largest = np.max(np.hypot(t.shear_lateral, t.shear_rolling), axis=(1, 2))
+    largest = np.max(t.shear, axis=(1, 2))
     if not results.patch.is_hertzian:
         return largest
     return largest * results.patch.max_pressure[results.good] / np.max(t.pressure, axis=(1, 2))
@@ -406,7 +406,6 @@ def tractions(results: StageResults, options: Options) -> None:
         "shear_rolling": t.shear_rolling,
         "slip_lateral": t.slip_lateral,
         "slip_rolling": t.slip_rolling,
-        "friction_energy_density": np.hypot(t.shear_lateral, t.shear_rolling)
-        * np.hypot(t.slip_lateral, t.slip_rolling),
+        "friction_energy_density": t.shear * t.slip,
     }
     results.values.update({name: results.full(value) for name, value in fields.items()})

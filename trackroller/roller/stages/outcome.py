@@ -12,9 +12,9 @@ import numpy as np
 from trackroller.contact import close_fit
 from trackroller.contact.drawn_profiles import gap
 from trackroller.contact.slip import pole_split
-from trackroller.damage import LIMITS, computed, judged, verdict
+from trackroller.damage import LIMITS, checked_limits, computed, first_limit
 from trackroller.damage.histories import RollerTractions
-from trackroller.damage.limit import TRACTIONS, Limit, SolvedRollers, Verdict
+from trackroller.damage.limit import TRACTIONS, Limit, LimitUse, SolvedRollers
 from trackroller.damage.wear import BEYOND_TABLE, KM_PER_HOUR
 from trackroller.damage.wear import TABLE as WEAR_TABLE
 from trackroller.halfspace.tractions import Tractions
@@ -28,7 +28,7 @@ from trackroller.roller.geometry import rolling_radius
 from trackroller.roller.stages.scene import StageResults, surface_tractions
 
 if TYPE_CHECKING:
-    from trackroller.roller.block_results import Block
+    from trackroller.roller.block_results import BlockResults
     from trackroller.roller.options import Options
 
 LIFE_CONVENTIONS = (
@@ -43,7 +43,7 @@ LIFE_CONVENTIONS = (
 )
 
 
-def finish(table: CaseTable, block: Block, options: Options) -> None:
+def finish(table: CaseTable, block: BlockResults, options: Options) -> None:
     """Add friction power, life and validity flags to the results of a block, in place."""
     v = block.values
     if "friction_work" in options.outputs:
@@ -130,14 +130,14 @@ def with_weakest(table: CaseTable, cases: CaseTable, number: np.ndarray) -> Case
 
 
 def to_compute(solved: SolvedRollers, options: Options) -> tuple[Limit, ...]:
-    """Return the limits to compute: those named among the outputs, and those of the verdict that a
+    """Return the limits to compute: those named among the outputs, and the checked ones that a
     case serves.
     """
     candidates = computed(options.outputs, options.not_checked, options.life_criterion)
     return tuple(
         own
         for own in candidates
-        if own.group in options.outputs or own.verdict is None or own.served(solved)
+        if own.group in options.outputs or own.use is None or own.served(solved)
     )
 
 
@@ -173,8 +173,8 @@ def _unworn_gap(table: CaseTable, case: int, contact: int, lateral: np.ndarray) 
 def limits(
     table: CaseTable, v: dict[str, np.ndarray], options: Options, regime: np.ndarray
 ) -> None:
-    """Add the results of the limits asked for to the results `v`, and the verdict if it is asked
-    for.
+    """Add the results of the limits asked for to the results `v`, and how far each is used if it is
+    asked for.
     """
     solved = solved_of(table, v, options, regime)
     computed_limits = to_compute(solved, options)
@@ -193,14 +193,14 @@ def limits(
                 if result.end == end
             ]
             v |= {name: place.values[name] for name in names}
-    if verdict.GROUP in options.outputs:
+    if first_limit.GROUP in options.outputs:
         names = list(LIMITS)
-        counted = judged(options.outputs, options.not_checked)
+        counted = checked_limits(options.outputs, options.not_checked)
         known = list(counted)
         for i, limit in enumerate(counted):
             if limit not in computed_limits:
                 known[i] = _nothing(limit)
-        v |= verdict.verdict(
+        v |= first_limit.limit_uses(
             places, known, [names.index(limit.name) for limit in counted], len(names)
         )
     for name in [name for name in v if name.startswith("_") and name != BEYOND_TABLE]:
@@ -208,9 +208,9 @@ def limits(
 
 
 def _nothing(limit: Limit) -> Limit:
-    """Return a limit that no case serves, with a verdict that knows nothing."""
-    unknown = Verdict(None, None)
-    return dataclasses.replace(limit, verdict=lambda solved, results: unknown, bound=None)
+    """Return a limit that no case serves, of which nothing is known."""
+    unknown = LimitUse(None, None)
+    return dataclasses.replace(limit, use=lambda solved, results: unknown, bound=None)
 
 
 def _at_end(solved: SolvedRollers, limits: tuple[Limit, ...], end: int) -> SolvedRollers:
@@ -286,7 +286,7 @@ def split_pole(table: CaseTable, v: dict[str, np.ndarray]) -> np.ndarray:
         return np.maximum(*split) > 0.1
 
 
-def outlives_groove(table: CaseTable, block: Block, options: Options) -> np.ndarray:
+def outlives_groove(table: CaseTable, block: BlockResults, options: Options) -> np.ndarray:
     """Return True where the own life of a body, in travel of the roller, exceeds the run-in
     distance, (n, 2).
 
@@ -297,12 +297,12 @@ def outlives_groove(table: CaseTable, block: Block, options: Options) -> np.ndar
     # a limit that a bound shows to be kept ends no life
     solved = solved_of(table, v, options.changed(at_most=()), block.regime)
     run_in = v["run_in_distance"] / (KM_PER_HOUR * table.velocity)
-    counted = [own for own in to_compute(solved, options) if own.verdict is not None]
-    known = verdict.verdict([solved], counted, range(len(counted)), len(counted))
+    counted = [own for own in to_compute(solved, options) if own.use is not None]
+    known = first_limit.limit_uses([solved], counted, range(len(counted)), len(counted))
     return np.asarray(known["life_to_first_limit_hours"] > run_in[:, None])
 
 
-def validity(table: CaseTable, block: Block, options: Options) -> None:
+def validity(table: CaseTable, block: BlockResults, options: Options) -> None:
     """Set the validity flags where the assumptions of the model do not hold, see
     `parameters.validity`.
     """

@@ -27,7 +27,7 @@ from trackroller.parameters import (
 from trackroller.parameters.carriage_fields import field_of, long_name_of
 from trackroller.parameters.example import EXAMPLE
 from trackroller.roller.fields import own_frictions
-from trackroller.study.design.entries import SHELVES, SIZES
+from trackroller.study.design.factor_names import SHELVES, SIZES
 from trackroller.study.design.roles import scattered
 from trackroller.study.design.sampling import sample
 from trackroller.study.design.stored import stored

@@ -28,7 +28,7 @@ from trackroller.parameters.carriage_fields import field_of
 from trackroller.roller.duty import OVERROLLINGS, overrollings_per_hour
 from trackroller.roller.settings import LOADS
 from trackroller.study.design.build import build, columns_of, dataset_of, marked
-from trackroller.study.design.entries import GEOMETRY
+from trackroller.study.design.factor_names import GEOMETRY
 
 if TYPE_CHECKING:
     from trackroller.carriage.file import Carriage

@@ -14,17 +14,18 @@ from trackroller.errors import Collector, InputError, contained, listing, neares
 from trackroller.files import read_bytes
 from trackroller.methods.factor import column
 from trackroller.numerics.numbers import read_number
-from trackroller.numerics.table_cells import Refused, Stored, is_number, split_head
+from trackroller.numerics.table_cells import RefusedCell, Stored, is_number, split_head
 from trackroller.numerics.units import PLAIN, in_unit
 from trackroller.parameters import PARAMETERS
 from trackroller.roller.aliases import AXIS_DISTANCE, RADII
-from trackroller.study.design.entries import (
+from trackroller.study.design.factor_names import (
     FACTOR_NAMES,
+    SHELVES,
     check_own_name,
-    field_value,
     names_without_blanks,
     without_blanks,
 )
+from trackroller.study.design.field_values import field_value
 from trackroller.study.file.user_columns import column_names, read_table
 from trackroller.tables.user_table import UserTable
 
@@ -146,6 +147,8 @@ def _check_meaning(name: str, bare: str, unit: str, names: Collection[str]) -> N
 
 def _numbers_of(name: str, cells: Mapping[int, str]) -> np.ndarray | None:
     """Return a column of plain numbers that its parameter allows, None for any other column."""
+    if name in SHELVES:  # names of rows, also where they are digits
+        return None
     if name not in PARAMETERS:
         if name in FACTOR_NAMES or not all(isinstance(cell, Stored) for cell in cells.values()):
             return None
@@ -172,7 +175,7 @@ def _cells_of(name: str, cells: Mapping[int, str], path: Any, wrong: Collector) 
     """Return a column with words, units or wrong cells; each wrong cell adds an error."""
     values: list[Any] = []
     for number, cell in cells.items():
-        if not cell or isinstance(cell, Refused):  # the reader has added its error
+        if not cell or isinstance(cell, RefusedCell):  # the reader has added its error
             continue
         try:
             values.append(_value_of(name, cell))

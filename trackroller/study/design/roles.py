@@ -1,6 +1,6 @@
 """Who sets each factor of a study: the designer (`choice`) or the use of the roller (`condition`).
 
-A design is one combination of choices. It is judged over all its conditions.
+A candidate is one combination of choices. It is judged over all its conditions.
 """
 
 from __future__ import annotations
@@ -12,7 +12,8 @@ from trackroller.errors import InputError, collected, unknown_name
 from trackroller.methods import METHODS
 from trackroller.methods.factor import UNBOUNDED, Factor
 from trackroller.parameters import ROLE_OF, ROLES, expressions
-from trackroller.study.design.entries import OPTION_FACTORS, choice
+from trackroller.study.design.factor_names import OPTION_FACTORS
+from trackroller.study.design.field_values import choice
 
 BELLS = (*UNBOUNDED, "truncnormal", "triangular")
 
@@ -63,7 +64,7 @@ def check_roles(given: Mapping[str, str], factors: Mapping[str, Any], design: st
 
 
 def scattered(factors: Mapping[str, Factor], given: Mapping[str, str]) -> tuple[str, ...]:
-    """Return the factors of a search for designs that vary as conditions; the others are its
+    """Return the factors of a search for candidates that vary as conditions; the others are its
     choices.
 
     Factors with a bell-shaped distribution are among them whatever role is given: nobody chooses

@@ -12,17 +12,18 @@ from __future__ import annotations
 
 import graphlib
 from collections.abc import Collection, Mapping
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from trackroller.errors import InputError, check_names, unknown_name
+from trackroller.errors import Collector, InputError, check_names, unknown_name
 from trackroller.methods import METHODS, Design, those_that_take, those_with
 from trackroller.methods.factor import Factor, parse, readable
 from trackroller.methods.grid import MAX_ROWS
 from trackroller.methods.table import of_columns
 from trackroller.parameters import PARAMETERS, expressions
-from trackroller.study.design.read_table import genes, table
+from trackroller.study.design.read_table import genes, table, table_lines
 
 
 def sample(
@@ -68,27 +69,16 @@ def sample(
     """
     settings = _settings(method, options)
     drawn_by = METHODS[method]
+    columns: dict[str, np.ndarray] = {}
     if drawn_by.observed:
-        in_factors = {
-            name
-            for spec in factors.values()
-            for name in expressions.names(spec.get("expression", "0"))
-        }
-        columns = table(settings["table"], {*in_factors, *used})
+        columns = table(settings["table"], {*_in_expressions(factors), *used})
+    parsed = {name: parse(name, spec) for name, spec in factors.items()}
+    meta: dict[str, Any] = {}
+    if drawn_by.observed:
         free, unit = of_columns(columns)
-        meta: dict[str, Any] = {}
-        parsed = {name: parse(name, spec) for name, spec in factors.items() if name not in columns}
-        for name in (name for name, factor in parsed.items() if factor.kind != "expression"):
-            allowed = "factors as columns of the table"
-            raise InputError(
-                f"factors.{name}",
-                factors[name],
-                allowed,
-                "Only expressions may stand beside a table.",
-            )
+        _check_beside_table(parsed, columns, settings["table"])
     else:
-        parsed = {name: parse(name, spec) for name, spec in factors.items()}
-        free = {k: f for k, f in parsed.items() if f.varies}
+        free = {name: factor for name, factor in parsed.items() if factor.varies}
         if not free and not drawn_by.crossed:
             raise InputError("factors", list(factors), "at least one factor that varies")
         _check_weights(free, method)
@@ -98,20 +88,86 @@ def sample(
             settings["genes"] = genes(settings["table"])
         unit, meta = drawn_by.draw(free, int(n), int(seed), settings)
         columns = {name: drawn_by.values(f, unit[:, j]) for j, (name, f) in enumerate(free.items())}
-    rows = len(unit)
-    if rows > MAX_ROWS:
+    if len(unit) > MAX_ROWS:
         raise InputError("method", method, f"at most {MAX_ROWS} rows")
-    for name, factor in parsed.items():
-        if len(factor.levels) == 1:
-            columns[name] = factor.take(np.zeros(rows, dtype=int))
-    columns |= columns_of_rows(parsed, columns)
-    columns |= _derived(parsed, columns, dict(base or {}), rows)
-    order = [*[k for k in columns if k not in parsed], *[k for k in parsed if k in columns]]
-    columns = {name: columns[name] for name in order}
+    columns = _with_computed(columns, parsed, dict(base or {}), len(unit))
     _check_bounds(columns, parsed)
     if settings.get("replicates", 1) > 1:
         meta["replicates"] = settings["replicates"]
     return Design(columns, free, drawn_by, unit, meta | {"seed": int(seed)})
+
+
+def _in_expressions(factors: Mapping[str, Any]) -> set[str]:
+    """Return the names that the expressions of factors use."""
+    texts = [spec.get("expression", "0") for spec in factors.values()]
+    return {name for text in texts for name in expressions.names(text)}
+
+
+def _check_beside_table(
+    parsed: Mapping[str, Factor], columns: Mapping[str, np.ndarray], path: str
+) -> None:
+    """Refuse factors that stand beside a table in vain, and names of rows that a shelf has not.
+
+    Parameters
+    ----------
+    parsed : all factors: expressions, and shelves of which a column of the table names rows
+    columns : columns of the table by name, shape (n,)
+    path : the table
+    """
+    wrong = Collector()
+    for name, factor in parsed.items():
+        field = f"factors.{name}"
+        if factor.beside and name in columns:
+            wrong.errors += _unknown_rows(factor, columns[name], path)
+            for twice in {*factor.beside} & {*columns}:
+                remedy = "Remove it from the table, or from the shelf."
+                wrong.errors.append(
+                    InputError(f"column {twice}", None, "one value", remedy, f"is in {field} too")
+                )
+        elif factor.beside:
+            remedy = f"Add a column {name} to the table, with names of its rows."
+            allowed = "a shelf whose rows a column of the table names"
+            wrong.errors.append(InputError(field, None, allowed, remedy))
+        elif name in columns:
+            remedy = f"Remove it, or the column {name} of the table."
+            wrong.errors.append(
+                InputError(field, None, "one description", remedy, "is a column of the table too")
+            )
+        elif factor.kind != "expression":
+            allowed = "factors as columns of the table"
+            remedy = "Only expressions and shelves may stand beside a table."
+            wrong.errors.append(InputError(field, factor.levels, allowed, remedy))
+    wrong.check()
+
+
+def _unknown_rows(factor: Factor, levels: np.ndarray, path: str) -> list[InputError]:
+    """Return an error for each case of a table that names no row of a shelf."""
+    known = {str(level) for level in factor.levels}
+    places = [place for place, level in enumerate(levels.tolist()) if level not in known]
+    if not places:
+        return []
+    lines = table_lines(Path(path))
+    return [
+        unknown_name(factor.name, levels[place], sorted(known)).at(Path(path), lines[place])
+        for place in places
+    ]
+
+
+def _with_computed(
+    columns: Mapping[str, np.ndarray], parsed: Mapping[str, Factor], base: dict[str, Any], rows: int
+) -> dict[str, np.ndarray]:
+    """Return drawn columns with those of single levels, of shelves and of expressions.
+
+    Columns of a table and of shelves come first, then the factors in their order.
+    """
+    whole = dict(columns)
+    for name, factor in parsed.items():
+        if len(factor.levels) == 1:
+            whole[name] = factor.take(np.zeros(rows, dtype=int))
+    whole |= columns_of_rows(parsed, whole)
+    whole |= _derived(parsed, whole, base, rows)
+    beside = [name for name in whole if name not in parsed]
+    return {name: whole[name] for name in (*beside, *(name for name in parsed if name in whole))}
 
 
 def columns_of_rows(

@@ -22,7 +22,7 @@ from trackroller.roller.geometry import contact_geometry, geometry_problem, geom
 from trackroller.roller.options import check_accuracy, check_pairs, check_spin_model, check_surface
 from trackroller.study.design.build import MAX_CASES
 from trackroller.study.design.carriage_cases import ROW
-from trackroller.study.design.entries import (
+from trackroller.study.design.factor_names import (
     BEARING_DIAMETER,
     CASE_FIELDS,
     GEOMETRY,
@@ -30,11 +30,11 @@ from trackroller.study.design.entries import (
     SHELVES,
     SIZES,
     check_own_name,
-    field_of_row,
 )
 from trackroller.study.design.levels import in_words
 from trackroller.study.design.read_table import read_cases, table_lines
 from trackroller.study.design.roles import check_roles
+from trackroller.study.design.shelf_rows import field_of_row
 from trackroller.study.file.correlations import check_design
 from trackroller.study.file.goals import check, check_scatter
 from trackroller.study.file.search import check_search
@@ -147,57 +147,17 @@ def cross_check(study: Study) -> None:
     InputError : keys contradict each other, or the design, the materials or the geometry cannot be
         what they say
     """
-    config = study.config
-    for name in OPTION_FACTORS:
-        if name in config.factors and not isinstance(getattr(config, name), str):
-            raise InputError(
-                name, getattr(config, name), "", "Keep one.", wrong="stands among the factors too"
-            )
+    _check_options_stand_once(study)
     _check_shelves(study)
-    both = {*study.factors, *config.base} & {"material_pair"}
-    single = {*study.factors, *config.base, *study.columns_of_shelves} & set(MATERIAL_FIELDS)
-    if both and single:
-        raise InputError(
-            "material_pair", sorted(single), "the pair or the single materials, not both"
-        )
-    doubled = set(config.base) & set(study.factors)
-    if doubled:
-        name = min(doubled)
-        raise InputError(
-            f"base.{name}",
-            config.base[name],
-            "",
-            "Remove one of them.",
-            wrong=f"stands beside a factor {name}",
-        )
-    if not config.method.proposes and config.method.observed != (config.table is not None):
-        remedy = "Write 'table: cases.csv' too, with your file."
-        if config.table:
-            remedy = "Write 'method: table' too."
-        raise InputError(
-            "table",
-            config.table,
-            "method: table and the path of a CSV or Excel file together",
-            remedy,
-        )
-    config.method.check(study.parsed)
-    several = [name for name in OPTION_FACTORS if name in study.factors]
-    if config.method.proposes and several:
-        raise InputError(
-            several[0], study.factors[several[0]]["values"], "one model: a search compares designs"
-        )
+    _check_values_stand_once(study)
+    _check_table(study.config)
+    study.config.method.check(study.parsed)
+    _check_one_model(study)
     for name in study.factors:
         check_own_name(name, f"factors.{name}")
     wrong = Collector()
-    with wrong.part():
-        # a constraint may name a further column of the table, whose cells say whether it holds
-        # numbers
-        columns = study.drawn.columns if config.method.observed and config.constraints else {}
-        named = study.parsed | study.columns_of_shelves
-        check(config, named, columns)
-        check_search(config, named)
-        check_until(config)
-    for checked in (
+    for check_keys in (
+        _check_goals,
         _check_roles,
         _check_parts,
         _check_options,
@@ -206,9 +166,67 @@ def cross_check(study: Study) -> None:
         _check_materials,
     ):
         with wrong.part():
-            checked(study)
+            check_keys(study)
     wrong.check()
     check_first_look(study)
+
+
+def _check_options_stand_once(study: Study) -> None:
+    """Refuse an option that stands as a key and among the factors."""
+    for name in OPTION_FACTORS:
+        value = getattr(study.config, name)
+        if name in study.config.factors and not isinstance(value, str):
+            raise InputError(name, value, "", "Keep one.", wrong="stands among the factors too")
+
+
+def _check_values_stand_once(study: Study) -> None:
+    """Refuse materials as a pair and one by one, and a value of `base` beside its factor."""
+    base = study.config.base
+    both = {*study.factors, *base} & {"material_pair"}
+    single = {*study.factors, *base, *study.columns_of_shelves} & set(MATERIAL_FIELDS)
+    if both and single:
+        raise InputError(
+            "material_pair", sorted(single), "the pair or the single materials, not both"
+        )
+    doubled = set(base) & set(study.factors)
+    if doubled:
+        name = min(doubled)
+        beside = f"stands beside a factor {name}"
+        raise InputError(f"base.{name}", base[name], "", "Remove one of them.", wrong=beside)
+
+
+def _check_table(config: Any) -> None:
+    """Refuse a table without the method that reads it, and this method without a table."""
+    if config.method.proposes or config.method.observed == (config.table is not None):
+        return
+    allowed = "method: table and the path of a CSV or Excel file together"
+    remedy = "Write 'table: cases.csv' too, with your file."
+    if config.table:
+        remedy = "Write 'method: table' too."
+    raise InputError("table", config.table, allowed, remedy)
+
+
+def _check_one_model(study: Study) -> None:
+    """Refuse a search over several contact models."""
+    several = [name for name in OPTION_FACTORS if name in study.factors]
+    if study.config.method.proposes and several:
+        models = study.factors[several[0]]["values"]
+        raise InputError(several[0], models, "one model: a search compares designs")
+
+
+def _check_goals(study: Study) -> None:
+    """Check goals, constraints, budget and stopping rule of a study.
+
+    A constraint may name a further column of the table, whose cells say whether it holds numbers.
+    """
+    config = study.config
+    columns: Mapping[str, np.ndarray] = {}
+    if config.method.observed and config.constraints:
+        columns = study.drawn.columns
+    named = study.parsed | study.columns_of_shelves
+    check(config, named, columns)
+    check_search(config, named)
+    check_until(config)
 
 
 def _check_shelves(study: Study) -> None:

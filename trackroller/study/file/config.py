@@ -27,7 +27,8 @@ from trackroller.parameters import OPTIONS
 from trackroller.roller.duty import checked_duty
 from trackroller.roller.requirement import Requirement, checked_requirement, written
 from trackroller.roller.stop import parse_condition
-from trackroller.study.design.entries import base_value, choice, factor
+from trackroller.study.design.entries import factor
+from trackroller.study.design.field_values import base_value, choice
 from trackroller.study.design.roles import check_words
 from trackroller.study.file.correlations import check_entries
 from trackroller.study.file.goals import Analysis, comparisons, directions, own_expressions

@@ -22,7 +22,7 @@ from typing import Any, Literal
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, field_validator
 
-from trackroller.damage import judged
+from trackroller.damage import checked_limits
 from trackroller.errors import Collector, InputError, collected, listing, raise_all, unknown_name
 from trackroller.methods.factor import Factor
 from trackroller.numerics.units import without_units
@@ -30,7 +30,8 @@ from trackroller.parameters import MATERIAL_FIELDS, PARAMETERS, REGIMES, express
 from trackroller.roller.dataset import VARIABLES
 from trackroller.roller.output_names import PARTS, Part, body_of, is_life, parts_of, unit_of
 from trackroller.roller.requirement import DEFAULT, KEY
-from trackroller.study.design.entries import FACTOR_NAMES, check_own_name, choice
+from trackroller.study.design.factor_names import FACTOR_NAMES, check_own_name
+from trackroller.study.design.field_values import choice
 
 SCALES = ("natural", "log10")
 DIRECTIONS = ("max", "min")
@@ -184,7 +185,7 @@ def output_names(groups: Iterable[str]) -> list[str]:
     one number a case.
     """
     groups = set(groups)
-    limits = judged(groups)
+    limits = checked_limits(groups)
     return [p.name for v in VARIABLES.values() if v.group in groups for p in parts_of(v, limits)]
 
 

@@ -26,7 +26,7 @@ from trackroller.parameters.example import not_given
 from trackroller.roller.aliases import OTHER_OPTIONS, WRITTEN, study_with_radii, with_options
 from trackroller.roller.duty import OVERROLLINGS, checked_duty, is_of_strokes, of_roller
 from trackroller.study.design.carriage_cases import common_values, given_by
-from trackroller.study.design.entries import SHELVES
+from trackroller.study.design.factor_names import SHELVES
 from trackroller.study.file.checks import check_cells, check_geometry, cross_check, named_materials
 from trackroller.study.file.config import StudyFile
 from trackroller.study.file.goals import Analysis, check_analysed, to_first_limit
@@ -256,14 +256,33 @@ def _on_carriage(
     the carriage.
     """
     config = study.config
+    _check_beside_carriage(study, whole, names)
+    of_study = set(names)
+    if "material_pair" in names:
+        of_study |= {*MATERIAL_FIELDS}
+    common = {name: value for name, value in common_values(whole).items() if name not in of_study}
+    cases = [roller.case for roller in whole.rollers if roller.case is not None]
+    lacking = {name for name in common if all(name in case.not_given for case in cases)}
+    roles = {}
+    if not config.method.points:
+        roles = {name: field.role for name in study.factors if (field := field_of(name))}
+    duty: Mapping[str, float] | None = config.duty
+    if duty is None:
+        duty = whole.duty
+    return (
+        {"base": config.base | common, "roles": roles | config.roles, "duty": duty},
+        {name: value for name, value in not_given(of_study).items() if name in lacking},
+    )
+
+
+def _check_beside_carriage(study: Study, whole: Carriage, names: set[str]) -> None:
+    """Refuse keys of a study that contradict its carriage; raise all errors together."""
+    config = study.config
     wrong = Collector()
     for name in sorted(names & {*given_by(whole)}):
         allowed = "parameters that the carriage does not give"
-        wrong.errors.append(
-            InputError(
-                name, None, allowed, "Remove it: statics gives it.", "stands beside a carriage"
-            )
-        )
+        remedy = "Remove it: statics gives it."
+        wrong.errors.append(InputError(name, None, allowed, remedy, "stands beside a carriage"))
     if config.method.observed:
         allowed = "a design of factors, because a table lists loads of rollers"
         remedy = "Write factors in place of the table."
@@ -276,13 +295,9 @@ def _on_carriage(
     if "life" not in config.outputs:
         allowed = "outputs with life, by which the worst roller is found"
         wrong.errors.append(InputError("outputs", list(config.outputs), allowed, "Add life."))
-    duty: Mapping[str, float] | None = config.duty
-    if duty is None:
-        duty = whole.duty
-    if whole.duty is not None and duty != whole.duty:
-        wrong.errors.append(
-            InputError("duty", config.duty, "the duty of the carriage", "Remove one of them.")
-        )
+    if whole.duty is not None and config.duty not in (None, whole.duty):
+        allowed = "the duty of the carriage"
+        wrong.errors.append(InputError("duty", config.duty, allowed, "Remove one of them."))
     speeds = [name for name in fields if "carriage_speed" in name]
     if math.isfinite(whole.stroke) and speeds:
         remedy = "Write hours_per_day in place of the strokes."
@@ -290,19 +305,6 @@ def _on_carriage(
             InputError(f"factors.{speeds[0]}", None, "one speed", remedy, "varies beside strokes")
         )
     wrong.check()
-    of_study = set(names)
-    if "material_pair" in names:
-        of_study |= {*MATERIAL_FIELDS}
-    common = {name: value for name, value in common_values(whole).items() if name not in of_study}
-    cases = [roller.case for roller in whole.rollers if roller.case is not None]
-    lacking = {name for name in common if all(name in case.not_given for case in cases)}
-    roles = {}
-    if not config.method.points:
-        roles = {name: field.role for name in fields if (field := field_of(name))}
-    return (
-        {"base": config.base | common, "roles": roles | config.roles, "duty": duty},
-        {name: value for name, value in not_given(of_study).items() if name in lacking},
-    )
 
 
 def _check_rollers(config: StudyFile, whole: Carriage, wrong: Collector) -> None:

@@ -13,7 +13,7 @@ from trackroller.methods.factor import DISTRIBUTIONS, ROWS
 from trackroller.parameters import MAPPING_FIELDS, MATERIAL_FIELDS, PARAMETERS, Option
 from trackroller.parameters.accuracy import QUANTITIES
 from trackroller.roller.aliases import OTHER_OPTIONS
-from trackroller.study.design.entries import OPTION_FACTORS, SHELVES
+from trackroller.study.design.factor_names import OPTION_FACTORS, SHELVES
 from trackroller.study.file.config import IN_STUDY, NAME, StudyFile
 from trackroller.study.file.questions import QUESTIONS
 

@@ -32,17 +32,17 @@ from trackroller.parameters import PARAMETERS
 from trackroller.roller.aliases import ALIASES, RADII, renamed, with_options
 from trackroller.roller.case import Case
 from trackroller.roller.settings import checked_case
-from trackroller.study.design.entries import (
+from trackroller.study.design.factor_names import (
     BEARING_DIAMETER,
     CASE_FIELDS,
     GEOMETRY,
     SHELVES,
     SIZES,
     check_own_name,
-    field_of_row,
     names_without_blanks,
     without_blanks,
 )
+from trackroller.study.design.shelf_rows import field_of_row
 from trackroller.study.file.user_columns import column_names, read_table
 from trackroller.tables.column_heads import is_unit
 from trackroller.tables.user_table import UserTable

@@ -18,7 +18,8 @@ from trackroller.parameters import BODIES, LIMITS, MATERIAL_FIELDS, OPTIONS
 from trackroller.roller.doubts import doubts
 from trackroller.roller.stored_inputs import NOT_GIVEN
 from trackroller.study.design import build, carriage_cases
-from trackroller.study.design.entries import OPTION_FACTORS, columns_of_shelves
+from trackroller.study.design.factor_names import OPTION_FACTORS
+from trackroller.study.design.shelf_rows import columns_of_shelves
 from trackroller.study.file.config import IN_STUDY, StudyFile
 from trackroller.yaml_file import write_yaml
 

@@ -216,10 +216,8 @@ class Spectrum:
                 fields["groups"] = _groups(values["limits"])
                 left_out = {"not_checked": others([*np.atleast_1d(values["limits"])])}
         with wrong.part():
-            fields["options"] = left_out | {key: values[key] for key in OPTIONS if key in values}
-            checked = Options(**fields["options"])  # before any case is solved
-            numbers = [key for key in fields["options"] if SOLVE_OPTIONS[key].kind == "number"]
-            fields["options"] |= {key: getattr(checked, key) for key in numbers}
+            given = {key: values[key] for key in OPTIONS if key in values}
+            fields["options"] = _checked_options(left_out | given)
         with wrong.part():
             fields["name"] = text_of(values.get("name"), "name", "spectrum")
         with wrong.part():
@@ -228,6 +226,13 @@ class Spectrum:
         if is_of_strokes(fields["duty"]):
             fields |= _by_strokes(fields["duty"], fields["blocks"])
         return cls(**fields)
+
+
+def _checked_options(given: Mapping[str, Any]) -> dict[str, Any]:
+    """Return options of the solver, checked before a case is solved, with numbers as floats."""
+    checked = Options(**given)
+    numbers = [key for key in given if SOLVE_OPTIONS[key].kind == "number"]
+    return {**given, **{key: getattr(checked, key) for key in numbers}}
 
 
 def _by_strokes(duty: Mapping[str, float], blocks: Sequence[Block]) -> dict[str, Any]:
@@ -306,34 +311,35 @@ def _blocks(given: Any, base: Any) -> tuple[tuple[Block, ...], bool]:
     if not isinstance(base, Mapping):
         raise InputError("base", base, "a mapping of case fields to values")
     base = renamed(base)
-    checked = []
     try:
         Case.from_dict(base)
     except InputError as error:
         wrong.errors += _named(error, "base")
         base = {}  # the loads of the blocks are checked on their own
+    checked = []
     for i, entry in enumerate(blocks):
         try:
             checked.append(_block(entry, base, i + 1))
         except InputError as error:
             wrong.errors += [_placed(one, i, table, path) for one in error.errors]
     wrong.check()
-    names = Counter(block.name for block in checked).most_common(1)
-    if names[0][1] > 1:
-        raise InputError(
-            "blocks", names[0][0], "a name of its own for each block", "Rename one of the blocks."
-        )
-    if not sum(block.distance for block in checked) > 0:
-        raise InputError(
-            "distance",
-            0.0,
-            "distances of a shift that add up to more than 0 m",
-            "Give distances in m.",
-        )
+    _check_blocks(checked)
     by_share = ["share" in entry for entry in blocks]
     if any(by_share):
         _check_shares(checked, by_share)
     return tuple(checked), any(by_share)
+
+
+def _check_blocks(blocks: list[Block]) -> None:
+    """Refuse two blocks of one name, and blocks in which nothing moves."""
+    name, count = Counter(block.name for block in blocks).most_common(1)[0]
+    if count > 1:
+        raise InputError(
+            "blocks", name, "a name of its own for each block", "Rename one of the blocks."
+        )
+    if not sum(block.distance for block in blocks) > 0:
+        allowed = "distances of a shift that add up to more than 0 m"
+        raise InputError("distance", 0.0, allowed, "Give distances in m.")
 
 
 def _placed(error: InputError, i: int, table: UserTable | None, path: Path | None) -> InputError:
@@ -396,10 +402,10 @@ def _check_fields(names: Iterable[Any], where: str, values: Mapping[str, Any]) -
 
 
 def _block(entry: Any, base: Mapping[str, Any], number: int) -> Block:
+    """Return the block of an entry; raise all errors of the entry together."""
     if not isinstance(entry, Mapping):
-        raise InputError(
-            f"blocks[{number}]", entry, "a mapping such as {distance: 4000, radial_force: -300}"
-        )
+        allowed = "a mapping such as {distance: 4000, radial_force: -300}"
+        raise InputError(f"blocks[{number}]", entry, allowed)
     entry = renamed(entry)
     name = text_of(entry.get("name"), "name of a block", f"block {number}")
     where = f"block '{name}'"
@@ -409,40 +415,18 @@ def _block(entry: Any, base: Mapping[str, Any], number: int) -> Block:
     fields: dict[str, Any] = {"name": name}
     lasts = [key for key in TRAVEL if key in entry]
     with wrong.part():
-        if not lasts and not any(nearest(key, BLOCK_FIELDS) in TRAVEL for key in entry):
-            allowed = (
-                "the distance in m or the hours travelled per shift, or the share of the "
-                "time of travel"
-            )
-            raise InputError(
-                f"{where}.distance",
-                None,
-                allowed,
-                "Add one of distance, hours and share to the block.",
-            )
-        if len(lasts) > 1:
-            allowed = "one of distance, hours and share; the velocity gives the others"
-            raise InputError(
-                f"{where}.{lasts[1]}", entry[lasts[1]], allowed, f"Remove {lasts[0]} or {lasts[1]}."
-            )
+        _check_travel(lasts, entry, where)
     for key in lasts[:1]:
         with wrong.part():
             fields["distance"] = _number(f"{where}.{key}", entry[key], unit=TRAVEL[key])
     with wrong.part():
         if entry.get("guide_overrollings") is not None:
-            if lasts[:1] == ["share"]:
-                allowed = "overrollings per hour, because blocks by share of the time have no shift"
-                remedy = "Give guide_overrollings_per_hour instead."
-                raise InputError(
-                    f"{where}.guide_overrollings", entry["guide_overrollings"], allowed, remedy
-                )
-            fields["guide_overrollings"] = _number(
-                f"{where}.guide_overrollings", entry["guide_overrollings"]
+            fields["guide_overrollings"] = _overrollings(
+                entry["guide_overrollings"], lasts, f"{where}.guide_overrollings"
             )
+    loads = {key: entry[key] for key in LOAD_FIELDS if key in entry}
     try:
-        fields["case"] = Case.from_dict(
-            {**base, **{key: entry[key] for key in LOAD_FIELDS if key in entry}}
-        )
+        fields["case"] = Case.from_dict({**base, **loads})
     except InputError as error:
         wrong.errors += _named(error, where)
     wrong.check()
@@ -450,6 +434,31 @@ def _block(entry: Any, base: Mapping[str, Any], number: int) -> Block:
         # the velocity of the block [m/min]
         fields["distance"] *= 60.0 * float(fields["case"].velocity)
     return Block(**fields)
+
+
+def _check_travel(lasts: list[str], entry: Mapping[str, Any], where: str) -> None:
+    """Refuse a block that does not say how long it lasts, or says it twice.
+
+    A block with a mistyped key is left to the check of its names.
+    """
+    if not lasts and not any(nearest(key, BLOCK_FIELDS) in TRAVEL for key in entry):
+        allowed = (
+            "the distance in m or the hours travelled per shift, or the share of the time of travel"
+        )
+        remedy = "Add one of distance, hours and share to the block."
+        raise InputError(f"{where}.distance", None, allowed, remedy)
+    if len(lasts) > 1:
+        allowed = "one of distance, hours and share; the velocity gives the others"
+        remedy = f"Remove {lasts[0]} or {lasts[1]}."
+        raise InputError(f"{where}.{lasts[1]}", entry[lasts[1]], allowed, remedy)
+
+
+def _overrollings(value: Any, lasts: list[str], where: str) -> float:
+    """Return the overrollings of the guide per shift; refuse them in a block by its share."""
+    if lasts[:1] == ["share"]:
+        allowed = "overrollings per hour, because blocks by share of the time have no shift"
+        raise InputError(where, value, allowed, "Give guide_overrollings_per_hour instead.")
+    return _number(where, value)
 
 
 def _named(error: InputError, where: str) -> list[InputError]:

@@ -18,7 +18,7 @@ import pandas as pd
 from trackroller.errors import Collector, InputError
 from trackroller.files import UTF_16, opened
 from trackroller.numerics.numbers import number_or_nan
-from trackroller.numerics.table_cells import Refused, decimal_signs, plain_column
+from trackroller.numerics.table_cells import RefusedCell, decimal_signs, plain_column
 from trackroller.numerics.units import in_unit, split_quantity
 from trackroller.roller.log_answers import LogAnswers
 from trackroller.study.file.user_columns import read_table
@@ -308,7 +308,7 @@ def _number_of(cell: str, unit: str, target: str, name: str) -> float:
     """Return the number of a cell in a unit; NaN for a cell without one, and one that is not
     clear.
     """
-    if isinstance(cell, Refused):
+    if isinstance(cell, RefusedCell):
         return math.nan
     digits, stated = split_quantity(cell) or (cell, unit)
     number = number_or_nan(digits)
@@ -333,7 +333,7 @@ def _without_numbers(name: str, cell: str) -> InputError:
 
 
 def _refused(name: str, cell: str, path: Path, line: int) -> InputError:
-    if isinstance(cell, Refused):
+    if isinstance(cell, RefusedCell):
         return InputError(name, str(cell), *cell.message).at(path, line)
     allowed = f"a finite number [{COLUMNS[name]}]"
     remedy = (

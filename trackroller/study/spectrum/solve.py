@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import xarray as xr
 
-from trackroller.damage import LIMITS, fatigue, miner, verdict
+from trackroller.damage import LIMITS, fatigue, first_limit, miner
 from trackroller.damage.limit import skidding
 from trackroller.damage.pair import first_failure
 from trackroller.damage.sn_curve import CONVENTIONS, SNCurve, typical_scatter
@@ -82,7 +82,7 @@ def solve_spectrum(
         database = load_database()
     overrollings = overrollings_per_shift(spectrum)
     cases = cases_of(spectrum, overrollings)
-    named = ("forces", "peak_stress", "life", verdict.GROUP, *spectrum.groups)
+    named = ("forces", "peak_stress", "life", first_limit.GROUP, *spectrum.groups)
     outputs = dict.fromkeys((*named, *groups_for_run_in(cases)))
     solved = solve_cases(cases, outputs=tuple(outputs), database=database, **spectrum.options)
     return _damage(spectrum, solved, database, overrollings)
@@ -207,7 +207,7 @@ def _damage(
     if "limit" in solved.coords:
         chance = spectrum.options.get("failure_probability", 0.5)
         by_curve = {}
-        for end, place in zip(verdict.ENDS, (0.0, -1.0, 1.0), strict=True):
+        for end, place in zip(first_limit.ENDS, (0.0, -1.0, 1.0), strict=True):
             if case.placeholder_position is not None:
                 place = case.placeholder_position
             scattering = [curve.assuming(typical_scatter(place, chance)) for curve in bodies]
@@ -358,7 +358,7 @@ def by_limit(
         Its solved blocks with the group `limits`.
     by_curve : dict of str to numpy.ndarray
         Damage of each track by the S-N curve per shift, (block, contact, body) [1], by the ends of
-        `verdict.ENDS`.
+        `first_limit.ENDS`.
     breaks : numpy.ndarray of bool
         Where a body breaks at once, (block, body).
 
@@ -371,7 +371,7 @@ def by_limit(
     limits = [LIMITS[name] for name in solved["limit"].values.tolist()]
     used, *lives_of_blocks = (
         solved[name].transpose("case", "limit", "body").values
-        for name in ("utilisation", *(f"life_hours_by_limit{end}" for end in verdict.ENDS))
+        for name in ("utilisation", *(f"life_hours_by_limit{end}" for end in first_limit.ENDS))
     )
     travel = np.array([block.hours for block in spectrum.blocks])[:, None, None]
     most = np.max(np.where(travel > 0, used, 0.0), axis=0)
@@ -379,7 +379,7 @@ def by_limit(
     is_fatigue = np.array([limit.name == "fatigue" for limit in limits])
     critical = np.where(is_fatigue, spectrum.critical_damage, 1.0)[:, None]
     timed = solved["life_hours_by_limit"].notnull().any(["case", "body"]).values
-    broken = verdict.breaking(np.any(breaks & (travel[:, 0] > 0), axis=0), limits)
+    broken = first_limit.breaking(np.any(breaks & (travel[:, 0] > 0), axis=0), limits)
     words = (*LIMITS, "unknown")
     flag: dict[str, Any] = {
         "long_name": "limit that the body reaches first",
@@ -402,14 +402,14 @@ def by_limit(
             dict(solved["limit_state"].attrs),
         ),
     }
-    for end, lives in zip(verdict.ENDS, lives_of_blocks, strict=True):
+    for end, lives in zip(first_limit.ENDS, lives_of_blocks, strict=True):
         damage = miner.block_damage(travel, lives)
         for i in (i for i, limit in enumerate(limits) if limit.name == "fatigue"):
             damage[:, i] = _of_worse_track(by_curve[end])
         shifts = critical * miner.repetitions_to_failure(damage.sum(axis=0))
         first, which = (
             one[0]
-            for one in verdict.first_of(shifts[None], most[None], timed, limits, broken[None])
+            for one in first_limit.first_of(shifts[None], most[None], timed, limits, broken[None])
         )
         head = {"": "", "_low": "low end of the ", "_high": "high end of the "}[end]
         for name, dims, values, meaning in (

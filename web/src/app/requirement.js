@@ -3,10 +3,10 @@ import { ask } from "./api.js";
 import { el, replace } from "../dom.js";
 
 const CASE = ["radial_force", "axial_force", "motor_force", "velocity", "friction_coefficient", "guide_profile_radius", "guide_curve_radius", "contact_angle", "guide_overrollings_per_hour"];
-const REQUIRED = [["life", "Life", "such as 3 years beside a duty, or hours"], ["failures", "Failures by then", "such as 5 %; needs the scatter of the materials"], ["safety", "Safety against overload", "factor on all forces within all limits, such as 1.5"], ["least", "Least", "column of the shelf, such as price; without one the longest life leads"]];
+const REQUIRED = [["life", "Life", "such as 3 years beside a duty, or hours"], ["failures", "Failures by then", "such as 5 %; needs the scatter of the materials"], ["safety", "Safety against overload", "factor on all forces within all limits, such as 1.5"], ["temperature", "Permissible temperature [degC]", "of roller and guide, such as 60 degC; needs the heat transfer of the roller"], ["wear_depth", "Permissible wear depth [mm]", "within the required life, such as 0.05 mm"], ["least", "Least", "column of the shelf, such as price; without one the longest life leads"]];
 
 export function requirementView(state, offered, { duty }) {
-  const own = { carriage: "", shelf: "", required: { life: "", failures: "", safety: "", least: "" } };
+  const own = { carriage: "", shelf: "", required: Object.fromEntries(REQUIRED.map(([name]) => [name, ""])) };
   const lists = { shelf: el("datalist", { id: "shelf-files" }), carriage: el("datalist", { id: "carriage-choice" }) };
   const text = (label, help, value, change, list = null) => {
     const input = el("input", { type: "text", value, "aria-label": label, title: help, list, onchange: () => change(input.value.trim()) });

@@ -1,5 +1,5 @@
-"""The designs of a study and their conditions for the explorer: numbers to brush by, and a list of
-each.
+"""The candidates of a study and their conditions for the explorer: numbers to brush by, and a list
+of each.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ import numpy as np
 import pandas as pd
 
 from trackroller.parameters import FIRST_TO_FAIL
-from trackroller.report.explorer.rows import Column
+from trackroller.report.explorer.rows import ExplorerColumn
 from trackroller.report.numbers import GUIDE_UNKNOWN, Life, capital, count, part_of, with_unit
 from trackroller.report.tables.table import cell, factor_cell, goal_heading, heading
 from trackroller.results.candidates import Candidates, hardest_first
@@ -19,11 +19,11 @@ from trackroller.results.pareto import study_pareto
 from trackroller.results.results import Results
 from trackroller.study.file.goals import statistic
 
-MOST_LISTED = 200  # designs or conditions in a list; the axis holds all of them
+MOST_LISTED = 200  # candidates or conditions in a list; the axis holds all of them
 
 
-def design_columns(results: Results) -> tuple[list[Column], dict[str, Any]]:
-    """Return what the explorer needs to compare designs over their conditions.
+def candidate_columns(results: Results) -> tuple[list[ExplorerColumn], dict[str, Any]]:
+    """Return what the explorer needs to compare candidates over their conditions.
 
     Parameters
     ----------
@@ -32,11 +32,12 @@ def design_columns(results: Results) -> tuple[list[Column], dict[str, Any]]:
     Returns
     -------
     columns : `design` (number in the ranking, the best first), `design_worst` (worst life over the
-        valid conditions of the design), and `condition` (number of the combination of conditions,
-        the hardest first) if the designs share their conditions; none if the goal does not rank the
-        designs
+        valid conditions of the candidate), and `condition` (number of the combination of
+        conditions, the hardest first) if the candidates share their conditions; none if the goal
+        does not rank the candidates
     lists : under `design` and `condition` the `factors`, the `heads` and the `rows` of a list,
-        `of`, the number of all its entries, and a `note` for the reader; empty if no design repeats
+        `of`, the number of all its entries, and a `note` for the reader; empty if no candidate
+        repeats
     """
     candidates = results.candidates()
     if (
@@ -46,13 +47,13 @@ def design_columns(results: Results) -> tuple[list[Column], dict[str, Any]]:
         or not candidates.ranks
     ):
         return [], {}
-    own = candidates.place >= 0
-    number = np.argsort(candidates.table.index.to_numpy())[candidates.place]
+    own = candidates.candidate >= 0
+    number = np.argsort(candidates.table.index.to_numpy())[candidates.candidate]
     worst = np.where(own, candidates.table["worst"].to_numpy()[number], np.nan)
     words, unit = candidates.goal[1:]
     columns = [
         _numbered("design", "Design, the best first", np.where(own, number, -1)),
-        Column(
+        ExplorerColumn(
             "design_worst",
             f"Worst {words} of the design",
             unit,
@@ -62,24 +63,24 @@ def design_columns(results: Results) -> tuple[list[Column], dict[str, Any]]:
         ),
     ]
     head = with_unit(f"Worst {words}", unit)
-    lists = {"design": _designs(candidates, head)}
+    lists = {"design": _candidates(candidates, head)}
     if candidates.possible > 1:
-        place = hardest_first(candidates)
-        columns.append(_numbered("condition", "Condition, the hardest first", place))
-        lists["condition"] = _conditions(candidates, place, number, head)
+        condition = hardest_first(candidates)
+        columns.append(_numbered("condition", "Condition, the hardest first", condition))
+        lists["condition"] = _conditions(candidates, condition, number, head)
     return columns, lists
 
 
-def _numbered(name: str, label: str, codes: np.ndarray) -> Column:
+def _numbered(name: str, label: str, codes: np.ndarray) -> ExplorerColumn:
     levels = tuple(float(i + 1) for i in range(codes.max() + 1))
-    return Column(
+    return ExplorerColumn(
         name, label, "", "design", codes, levels, tuple(count(int(level)) for level in levels)
     )
 
 
-def _designs(candidates: Candidates, worst: str) -> dict[str, Any]:
-    """List the designs by rank, with their lives, the conditions in which they are valid, and what
-    fails first.
+def _candidates(candidates: Candidates, worst: str) -> dict[str, Any]:
+    """List the candidates by rank, with their lives, the conditions in which they are valid, and
+    what fails first.
     """
     heads, cells, note = _goals(candidates)
     nine = []
@@ -115,13 +116,13 @@ def _designs(candidates: Candidates, worst: str) -> dict[str, Any]:
 
 
 def _goals(candidates: Candidates) -> tuple[list[str], dict[tuple[Any, ...], list[str]], str]:
-    """Return the goals of the study that are statistics over the conditions of a design, with its
-    Pareto set.
+    """Return the goals of the study that are statistics over the conditions of a candidate, with
+    its Pareto set.
 
     Returns
     -------
-    Heads, cells by design, and what a reader has to know; empty if the goals of the study are those
-    of single cases.
+    Heads, cells by candidate, and what a reader has to know; empty if the goals of the study are
+    those of single cases.
     """
     goals = candidates.results.config.pareto
     if not any(statistic(name)[0] for name in goals):
@@ -148,10 +149,10 @@ def _goals(candidates: Candidates) -> tuple[list[str], dict[tuple[Any, ...], lis
 
 
 def _conditions(
-    candidates: Candidates, place: np.ndarray, number: np.ndarray, worst: str
+    candidates: Candidates, condition: np.ndarray, number: np.ndarray, worst: str
 ) -> dict[str, Any]:
-    """List the conditions with the designs that are valid there, the worst life, and the design
-    that does best.
+    """List the conditions with the candidates that are valid there, the worst life, and the
+    candidate that does best.
     """
     results = candidates.results
     rows = []
@@ -161,7 +162,7 @@ def _conditions(
         sign = -1.0
     values = results.column(candidates.goal[0])
     beyond = beyond_sn_data(results, candidates.goal[0])
-    for there in (place == i for i in range(min(place.max() + 1, MOST_LISTED))):
+    for there in (condition == i for i in range(min(condition.max() + 1, MOST_LISTED))):
         cases = np.flatnonzero(there & candidates.usable)
         ranked = cases[np.argsort(sign * values[cases], kind="stable")]
         cells = [part_of(len(cases), there.sum()), "–", "–"]
@@ -175,7 +176,7 @@ def _conditions(
         "factors": candidates.conditions,
         "heads": heads,
         "rows": rows,
-        "of": int(place.max()) + 1,
+        "of": int(condition.max()) + 1,
         "note": "",
     }
 

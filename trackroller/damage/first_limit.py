@@ -1,4 +1,4 @@
-"""The verdict: how far each limit is used, when it is reached, and which limit comes first."""
+"""The first limit: how far each limit is used, when it is reached, and which limit comes first."""
 
 from __future__ import annotations
 
@@ -217,7 +217,7 @@ def _bounds(solved: SolvedRollers, limits: Sequence[Limit]) -> np.ndarray:
     return out
 
 
-def verdict(
+def limit_uses(
     places: Sequence[SolvedRollers], limits: Sequence[Limit], numbers: Sequence[int], unknown: int
 ) -> Values:
     """Return how far each limit is used, hours to each and to the first, their ranges, and which
@@ -258,10 +258,10 @@ def verdict(
     if limits:
         lacking = np.stack([limit.lacking(places[0]) for limit in limits], axis=1)
     for i, limit in enumerate(limits):
-        assert limit.verdict is not None
+        assert limit.use is not None
         concerned = [body in limit.bodies for body in BODIES]
         for place, solved in enumerate(places):
-            own = limit.verdict(solved, dict(solved.values))
+            own = limit.use(solved, dict(solved.values))
             if own.utilisation is not None:
                 used[place, :, i] = np.where(concerned, own.utilisation, np.nan)
             if own.life_hours is not None:

@@ -1,4 +1,4 @@
-"""The verdict over the limits: which one comes first, and when."""
+"""The checked limits: which one comes first, and when."""
 
 import re
 
@@ -10,11 +10,10 @@ from typer.testing import CliRunner
 import trackroller as tr
 from trackroller.cli.case import groups_of
 from trackroller.cli.main import app
-from trackroller.damage import LIMITS, limits_of, others
-from trackroller.damage import judged as judged_limits
-from trackroller.damage.limit import Limit, SolvedRollers, Verdict
+from trackroller.damage import LIMITS, checked_limits, limits_of, others
+from trackroller.damage.first_limit import ENDS, STATES, limit_uses, states
+from trackroller.damage.limit import Limit, LimitUse, SolvedRollers
 from trackroller.damage.sn_curve import TYPICAL_SCATTER
-from trackroller.damage.verdict import ENDS, STATES, states, verdict
 from trackroller.errors import InputError
 from trackroller.parameters import BODIES, FIRST_TO_FAIL, REGIMES
 from trackroller.report.numbers import rounded
@@ -28,12 +27,12 @@ STRONG = {"like": STEEL, "tensile_strength": 3000.0, "fatigue_limit": 1000.0}
 def limit(name, used, hours, **more):
     """A limit with a given utilisation and hours of roller and guide."""
     shaped = [None if v is None else np.array([v], dtype=float) for v in (used, hours)]
-    return Limit(name, name, name, lambda solved: {}, lambda solved, found: Verdict(*shaped), **more)
+    return Limit(name, name, name, lambda solved: {}, lambda solved, results: LimitUse(*shaped), **more)
 
 
 def judged(*limits):
     solved = SolvedRollers({}, {}, {}, np.ones(1))
-    found = verdict([solved], limits, range(len(limits)), len(limits))
+    found = limit_uses([solved], limits, range(len(limits)), len(limits))
     return [found[name][0].tolist() for name in ("limiting_mechanism", "life_to_first_limit_hours")]
 
 
@@ -45,7 +44,7 @@ def test_a_limit_without_hours_ends_no_life():
     """It is kept or exceeded; alone it leaves the life unknown."""
     kept, timed = limit("a", [1.2, 0.9], None), limit("b", None, [20, 30])
     assert judged(kept, timed) == [[1, 1], [20, 30]]
-    found = verdict([SolvedRollers({}, {}, {}, np.ones(1))], [kept, timed], range(2), 2)
+    found = limit_uses([SolvedRollers({}, {}, {}, np.ones(1))], [kept, timed], range(2), 2)
     words = [[STATES[i] for i in row] for row in found["limit_state"][0]]
     assert words == [["exceeded", "kept"], ["kept", "kept"]]
     which, hours = judged(kept)
@@ -65,7 +64,7 @@ def test_limits_that_are_never_reached_are_ranked_by_utilisation():
 def test_a_utilisation_above_one_exceeds_a_limit_only_where_the_limit_is_bounded():
     for bounded, state in ((False, "kept"), (True, "exceeded")):
         own = limit("a", [1.5, 1.5], [50, 60], bounded=bounded)
-        found = verdict([SolvedRollers({}, {}, {}, np.ones(1))], [own], [0], 1)
+        found = limit_uses([SolvedRollers({}, {}, {}, np.ones(1))], [own], [0], 1)
         assert found["life_to_first_limit_hours"].tolist() == [[50, 60]]
         assert {STATES[i] for i in found["limit_state"].ravel()} == {state}
 
@@ -95,12 +94,12 @@ def test_a_limit_that_a_placeholder_decides_is_open(used, state):
 
 
 def test_asked_limits_follow_from_the_groups():
-    everything = [name for name in NAMES if name != "multiaxial"]  # which has no verdict
+    everything = [name for name in NAMES if name != "multiaxial"]  # which is not checked
     for outputs in (("forces", "limits"), ("forces", "life", "limits")):
         assert [own.name for own in limits_of(outputs)] == everything
     assert [own.name for own in limits_of(("forces", "limits"), others(["static", "wear"]))] == ["static", "wear"]
     assert [own.name for own in limits_of(("multiaxial", "limits"))] == list(LIMITS)
-    assert [own.name for own in limits_of(("life",))] == ["fatigue"] and judged_limits(("life",)) == ()
+    assert [own.name for own in limits_of(("life",))] == ["fatigue"] and checked_limits(("life",)) == ()
     assert limits_of(("forces", "contact")) == ()
 
 
@@ -201,7 +200,7 @@ def test_the_command_line_prints_one_table():
     told = " ".join(ran.output.split())
     assert ran.exit_code == 0 and "│ static strength" in told and "│ rating" in told
     assert "hours of rating (give guide_overrollings_per_hour)" in told
-    others = [limit.word for limit in judged_limits() if limit.name not in ("static", "rating")]
+    others = [limit.word for limit in checked_limits() if limit.name not in ("static", "rating")]
     assert all(f"{word} (left out)" in told for word in others)
     assert "Contact 1" not in told  # one table
     assert groups_of("all")[-1] == "limits" and "multiaxial" not in groups_of("all")

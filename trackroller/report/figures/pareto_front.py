@@ -19,14 +19,14 @@ from trackroller.roller.output_names import is_life
 from trackroller.study.design.levels import OF_MATERIALS
 from trackroller.study.file.goals import statistic
 
-OTHER = "0.65"  # grey of the designs without a level of their own
+OTHER = "0.65"  # grey of the candidates without a level of their own
 _WAYS = {"max": "up", "min": "down"}
 _ARROWS = {"max": "→", "min": "←"}
 
 
 def pareto_front(front: xr.Dataset, results: Results | None = None) -> style.Drawn:
-    """Draw all allowed designs, coloured by the factor that decides the first goal, and the Pareto
-    set.
+    """Draw all allowed candidates, coloured by the factor that decides the first goal, and the
+    Pareto set.
 
     It answers: what does more of one goal cost in another, and which choice leads to which end of
     the set? The panels show the first goal over each other one.
@@ -34,11 +34,11 @@ def pareto_front(front: xr.Dataset, results: Results | None = None) -> style.Dra
     Parameters
     ----------
     front : dataset of `trackroller.results.pareto.pareto`
-    results : the study, for the validity and the deciding factor of the designs
+    results : the study, for the validity and the deciding factor of the candidates
 
     Returns
     -------
-    Figure and what it shows; None for fewer than two goals or designs, or without a Pareto set.
+    Figure and what it shows; None for fewer than two goals or candidates, or without a Pareto set.
     """
     goals = goals_of(front)
     if not (front["optimal"].values == 1).any() or min(front.sizes["row"], len(goals)) < 2:
@@ -100,7 +100,7 @@ def _trade(
 ) -> None:
     """Draw one goal over another; steps join the Pareto set of a study with two goals.
 
-    The designs are drawn in random order, so that in a dense cloud no level hides the others.
+    The candidates are drawn in random order, so that in a dense cloud no level hides the others.
     """
     (x, up_x), (y, up_y) = across, upwards
     xs, ys = front[x].values.astype(float), front[y].values.astype(float)

@@ -1,0 +1,89 @@
+"""A hedge names the value whose range leaves a requirement open; what the model does not judge is not called lost."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import trackroller as tr
+from trackroller.report.headlines import headline_of
+
+BASE = {"axis_distance": 26, "contact_angle": 45, "motor_force": 0, "friction_coefficient": 0.2, "axial_force": 4}
+LIFE = "pair_life_to_first_limit_hours"
+WORN = {"roller_material": "PA66-dry", "permissible_wear_depth": 0.15, "velocity": 80}
+OUTPUTS = ["forces", "contact", "friction_work", "peak_stress", "life", "wear", "limits"]
+MODEL = {"contact_model": "sliding", "accuracy": "preview"}
+
+
+def solved(base=(), **keys):
+    given = {name: value for name, value in (BASE | dict(base)).items() if name not in keys["factors"]}
+    study = {"name": "ranges", "base": given, **MODEL, **keys}
+    return tr.run(study, progress=False)
+
+
+def test_a_search_that_a_range_leaves_open_names_the_value_and_its_range():
+    """The wear coefficient of a plastic on steel is a range, and the required life lies within that of the wear."""
+    keys = {
+        "factors": {"axis_distance": {"uniform": [20, 30]}, "radial_force": {"values": [-12, -30]}},
+        "method": "optimise",
+        "budget": {"designs": 16, "population": 8},
+        "outputs": OUTPUTS,
+        "goals": {"axis_distance": "min"},
+    }
+    wear = tr.solve(BASE | WORN | {"axis_distance": 30, "radial_force": -30}, outputs=OUTPUTS, **MODEL)
+    low, high = (float(wear[f"{LIFE}{end}"]) for end in ("_low", "_high"))
+    assert high > 2 * low
+    results = solved(WORN, requirement={LIFE: {"min": float(np.sqrt(low * high))}}, **keys)
+    answer = results.answer
+    assert answer.kind == "open"
+    named = answer.headline["measure"]
+    assert (named["what"], named["of"]) == ("wear_coefficient", "PA66-dry")
+    text = headline_of(answer).text
+    assert (
+        text.startswith("Wear coefficient of PA66-dry") and "leaves" in text and " to " in text.partition(" leaves")[0]
+    )
+    assert named["low"] < named["high"]
+
+
+def test_what_the_model_does_not_judge_is_not_called_lost():
+    """At −2,000 N the deep groove breaks and the close one is no half-space; at −9 N both drives skid."""
+    factors = {
+        "roller_profile_radius": {"values": [-7, -6.02]},
+        "radial_force": {"values": [-60, -120, -2000]},
+        "motor_force": {"values": [0, -25]},
+    }
+    results = solved(factors=factors)
+    table = results.table
+    skids = (table["regime"] == 1).to_numpy()
+    outside = results.flagged("half_space")
+    groove = table["roller_profile_radius"].to_numpy()
+    conditions = table.groupby(["radial_force", "motor_force"]).ngroup().to_numpy()
+    failed = {
+        int(one)
+        for one in np.unique(conditions)
+        if (skids | results.flagged("static"))[conditions == one].all() and not outside[conditions == one].any()
+    }
+    unknown = {int(one) for one in np.unique(conditions[outside & (groove == -6.02)])}
+    assert failed and unknown and not failed & unknown
+    head = results.answer.headline
+    assert head["not_judged"]["count"] == len(unknown) and head["not_judged"]["of"] == 6
+    assert head["not_held"]["count"] == len(failed) and head["not_held"]["of"] == 6 - len(unknown)
+    text = headline_of(results.answer).text
+    assert f"one holds in {len(failed)} of {6 - len(unknown)} judged conditions" in text
+    assert f"{len(unknown)} of 6 conditions" in text and "not judged" in text
+
+
+def test_a_single_candidate_says_how_many_loads_are_judged():
+    factors = {"radial_force": {"values": [-60, -120, -2000]}}
+    results = solved({"roller_profile_radius": -6.02}, factors=factors, requirement={LIFE: {"min": 1}})
+    assert results.flagged("half_space").tolist() == [False, False, True]
+    answer = results.answer
+    assert (answer.headline["meets"], answer.headline["judged"], answer.headline["of"]) == (2, 2, 3)
+    assert headline_of(answer).text.startswith("Meets 2 of 3 loads, 2 of them judged")
+
+
+@pytest.mark.parametrize(("loads", "kind"), [([-60, -2000], "build"), ([-2000], "cannot_tell")])
+def test_candidates_that_may_hold_every_condition_are_not_ruled_out(loads, kind):
+    """The close groove holds at −60 N and is not judged at −2,000 N, where the other one breaks."""
+    factors = {"roller_profile_radius": {"values": [-7, -6.02]}, "radial_force": {"values": loads}}
+    assert solved(factors=factors).answer.kind == kind
