@@ -43,7 +43,7 @@ def lead_of(sizing: Sizing) -> str:
     return f"{sizing.least} {leads} {of}".rstrip() + f": {', '.join(parts)}."
 
 
-def _reached(sizing: Sizing, row: Mapping[str, Any]) -> list[str]:
+def _reached(sizing: Sizing, row: Mapping[Any, Any]) -> list[str]:
     """Return what a roller reaches of what is required, and a second model that says otherwise."""
     parts = []
     if sizing.least_of:
