@@ -75,3 +75,24 @@ def test_a_condition_without_life_is_not_extrapolated(tmp_path):
     assert (results.table["regime"] == 1).any() and results.answer.headline["extrapolated"]
     text = headline_of(results.answer).text
     assert "0 h" in text and "extrapolated" not in text
+
+
+def test_a_headline_counts_causes_as_such(tmp_path):
+    """Seven of eight conditions are too short, in no place of their own."""
+    factors = {
+        "roller_profile_radius": {"values": [-6.5, -7]},
+        "radial_force": {"values": [-60, -90]},
+        "axial_force": {"values": [0, 6]},
+        "friction_coefficient": {"values": [0.05, 0.2]},
+    }
+    base = BASE | {"motor_force": 0}
+    study = {"base": {k: v for k, v in base.items() if k != "friction_coefficient"}, "factors": factors}
+    plain = solved(tmp_path, **study)
+    life = plain.data["pair_life_to_first_limit_hours"].max("roller_profile_radius").values.ravel()
+    least = 0.5 * (np.sort(life)[-1] + np.sort(life)[-2])  # one condition reaches it
+    answer = solved(tmp_path, **study, requirement={"pair_life_to_first_limit_hours": {"min": float(least)}}).answer
+    near = answer.headline["nearest"]
+    assert near["meets"] == 1 and near["perhaps"] == 1
+    text = headline_of(answer).text
+    assert near["fails_counted"] == near["fails"].startswith("too short in 7")
+    assert ("fails at" in text) == (not near["fails_counted"]), text

@@ -34,10 +34,11 @@ Keys of `Answer.headline`; a key that is missing, None, NaN or empty is left out
 `measure`          {what, of, on, turn, units, low, high}: placeholder, its material, the other one,
                    where the leader turns, and its range
 `give`             {what}: load that was not given, in words: "the motor force"
-`nearest`          {name (as one of `names`), holds, judged, of, meets, perhaps, low, fails}:
+`nearest`          {name (as one of `names`), holds, judged, of, meets, perhaps, low, fails,
+                   fails_counted}:
                    `meets` and `perhaps` count the conditions that surely meet it and that may;
                    `judged` those that the model judges; `fails` says where it surely fails, in
-                   words
+                   words, or counts the causes (`fails_counted`)
 `up_to`, `from_on`  levels of the single numeric choice between which all conditions meet the
                    requirement
 `share`, `share_low`, `share_high`  share of the drawn conditions that meets it, Wilson's interval
@@ -399,6 +400,8 @@ def _nearest(answer: Answer) -> list[str]:
     fails = _short(near.get("fails"))
     if fails == "everywhere":
         return [*clauses, "fails everywhere"]
+    if fails and near.get("fails_counted"):
+        return [*clauses, fails]
     if fails:
         return [*clauses, f"fails at {fails}"]
     return clauses
