@@ -296,6 +296,28 @@ def test_the_bearing_ends_a_roller_after_its_life_by_hand(tmp_path):
     assert bearing == pytest.approx(turns * 2 * 3.141592653589793 * radius / 1e3 / (60 * 60), rel=1e-4)
 
 
+def test_a_catalogue_that_misses_the_life_is_said(tmp_path):
+    """By fatigue the roller lasts; the maker's catalogue allows a fiftieth of the required life."""
+    path = tmp_path / "rated.csv"
+    head = "name;axis_distance;roller_profile_radius;catalogue_radial_force [N];catalogue_axial_force [N]"
+    rows = ["small;20;-6.3;260;80", "large;20;-6.3;2600;800"]
+    path.write_text("\n".join([f"{head};catalogue_basic_life [km]", *(f"{row};100" for row in rows)]) + "\n")
+    case = {name: value for name, value in CASE.items() if name != "roller_profile_radius"}
+    case |= {"roller_material": "1.7225-quenched-tempered", "velocity": 30, "guide_overrollings_per_hour": 1}
+    sizing = tr.size(case | QUICK, path, life=1500)
+    table = sizing.table.set_index("roller")
+    hours = {}
+    for name, radial, axial in (("small", 260, 80), ("large", 2600, 800)):
+        load = 150 / radial + 20 / axial
+        hours[name] = 100 / (0.03 + 0.97 * load) ** 2 / (30 * 60 / 1000)  # the law `dry`, km over km/h
+    assert (table["life_hours"] > 1500).all(), "by fatigue both last"
+    assert hours["small"] < 1500 < hours["large"]
+    assert table.loc["small", "second_model"] == f"catalogue misses the life: {hours['small']:.3g} h"
+    assert table.loc["large", "second_model"] == ""
+    said = lead_of(sizing)
+    assert ("but the catalogue misses" in said) == (sizing.least == "small")
+
+
 WARM = CASE | QUICK | {"heat_transfer_coefficient": 20, "cooled_area": 8000}
 
 

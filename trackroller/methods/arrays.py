@@ -44,7 +44,12 @@ class Coded(Method):
     quick = quadratic = True
     tail = TAIL
     indices = {
-        "effect": Index("change over the range", sized=True, signed=True, of_factor=True),
+        "effect": Index(
+            "change over the range; of a list the largest less the smallest mean",
+            sized=True,
+            signed=True,
+            of_factor=True,
+        ),
         "curvature": Index("curvature of the fit", sized=True, signed=True, of_factor=True),
         "interaction": Index("two-factor interaction effect", sized=True, signed=True),
         "r_squared": Index("share of variance fitted"),

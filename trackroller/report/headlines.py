@@ -38,10 +38,12 @@ Keys of `Answer.headline`; a key that is missing, None, NaN or empty is left out
 `measure`          {what, of, on, turn, units, low, high}: placeholder, its material, the other one,
                    where the leader turns, and its range
 `give`             {what}: load that was not given, in words: "the motor force"
-`nearest`          {name (as one of `names`), holds, judged, of, meets, perhaps, low, fails}:
+`nearest`          {name (as one of `names`), holds, judged, of, meets, perhaps, low, fails,
+                   fails_counted}:
                    `meets` and `perhaps` count the conditions that surely meet it and that may;
                    `judged` those that the model judges; `fails` says where it surely fails, in
-                   words; `cause` why it holds nowhere ("skids"), '' otherwise
+                   words, or counts the causes (`fails_counted`); `cause` why it holds nowhere
+                   ("skids"), '' otherwise
 `up_to`, `from_on`  levels of the single numeric choice between which all conditions meet the
                    requirement
 `share`, `share_low`, `share_high`  share of the drawn conditions that meets it, Wilson's interval
@@ -66,7 +68,8 @@ it, cases that may, all cases.
 
 `which model`: `changes`: ``, `verdict`, `order` or `verdict and order`; `models`: list of dict
 `model`, `verdict`, `low`, `high`, `error`, `leader` (a dict as one of `names`); `smallest`,
-`largest` ratio on like rows to the model `base`.
+`largest` ratio on like rows to the model `base`; `base_by`: models that solved its cases, where
+they are others.
 
 `best`, by `Answer.kind` (`one`, `front`, `front_required`; `solve_finer`, `open`, `none` with
 `nearest`, of `open` also `measure` as above): `designs`, a list of dict: `name` (as one of
@@ -412,6 +415,8 @@ def _nearest(answer: Answer) -> list[str]:
         return [*clauses, f"{near['cause']} everywhere"]
     if fails == "everywhere":
         return [*clauses, "fails everywhere"]
+    if fails and near.get("fails_counted"):
+        return [*clauses, fails]
     if fails:
         return [*clauses, f"fails at {fails}"]
     return clauses
@@ -559,7 +564,10 @@ def which_model(answer: Answer) -> Headline:
     clauses = []
     if _known(head, "smallest"):
         ratio = carried_range(head["smallest"], head["largest"])
-        clauses.append(f"{lowered(answer.output[1])} {ratio} times that of {head['base']}")
+        by = ""
+        if head.get("base_by"):
+            by = f" (solved by {head['base_by']})"
+        clauses.append(f"{lowered(answer.output[1])} {ratio} times that of {head['base']}{by}")
     return _joined(lead, clauses)
 
 
@@ -1194,12 +1202,11 @@ def _notes(head: Mapping[str, Any]) -> list[str]:
     """Return what stands in brackets behind a value: why nothing lasts, and whether the value is
     extrapolated.
     """
-    reason = []
     if head.get("ends") and not head.get("body"):
-        reason = [str(head["ends"])]
+        return [str(head["ends"])]
     if head.get("extrapolated"):
-        return [*reason, "extrapolated"]
-    return reason
+        return ["extrapolated"]
+    return []
 
 
 def _output(

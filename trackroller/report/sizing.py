@@ -35,16 +35,7 @@ def lead_of(sizing: Sizing) -> str:
     if not sizing.least:
         return _none_is_enough(sizing)
     row = sizing.table.set_index(ROLLER).loc[sizing.least].to_dict()
-    parts = []
-    if sizing.least_of:
-        parts.append(f"{sizing.least_of} {row[sizing.least_of]:g}")
-    for name, words in RATIOS.items():
-        if math.isfinite(row.get(name, math.nan)):
-            parts.append(f"{row[name]:.3g} {words}")
-    if "overload" in row:
-        parts.append("within all limits at the forces times the safety")
-    if math.isfinite(row.get("load_ratio", math.nan)):
-        parts.append(f"{row['load_ends']} at {row['load_ratio']:.3g} times the forces")
+    parts = _reached(sizing, row)
     number = int((sizing.table["verdict"] == "enough").sum())
     leads = "has the largest load ratio"
     if sizing.least_of:
@@ -77,6 +68,23 @@ def _none_is_enough(sizing: Sizing) -> str:
     if not parts:
         return "No roller of the shelf is surely enough."
     return f"No roller of the shelf is surely enough; the nearest: {'; '.join(parts)}."
+
+
+def _reached(sizing: Sizing, row: Mapping[Any, Any]) -> list[str]:
+    """Return what a roller reaches of what is required, and a second model that says otherwise."""
+    parts = []
+    if sizing.least_of:
+        parts.append(f"{sizing.least_of} {row[sizing.least_of]:g}")
+    for name, words in RATIOS.items():
+        if math.isfinite(row.get(name, math.nan)):
+            parts.append(f"{row[name]:.3g} {words}")
+    if "overload" in row:
+        parts.append("within all limits at the forces times the safety")
+    if math.isfinite(row.get("load_ratio", math.nan)):
+        parts.append(f"{row['load_ends']} at {row['load_ratio']:.3g} times the forces")
+    if row.get("second_model"):
+        parts.append(f"but the {row['second_model']}")
+    return parts
 
 
 def notes_of(sizing: Sizing) -> list[str]:

@@ -48,7 +48,7 @@ def candidate_table(own: Comparison) -> pd.DataFrame:
         **_ends(own), **_counts(own), **_shares(own), **_second_models(own), **_exceeded(own)
     )
     table["state"] = states_of(own, table)
-    table["fails"] = _fails(own, table)
+    table[["fails", "fails_counted"]] = pd.DataFrame(_fails(own, table), index=table.index)
     table["edge"] = _edges(own)
     for name, other in own.others.items():
         table[f"of_{name}"] = _worst_of(own, other)
@@ -590,8 +590,10 @@ def _shares(own: Comparison) -> dict[str, Any]:
     }
 
 
-def _fails(own: Comparison, table: pd.DataFrame) -> list[str]:
-    """Return where each candidate surely misses its requirement, or is not held without one."""
+def _fails(own: Comparison, table: pd.DataFrame) -> list[tuple[str, bool]]:
+    """Return where each candidate surely misses its requirement, or is not held without one, and
+    whether this counts causes in place of levels.
+    """
     if own.required:
         good = own.some_in_pair(own.met()[1])[own.pairs[2]]
         good_count = table["perhaps"]
@@ -604,19 +606,19 @@ def _fails(own: Comparison, table: pd.DataFrame) -> list[str]:
     out = []
     for number in range(own.count):
         if missed[number] == 0:
-            out.append("")
+            out.append(("", False))
         elif missed[number] == table["of"].iloc[number]:
-            out.append(everywhere[number])
+            out.append((str(everywhere[number]), False))
         elif number < DESCRIBED and not own.drawn:
             out.append(_where(own, names, number, good))
         else:
-            out.append(f"{missed[number]} of {table['of'].iloc[number]}")
+            out.append((f"misses in {missed[number]} of {table['of'].iloc[number]}", True))
     return out
 
 
-def _where(own: Comparison, names: list[str], number: int, good: np.ndarray) -> str:
+def _where(own: Comparison, names: list[str], number: int, good: np.ndarray) -> tuple[str, bool]:
     """Return the levels that cover the misses of a candidate, otherwise how often it misses by
-    what.
+    what; and whether it is the latter.
     """
     rows = own.rows[number]
     part = own.results.table.iloc[rows]
@@ -624,13 +626,13 @@ def _where(own: Comparison, names: list[str], number: int, good: np.ndarray) -> 
     places = places_of(part, names, ~good[rows], np.ones(len(rows), dtype=bool))
     few = [place for place in places if len(place) <= MOST_FACTORS]
     if places and len(few) == len(places):
-        return places_text(places, part)
+        return places_text(places, part), False
     miss = "too much"
     if own.ranges.rises:
         miss = "too short"
     reasons = pd.Series(own.ranges.reason[rows][~good[rows]]).replace("", miss)
     counts = reasons.map(lambda word: limit_word(str(word).removeprefix("limit "))).value_counts()
-    return ", ".join(f"{word} in {count}" for word, count in counts.items())
+    return ", ".join(f"{word} in {count}" for word, count in counts.items()), True
 
 
 MOST_FACTORS = 2  # whose levels describe where a candidate fails

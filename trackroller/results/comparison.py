@@ -28,6 +28,7 @@ from trackroller.results.solved_cases import SolvedCases
 from trackroller.roller.expected_errors import ratio_error
 from trackroller.roller.output_names import is_life
 from trackroller.roller.told_errors import ORDINARY_FRICTION
+from trackroller.study.design.factor_names import SHELVES
 from trackroller.study.design.levels import OF_MATERIALS
 from trackroller.study.outputs import flat
 
@@ -194,7 +195,7 @@ class Comparison:
     @cached_property
     def idle(self) -> dict[str, str]:
         """Return the choices that change nothing which a decision rests on: `no effect`, or `none
-        on the NAME`.
+        on the NAME`. Rows of a shelf differ in their names, and in what they cost.
         """
         if not self.ranges.holds.any():
             return {}  # equal failures do not tell whether a choice has an effect
@@ -204,7 +205,7 @@ class Comparison:
         ]
         idle = {}
         for name in self.groups.choices:
-            if not unchanged_by(self.results, name, deciding):
+            if name in SHELVES or not unchanged_by(self.results, name, deciding):
                 continue
             table = self.results.table
             inputs = {*self.results.factors, *self.results.derived}

@@ -432,7 +432,7 @@ def _headline(own: Comparison, table: pd.DataFrame, decision: Decision) -> dict[
     return head | _level_reached(own, table)
 
 
-NEAREST = ("holds", "judged", "of", "meets", "perhaps", "low", "fails")
+NEAREST = ("holds", "judged", "of", "meets", "perhaps", "low", "fails", "fails_counted")
 
 
 def _goals_of(own: Comparison, one: pd.Series) -> list[dict[str, Any]]:

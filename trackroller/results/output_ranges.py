@@ -67,7 +67,7 @@ def _row(results: SolvedCases, ranges: CaseRanges) -> dict[str, Any]:
     names = list(results.labels) or list(results.factors)  # labels name the rows of a table
     return row | {
         "smallest": float(values.min()),
-        "median": float(np.quantile(values, 0.5, method="inverted_cdf")),
+        "median": float(np.median(values)),
         "largest": float(values.max()),
         "at_smallest": case_text(results.table, names, least),
         "at_largest": case_text(results.table, names, most),

@@ -58,7 +58,7 @@ OF_CARRIAGE = ("mass", "rollers", "cases")  # keys that every carriage file has
 # columns of the table of a sizing, which a shelf has no columns of its own for
 OF_SIZING = (
     *("verdict", "life_hours", "life_ratio", "ends", *RATIO.values()),
-    *("overload", "load_ratio", "load_ends", "excluded_by"),
+    *("second_model", "overload", "load_ratio", "load_ends", "excluded_by"),
 )
 # what a sizing may require, and by what rollers rank; arguments of `size`
 REQUIRED = ("life", "failures", "safety", *PERMITTED, "least")
@@ -80,7 +80,8 @@ class Sizing:
         end of the life to the first limit, worst condition), `life_ratio` (over the required life),
         `ends` (what ends it), `temperature_ratio` (permitted temperature rise over the rise),
         `wear_ratio` (life to the permitted wear depth over the required life), each further output
-        that the file requires with `NAME_ratio`, `load_ratio` (all forces times it reach the first
+        that the file requires with `NAME_ratio`, `second_model` (a second model that turns the
+        verdict, with its life), `load_ratio` (all forces times it reach the first
         limit), `load_ends` (that limit), `overload` (held, exceeded or not judged) and
         `excluded_by`. A requirement is met where its ratio is 1 or more.
     least : str

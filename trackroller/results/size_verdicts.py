@@ -101,7 +101,21 @@ class RollerVerdicts:
                 table[f"{one.output}_ratio"] = _ratio(worst, one)
         for name in self.permitted:
             table[RATIO[name]] = self._permitted_ratios(name)
+        second = [self._turned_by(name) for name in rows.index]
+        if any(second):
+            table["second_model"] = second
         return table
+
+    def _turned_by(self, name: str) -> str:
+        """Return the second model of an end, such as a catalogue, that turns the verdict of a
+        roller, with its life; '' where none does.
+        """
+        row = self._row(name)
+        if row["second_state"] in ("", row["state"]):
+            return ""
+        verbs = {"met": "meets", "open": "leaves open", "missed": "misses"}
+        verb = verbs[row["second_state"]]
+        return f"{row['second']} {verb} the life: {row['second_low']:.3g} h"
 
     def holding(self) -> list[tuple[str, str]]:
         """Return whether each roller holds all of its conditions: the verdict, and what is exceeded

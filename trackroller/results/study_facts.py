@@ -342,12 +342,26 @@ def _unlike(own: Comparison, shown: pd.DataFrame) -> list[Caution]:
         where = f"values that differ in conditions of one name: {words}"
         listed.append(Caution("unlike", own.count, own.count, where, "candidates"))
     if own.count > 1 and not own.matched and not own.drawn and own.conditions:
-        listed.append(
-            Caution(
-                "unlike", own.count, own.count, "candidates have other conditions", "candidates"
-            )
-        )
+        where = f"candidates have other conditions: {_listed(_conditions_apart(own))}"
+        listed.append(Caution("unlike", own.count, own.count, where, "candidates"))
     return listed
+
+
+def _conditions_apart(own: Comparison) -> list[str]:
+    """Return the conditions whose levels differ between candidates, in words, with all of their
+    levels.
+    """
+    table = own.results.table[own.own]
+    candidate = own.candidate[own.own]
+    apart = []
+    for name in own.conditions:
+        levels = own.results.levels(name)
+        pairs = pd.DataFrame({"candidate": candidate, "level": table[name].to_numpy()})
+        everywhere = pairs.drop_duplicates().groupby("level").size() == own.count
+        if not everywhere.all():
+            ends = " to ".join(level_text(name, level) for level in (levels[0], levels[-1]))
+            apart.append(f"{long_name_of(name)} ({ends})")
+    return apart
 
 
 def _unequal_loads(own: Comparison) -> Mapping[str, float]:

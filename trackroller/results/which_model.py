@@ -10,9 +10,10 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from trackroller.errors import listing
 from trackroller.parameters import EXACTNESS
 from trackroller.parameters.carriage_fields import long_name_of
-from trackroller.results.answer import Answer, Column
+from trackroller.results.answer import Answer, Caution, Column
 from trackroller.results.candidate_table import candidate_table, names_of
 from trackroller.results.candidates import Candidates
 from trackroller.results.case_columns import codes
@@ -31,6 +32,7 @@ from trackroller.results.study_facts import (
     not_given_words,
 )
 from trackroller.results.subgroups import level_text, plain
+from trackroller.study.outputs import flat
 
 MODEL = "contact_model"
 
@@ -80,6 +82,8 @@ def answer_which_model(results: SolvedCases) -> Answer:
     table = pd.DataFrame(rows)
     several = len(set(table["leader"])) > 1 or table["leader"].iloc[0] != ""
     head = _headline(rows, table, models[0])
+    every = np.ones(len(results.table), dtype=bool)
+    by_others = bool(((table["solved_by"] != "") & (table["solved_by"] != table["model"])).any())
     kind = "same"
     if head["changes"]:
         kind = "changes"
@@ -89,7 +93,7 @@ def answer_which_model(results: SolvedCases) -> Answer:
         headline=head,
         output=ranges.output,
         table=table.drop(columns=["names", "leader_key"]),
-        columns=_columns(ranges, bool(required), several),
+        columns=_columns(ranges, bool(required), several, by_others),
         required=required,
         curves=Effects.of(ranges).curves(),
         ends=ends_by_factor(results, ranges),
@@ -97,7 +101,7 @@ def answer_which_model(results: SolvedCases) -> Answer:
         not_checked=checks_left_out(results),
         not_used=given_for_nothing(results),
         not_given=not_given_words(results),
-        warnings=tuple(case_cautions(results, ranges, np.ones(len(results.table), dtype=bool))),
+        warnings=(*_alike(table), *case_cautions(results, ranges, every)),
         facts=facts_of(results),
     )
 
@@ -114,13 +118,17 @@ def _headline(rows: list[dict[str, Any]], table: pd.DataFrame, base: str) -> dic
     for row in rows:
         facts = {name: plain(value) for name, value in row.items() if name in TOLD}
         models.append({**facts, "leader": row["names"]})
-    return {
+    head = {
         "changes": " and ".join(changed),
         "base": base,
         "models": models,
         "smallest": float(table["ratio_low"].min()),
         "largest": float(table["ratio_high"].max()),
     }
+    solved_by = rows[0]["solved_by"]
+    if solved_by not in ("", base):
+        head["base_by"] = solved_by
+    return head
 
 
 TOLD = ("model", "verdict", "low", "high", "error", "meets", "of", "holds")
@@ -156,6 +164,7 @@ def _of_model(results: SolvedCases, ranges: CaseRanges, model: str, base: str) -
     return {
         "model": model,
         "verdict": plain(leader["state"]) or decided.kind,
+        "solved_by": _solvers(own_results, own.own),
         "leader": ", ".join(
             f"{long_name_of(name)} {level_text(name, level)}" for name, level in names.items()
         ),
@@ -172,6 +181,26 @@ def _of_model(results: SolvedCases, ranges: CaseRanges, model: str, base: str) -
         "of": int(own.own.sum()),
         "skids": int((own.ranges.reason[own.own] == "skids").sum()),
     }
+
+
+def _solvers(results: SolvedCases, rows: np.ndarray) -> str:
+    """Return the contact models that solved some cases, in words; '' where that is not stored."""
+    if "contact_model_used" not in results.data:
+        return ""
+    names = str(results.data["contact_model_used"].attrs["flag_meanings"]).split()
+    used = flat(results.data, "contact_model_used", results.dims)[rows].astype(int)
+    return listing([names[number] for number in np.unique(used)])
+
+
+def _alike(table: pd.DataFrame) -> list[Caution]:
+    """Return the warning that one contact model solved the cases of several ones, which then say
+    nothing of each other.
+    """
+    alike = table[table["solved_by"].duplicated(keep=False) & (table["solved_by"] != "")]
+    if alike.empty:
+        return []
+    where = f"{listing(alike['model'].tolist())}: all solved by {alike['solved_by'].iloc[0]}"
+    return [Caution("unlike", len(alike), len(table), f"{where}; take accuracy standard", "models")]
 
 
 def _like(results: SolvedCases, model: str, base: str) -> tuple[np.ndarray, np.ndarray]:
@@ -213,11 +242,16 @@ def _like_against_like(
     return {"base": models[0], "points": points}
 
 
-def _columns(ranges: CaseRanges, required: bool, several: bool) -> tuple[Column, ...]:
+def _columns(
+    ranges: CaseRanges, required: bool, several: bool, by_others: bool
+) -> tuple[Column, ...]:
     _, words, units = ranges.output
     columns = [
         Column("model", "Contact model", "", "contact model of these cases", "text", role="name")
     ]
+    if by_others:
+        meaning = "contact models that solved these cases; at preview kalker takes its table"
+        columns.append(Column("solved_by", "Solved by", "", meaning, "text"))
     if required:
         columns.append(
             Column("verdict", "Verdict", "", "requirement of the leader by this model", "state")
@@ -237,9 +271,9 @@ def _columns(ranges: CaseRanges, required: bool, several: bool) -> tuple[Column,
         ),
         Column(
             "ratio_low",
-            "To the exact model",
+            "To the first model",
             "1",
-            "ratio on like cases, smallest to largest",
+            "ratio to the first model on like cases, smallest to largest",
             "ratio",
             "ratio_high",
         ),
