@@ -304,7 +304,7 @@ class Limit:
         return out
 
     def served(self, solved: SolvedRollers) -> np.ndarray:
-        """Return which cases have all that the limit of a body requires, or give a field that
+        """Return which cases have all that its use by a body requires, or give a field that
         serves this limit alone, (n,) bool.
         """
         own = [
@@ -314,8 +314,8 @@ class Limit:
         out = np.asarray(~self.lacking(solved).all(axis=1))
         for name in own:
             if name in solved.cases:
-                out = out | ~missing(solved.cases[name])
-        return np.asarray(out)
+                out |= ~missing(solved.cases[name])
+        return out
 
     def kept_by_bound(self, solved: SolvedRollers) -> np.ndarray:
         """Return which bodies get a bound of the utilisation in place of the number, (n, body)
@@ -329,8 +329,8 @@ class Limit:
         return np.asarray(self.bound(solved.at_end(0)) < 1.0)
 
     def moves(self, solved: SolvedRollers) -> np.ndarray:
-        """Return whose use of the limit rests on a value of a material that is known within a
-        range only, (n,) bool.
+        """Return which cases use the limit by a value of a material that is known within a range
+        only, (n,) bool.
         """
         out = np.zeros(len(solved.rolling_radius), dtype=bool)
         for name, _ in self.required_of(solved):

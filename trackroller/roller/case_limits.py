@@ -126,9 +126,11 @@ def with_weakest(table: CaseTable, cases: CaseTable, number: np.ndarray) -> Case
 
 def to_compute(solved: SolvedRollers, options: Options) -> tuple[Limit, ...]:
     """Return the limits to compute: those named among the outputs, and the checked ones that a
-    case serves.
+    case serves; all of them without a case, so that an empty result has its variables.
     """
     candidates = computed(options.outputs, options.not_checked, options.life_criterion)
+    if not len(solved.rolling_radius):
+        return tuple(candidates)
     return tuple(own for own in candidates if has_results(own, solved, options).any())
 
 

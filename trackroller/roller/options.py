@@ -181,7 +181,7 @@ def check_pairs(hertz: str, normal: str, slip_terms: Collection[str], contact_mo
 
 
 def check_not_checked(outputs: Collection[str], not_checked: Collection[str]) -> None:
-    """Refuse to leave out every limit that the outputs ask for.
+    """Refuse to leave out every limit where the outputs ask for limits.
 
     Parameters
     ----------
