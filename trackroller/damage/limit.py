@@ -329,8 +329,8 @@ class Limit:
         out = np.asarray(~self.lacking(solved).all(axis=1))
         for name in own:
             if name in solved.cases:
-                out = out | ~missing(solved.cases[name])
-        return np.asarray(out)
+                out |= ~missing(solved.cases[name])
+        return out
 
     def kept_by_bound(self, solved: SolvedRollers) -> np.ndarray:
         """Return which bodies get a bound of the utilisation in place of the number, (n, body)
