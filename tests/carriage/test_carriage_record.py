@@ -5,7 +5,7 @@ import pytest
 from carts import ROLLER, cart, rollers_below, rollers_between, shuttle
 
 import trackroller as tr
-from trackroller.report.headlines import headline_of
+from trackroller.report.headlines import end_of_carriage, headline_of
 from trackroller.results.carriage_answer import answer_of_carriage
 
 POM = ROLLER | {"guide_material": "POM-C", "permissible_wear_depth": 0.2, "guide_overrollings_per_hour": 60}
@@ -122,3 +122,28 @@ def test_the_life_that_files_of_rollers_require_is_judged():
     assert answer.headline["state"] == "missed" and answer.headline["of"] == ["RR"]
     assert dict(zip(answer.table["roller"], answer.table["state"], strict=True))["FL"] == ""
     assert any("requirement.slip in its file is not judged" in one.where for one in answer.warnings)
+
+
+def test_an_unknown_life_is_bounded_by_its_known_load_cases():
+    """A pull lifts a contact of FL in a rare load case; the run presses FL so that it lasts less than all others."""
+    pull = {"name": "pull", "share": 0.01, "speed": "1 m/s", "forces": [{"force": [0, 0, -7000], "at": [150, 40, 0]}]}
+    push = {"name": "run", "share": 0.99, "speed": "1 m/s", "forces": [{"force": [0, 0, -150], "at": [150, 40, 0]}]}
+    loaded = ROLLER | {"guide_overrollings_per_hour": 60}
+    ds = tr.carriage(shuttle(rollers=rollers_between(roller=loaded), cases=[pull, push]))
+    lost = [str(one) for one in ds["roller"].values if np.isnan(ds["life_hours"].sel(roller=one))]
+    assert "FL" in lost
+    solved, time = alone(ds, "FL", loaded)
+    known = solved.isel(case=1)
+    assert int(solved["regime"].values[0]) != 0 and int(known["regime"].values) == 0
+    by_hand = float(known["life_hours"].min()) * time.sum() / time[1]
+    assert float(ds["life_hours_at_most"].sel(roller="FL")) == pytest.approx(by_hand, rel=1e-9)
+    others = [float(ds["life_hours"].sel(roller=one)) for one in ds["roller"].values if one not in lost]
+    answer = answer_of_carriage(ds)
+    table = answer.table.set_index("roller")
+    bounds = [float(table.loc[one, "at_most"]) for one in lost]
+    assert min(bounds) < min(others, default=np.inf), "no roller whose life is known ends before"
+    head = answer.headline
+    assert head["roller"] == lost[int(np.argmin(bounds))] and head["at_most"] == pytest.approx(min(bounds))
+    text = headline_of(answer).text
+    assert f"{head['roller']} lasts at most" in text and "ends first" not in text and "pull" in text
+    assert end_of_carriage(answer).startswith("The carriage lasts at most")

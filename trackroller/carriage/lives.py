@@ -203,12 +203,33 @@ class Lives:
     def _fatigue(self, by_limit: np.ndarray) -> np.ndarray:
         """Return the hours to the fatigue limit at its failure probability, (roller, body), of the
         worse track.
+        """
+        return np.asarray(self.life(self._of_tracks(by_limit), "h").min(axis=1))
+
+    def _of_tracks(self, by_limit: np.ndarray) -> np.ndarray:
+        """Return the hours to the fatigue limit at its failure probability of each track, (n,
+        contact, body).
 
         ASSUME: both tracks of a case have the same ratio of this life to the life at 50 %.
         """
         tracks = self.solved["life_hours"].transpose("case", "contact", "body").values
         with np.errstate(invalid="ignore", divide="ignore"):
             ratio = by_limit / tracks.min(axis=1)
-        return np.asarray(
-            self.life(tracks * np.where(np.isnan(ratio), 1.0, ratio)[:, None], "h").min(axis=1)
-        )
+        return np.asarray(tracks * np.where(np.isnan(ratio), 1.0, ratio)[:, None])
+
+    def at_most(self) -> np.ndarray:
+        """Return the hours to the first limit by the damage that is known, (roller,) [h]: load
+        cases whose damage is not known can only shorten the life.
+        """
+        limits = [LIMITS[name] for name in self.solved["limit"].values.tolist()]
+        most = np.zeros(len(self.first))
+        for place, limit in enumerate(limits):
+            if limit.beside:
+                continue
+            lives = self.solved["life_hours_by_limit"].values[:, place]
+            if limit.name == "fatigue" and "life_hours" in self.solved:
+                lives = self._of_tracks(lives)
+            lives = lives.reshape(len(lives), -1)
+            damage = np.nan_to_num(block_damage(self.time[:, None], lives), nan=0.0)
+            most = np.maximum(most, self.of(damage).max(axis=1))
+        return np.asarray(self.hours * repetitions_to_failure(most))

@@ -624,7 +624,7 @@ def _unused_loads(roller: MountedRoller) -> Iterator[str]:
         if name not in LIVES_OF_PAIR or math.isfinite(own.most):
             yield (
                 f"requirement.{name} in its file is not judged: of a carriage only a smallest life "
-                "is."
+                f"of the pair is. Write {LIVES_OF_PAIR[0]}."
             )
 
 
@@ -691,6 +691,7 @@ def with_lives(
         values[~ds["converged"].values] = np.nan
     flagged = np.zeros(shape, dtype=np.int64)
     lasts = {end: np.full(n, np.inf) for end in first_limit.ENDS}
+    at_most = np.full(n, np.inf)
     own = np.array(
         [roller.case.velocity for roller in whole.rollers if roller.case is not None], dtype=float
     )
@@ -717,6 +718,7 @@ def with_lives(
         lives = Lives(j, ds["share"].values[i], speed, pace[j], solved)
         for end in lasts:
             lasts[end][j[lives.first]] = lives.summed[f"{LIFE}{end}"]
+        at_most[j[lives.first]] = lives.at_most()
         ends[j[lives.first]] = _first_ends(lives, solved)
         checks.add(j[lives.first], lives, solved)
         case_hours[i, j] = solved[LIFE].values
@@ -734,6 +736,8 @@ def with_lives(
     if not ds["converged"].values[ds["share"].values > 0].all():
         for end in lasts:
             lasts[end] = np.full(n, np.nan)
+        at_most = np.full(n, np.inf)
+    at_most[~np.isnan(lasts[""])] = np.nan
     ends[~np.isfinite(lasts[""])] = ""
     travel = lasts[""] / pace
     variables: dict[str, Any] = {
@@ -755,6 +759,14 @@ def with_lives(
         ),
         "life_km": (_R, travel, _attrs("km", f"travel of the carriage {first}")),
         "life_hours": (_R, lasts[""], _attrs("h", f"hours of travel {first}")),
+        "life_hours_at_most": (
+            _R,
+            at_most,
+            _attrs(
+                "h",
+                "bound of a life that is not known, by the load cases whose damage is known",
+            ),
+        ),
         "first_body": (
             _R,
             ends[:, 0].astype(str),
@@ -785,7 +797,7 @@ def with_lives(
         if roller.case is not None
     ]
     variables |= checks.variables() | _inputs_of_rollers(whole, materials, pace)
-    known = np.where(np.isnan(travel), np.inf, travel)
+    known = np.where(np.isnan(travel), at_most / pace, travel)
     worst = ""
     if np.isfinite(known).any():
         worst = ds["roller"].values[int(np.argmin(known))]

@@ -17,7 +17,13 @@ from trackroller.results.case_ranges import CaseRanges
 from trackroller.results.comparison import Comparison, wilson
 from trackroller.results.fatigue_lines import line_of, lines_text
 from trackroller.results.life_columns import EVIDENCE, OF_PAIR, RIVALS, lacks_a_body
-from trackroller.results.subgroups import case_text, places_of, places_text, plain
+from trackroller.results.subgroups import (
+    case_text,
+    labels_in_place,
+    places_of,
+    places_text,
+    plain,
+)
 from trackroller.roller.output_names import is_life
 from trackroller.study.outputs import flat, of_first_limit
 
@@ -152,7 +158,12 @@ SECOND_MODEL = (
     ),
 )
 SECOND_STATE = Column(
-    "second_state", "Its verdict", "", "the requirement by the second model", "state"
+    "second_state",
+    "Its verdict",
+    "",
+    "the requirement by the second model in place of fatigue; wear and other limits with a life "
+    "count as they are",
+    "state",
 )
 EXCEEDED = Column(
     "exceeded", "Above 100 %", "", "limits that are exceeded somewhere, the worst one", "text"
@@ -503,7 +514,7 @@ def _counts(own: Comparison) -> dict[str, Any]:
         "holds": own.counted(own.all_in_pair(own.ranges.holds)),
         "judged": own.counted(own.all_in_pair(own.ranges.judged)),
         "meets": own.counted(own.all_in_pair(sure)),
-        "perhaps": own.counted(own.all_in_pair(may)),
+        "perhaps": own.counted(own.some_in_pair(may)),
         "of": own.counted(every),
     }
 
@@ -528,7 +539,7 @@ def states_of(own: Comparison, table: pd.DataFrame, exact: bool = False) -> list
     else:
         sure, may = own.met(exact)
         surely = _everywhere(own, sure)
-        perhaps = _everywhere(own, may)
+        perhaps = _perhaps_everywhere(own, may)
     state = np.where(surely, "met", np.where(perhaps, "open", "missed"))
     return [str(one) for one in np.where(never, STATES[3], state)]
 
@@ -541,6 +552,14 @@ def _everywhere(own: Comparison, rows: np.ndarray) -> np.ndarray:
     bad = np.bincount(own.candidate[counts & ~rows], minlength=own.count)
     some = np.bincount(own.candidate[counts], minlength=own.count) > 0
     return np.asarray((bad == 0) & some)
+
+
+def _perhaps_everywhere(own: Comparison, rows: np.ndarray) -> np.ndarray:
+    """Return the candidates of which all cases that count are among some rows at one place of the
+    placeholders at least, shape (candidates,): a placeholder has one value in all conditions.
+    """
+    places = [_everywhere(own, rows | (own.level != one)) for one in np.unique(own.level[own.own])]
+    return np.asarray(np.any(places, axis=0))
 
 
 def _shares(own: Comparison) -> dict[str, Any]:
@@ -574,7 +593,7 @@ def _shares(own: Comparison) -> dict[str, Any]:
 def _fails(own: Comparison, table: pd.DataFrame) -> list[str]:
     """Return where each candidate surely misses its requirement, or is not held without one."""
     if own.required:
-        good = own.met()[1]
+        good = own.some_in_pair(own.met()[1])[own.pairs[2]]
         good_count = table["perhaps"]
     else:
         good = own.ranges.holds
@@ -601,6 +620,7 @@ def _where(own: Comparison, names: list[str], number: int, good: np.ndarray) -> 
     """
     rows = own.rows[number]
     part = own.results.table.iloc[rows]
+    names = labels_in_place(part, names, own.results.labels, ~good[rows])
     places = places_of(part, names, ~good[rows], np.ones(len(rows), dtype=bool))
     few = [place for place in places if len(place) <= MOST_FACTORS]
     if places and len(few) == len(places):
@@ -647,6 +667,7 @@ def _second_models(own: Comparison) -> dict[str, Any]:
         longest = np.where(shorter, least[1], longest)
         lives = np.where(own.own & shorter[own.candidate], ends, lives)
     known = which != ""
+    lives = np.fmin(lives, _other_ends(own, names))
     return {
         "second": [str(name) for name in which],
         "second_low": np.where(known, shortest, np.nan),
@@ -683,6 +704,26 @@ def _ends_by(own: Comparison, limits: list[str], name: str) -> np.ndarray | None
     return np.stack(ends)
 
 
+def _other_ends(own: Comparison, limits: list[str]) -> np.ndarray:
+    """Return the hours until the first limit but fatigue and second models, at both ends of its
+    range, shape (2, n) [h]; NaN where none is known.
+    """
+    others = [
+        place for place, name in enumerate(limits) if name != "fatigue" and name not in RIVALS
+    ]
+    value = own.hours_by_limit("")
+    assert value is not None  # a study with second models has the hours of limits
+    ends = []
+    for end in ("_low", "_high"):
+        hours = own.hours_by_limit(end)
+        if hours is None:
+            hours = value
+        known = np.where(np.isnan(hours), value, hours)[:, others].reshape(len(value), -1)
+        least = np.min(known, axis=1, initial=np.inf, where=~np.isnan(known))
+        ends.append(np.where(np.isnan(known).all(axis=1), np.nan, least))
+    return np.stack(ends)
+
+
 def _second_states(own: Comparison, lives: np.ndarray) -> np.ndarray:
     """Return the state of each candidate if a second model gives its lives, shape (candidates,); ''
     if none is judged.
@@ -690,14 +731,15 @@ def _second_states(own: Comparison, lives: np.ndarray) -> np.ndarray:
     Parameters
     ----------
     own : the comparison
-    lives : shorter life of both bodies at both ends of its range, shape (2, n) [h]
+    lives : shorter life of both bodies by the second model and by all limits but fatigue, at both
+        ends of its range, shape (2, n) [h]
     """
     if not any(one.output in OF_PAIR for one in own.required):
         return np.full(own.count, "")
     sure, may = own.met(lives=lives)
     if not own.drawn:
         surely = _everywhere(own, sure)
-        perhaps = _everywhere(own, may)
+        perhaps = _perhaps_everywhere(own, may)
     elif np.isfinite(own.wanted_share):
         surely, perhaps = (own.shares(rows) >= own.wanted_share for rows in (sure, may))
     else:
@@ -725,8 +767,8 @@ def _exceeded(own: Comparison) -> dict[str, Any]:
     beyond = np.where((state == words.index("exceeded")) & (use > 1.0), use, np.nan)
     flattened = beyond.reshape(len(beyond), -1)
     most = np.where(np.isnan(flattened), -np.inf, flattened)
-    place = most.argmax(axis=1)
-    worst = most[np.arange(len(place)), place]
+    limit_and_body = most.argmax(axis=1)
+    worst = most.max(axis=1)
     rows = own.own & np.isfinite(worst)
     if not own.drawn:
         rows &= own.reachable
@@ -734,29 +776,24 @@ def _exceeded(own: Comparison) -> dict[str, Any]:
         return nothing
     names = [str(name) for name in data["limit"].values]
     hours = own.hours_by_limit("")
-    case = np.full(own.count, -1)
     order = np.flatnonzero(rows)
     order = order[np.lexsort((-worst[order], own.candidate[order]))]
     numbers, first = np.unique(own.candidate[order], return_index=True)
-    case[numbers] = order[first]
-    out: dict[str, list[Any]] = {name: [] for name in nothing}
-    for row in case:
-        if row < 0:
-            for name, value in nothing.items():
-                out[name].append(value)
-            continue
-        limit, body = divmod(int(place[row]), len(BODIES))
-        out["exceeded"].append(
-            f"{limit_word(names[limit])} of the {BODIES[body]} {100 * worst[row]:.3g} %"
-        )
-        out["exceeded_by"].append(limit_word(names[limit]))
-        out["exceeded_body"].append(BODIES[body])
-        out["use"].append(float(worst[row]))
+    records = [nothing] * own.count
+    for number, row in zip(numbers, order[first], strict=True):
+        limit, body = divmod(int(limit_and_body[row]), len(BODIES))
+        word = limit_word(names[limit])
         own_hours = np.nan
         if hours is not None:
             own_hours = float(hours[row, limit, body])
-        out["use_hours"].append(own_hours)
-    return out
+        records[number] = {
+            "exceeded": f"{word} of the {BODIES[body]} {100 * worst[row]:.3g} %",
+            "exceeded_by": word,
+            "exceeded_body": BODIES[body],
+            "use": float(worst[row]),
+            "use_hours": own_hours,
+        }
+    return {name: [record[name] for record in records] for name in nothing}
 
 
 def _edges(own: Comparison) -> list[str]:

@@ -4,7 +4,9 @@ margins of the load cases.
 Keys of `Answer.headline`: `roller` (the worst one, or the one with the largest radial force),
 `case` (that does most of its damage, or has that force), `part` (of the damage by that case [1]),
 `low`, `high` [h], `line_low` and `line_high` (tests that both ends of a life by fatigue follow
-from), `km` [km], `body` (`roller` or `guide`) and `limit` (in words) that end it,
+from), `km` [km], `at_most` (bound of its life where the damage of some cases is not
+known [h]), `not_on_both` (cases in which it does not roll on both contacts, with the regime),
+`body` (`roller` or `guide`) and `limit` (in words) that end it,
 `force` (largest radial force [N]), `unknown` (rollers whose life is not known), `unsettled` (load
 cases without forces), `margins` (list of {of, end, times, case, tipping}: the first end of the
 payload and of all loads), `exceeded` (list of {limit, body, roller, use [1], hours, km}, the worst
@@ -83,6 +85,12 @@ COLUMNS = (
         "the same at the values of the placeholders",
         "life",
         role="file",
+    ),
+    Column(
+        "at_most",
+        "At most",
+        "h",
+        "bound by the load cases whose damage is known, where that of others is not",
     ),
     Column("km", "Travel", "km", "the same life as travel of the carriage"),
     Column("years", "Years", "", "the same life in years of the duty, from one year on", "years"),
@@ -221,7 +229,7 @@ def worst_place(ds: xr.Dataset) -> tuple[str, str]:
     worst = ds.attrs.get("worst_roller")
     if worst:
         damage = ds["damage_per_km"].sel(roller=worst).values
-        return str(worst), str(ds["load_case"].values[int(np.argmax(damage))])
+        return str(worst), str(ds["load_case"].values[int(np.nanargmax(damage))])
     pressed = np.nan_to_num(ds["radial_force"].values, nan=0.0)
     i, j = np.unravel_index(int(np.argmin(pressed)), pressed.shape)
     return str(ds["roller"].values[j]), str(ds["load_case"].values[i])
@@ -265,6 +273,8 @@ def _headline(ds: xr.Dataset, table: pd.DataFrame) -> dict[str, Any]:
         "part": math.nan,
         "low": math.nan,
         "high": math.nan,
+        "at_most": math.nan,
+        "not_on_both": "",
         "km": math.nan,
         "body": "",
         "limit": "",
@@ -283,7 +293,10 @@ def _headline(ds: xr.Dataset, table: pd.DataFrame) -> dict[str, Any]:
         return head
     own = ds.sel(roller=roller)
     damage = own["damage_per_km"]
-    head["part"] = float(damage.sel(load_case=case) / damage.sum())
+    head["at_most"] = _bound(own)
+    head["not_on_both"] = _beside_rolling(own)
+    if math.isnan(head["at_most"]):
+        head["part"] = float(damage.sel(load_case=case) / damage.sum())
     head["km"] = float(own["life_km"])
     head["body"] = str(own["first_body"].item())
     head["limit"] = limit_word(str(own["first_limit"].item()))
@@ -313,6 +326,15 @@ def _lines_of(ds: xr.Dataset, own: xr.Dataset) -> tuple[str, str]:
         lives = hours[f"life_hours_by_limit_{end}"].sel(limit=[name, *others]).values
         lines.append(line_of([name, *others][int(nearest(lives))], material))
     return lines[0], lines[1]
+
+
+def _bound(own: xr.Dataset) -> float:
+    """Return the largest life of a roller whose life is not known [h]; NaN of one that is known,
+    and without a bound.
+    """
+    if "life_hours_at_most" not in own or math.isinf(own["life_hours_at_most"]):
+        return math.nan
+    return float(own["life_hours_at_most"])
 
 
 def _first_margins(ds: xr.Dataset) -> Iterator[dict[str, Any]]:
@@ -492,6 +514,7 @@ def _row(ds: xr.Dataset, roller: str) -> dict[str, Any]:
     }
     numbers |= {"years": "life_years", "catalogue_km": "catalogue_life_km"}
     row |= {key: float(own[name]) if name in own else math.nan for key, name in numbers.items()}
+    row["at_most"] = _bound(own)
     row["ends"] = _end_of(own)
     row["factor"] = _by_catalogue(own)[0]
     row["required"] = math.nan
@@ -500,7 +523,9 @@ def _row(ds: xr.Dataset, roller: str) -> dict[str, Any]:
     if math.isnan(row["required"]):
         row["state"] = ""
     else:
-        row["state"] = state_of_life(row["low"], row["high"], row["required"])
+        row["state"] = state_of_life(
+            row["low"], np.fmin(row["high"], row["at_most"]), row["required"]
+        )
     over = [
         f"{limit_word(name)} of the {body} ({100 * used:.3g} %)"
         for name, body, used, _ in _limits_of(own, "exceeded")

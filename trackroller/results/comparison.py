@@ -179,9 +179,10 @@ class Comparison:
         goals that are no inputs, and the life that ranks.
         """
         outputs = [own for _, own in self.judges if own is not self.ranges]
-        inputs = {*self.results.factors, *self.results.derived, *self.results.goods}
+        inputs = {*self.results.factors, *self.results.goods}
         for name, way in self.followed.items():
-            if name not in inputs and name not in self.results.base:
+            varies = name in self.results.derived or name not in self.results.base
+            if name not in inputs and varies:
                 _, units, words = self.results.quantity(name)
                 outputs.append(CaseRanges(self.results, (name, words, units), way == "max"))
         if self.lives is not None:
@@ -333,6 +334,12 @@ class Comparison:
         pair = self.pairs[2]
         bad = np.bincount(pair[self.own & ~rows], minlength=len(self.pairs[0]))
         return np.asarray(bad == 0)
+
+    def some_in_pair(self, rows: np.ndarray) -> np.ndarray:
+        """Return the pairs of which a case is among some rows, shape (p,)."""
+        pair = self.pairs[2]
+        hits = np.bincount(pair[self.own & rows], minlength=len(self.pairs[0]))
+        return np.asarray(hits > 0)
 
     def counted(self, pairs: np.ndarray) -> np.ndarray:
         """Return the number of conditions of each candidate among some pairs, shape
@@ -496,8 +503,8 @@ class Comparison:
         named = [n for n in OF_MATERIALS if n in self.results.table]
         if not named:
             return np.full(len(rows), "", dtype=object)
-        texts = self.results.table[named].astype(str).agg(" / ".join, axis=1).to_numpy(dtype=object)
-        return np.asarray(texts[rows])
+        names = self.results.table[named].iloc[rows].astype(str)
+        return names.agg(" / ".join, axis=1).to_numpy(dtype=object)
 
     @cached_property
     def rankable(self) -> bool:

@@ -22,7 +22,7 @@ from trackroller.results.comparison import LOADS, UNEQUAL, Comparison
 from trackroller.results.friction import friction_cautions
 from trackroller.results.life_columns import OF_PAIR, body_lives
 from trackroller.results.solved_cases import SolvedCases
-from trackroller.results.subgroups import level_text, places_of, places_text
+from trackroller.results.subgroups import labels_in_place, level_text, places_of, places_text
 from trackroller.roller.limit_notes import given_in_vain
 from trackroller.roller.output_names import body_of, is_life
 from trackroller.roller.stored_inputs import names_not_given
@@ -190,7 +190,8 @@ def lost_by_missing_input(own: Comparison) -> str:
 
 def where_text(results: SolvedCases, hit: np.ndarray, among: np.ndarray) -> str:
     """Return the levels of factors that hold some rows and no others; '' if no levels do."""
-    places = places_of(results.table, results.factors, hit, among)
+    names = labels_in_place(results.table, results.factors, results.labels, hit & among)
+    places = places_of(results.table, names, hit, among)
     if places:
         return places_text([place for place in places if len(place) <= 3], results.table)
     return ""

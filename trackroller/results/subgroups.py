@@ -58,6 +58,29 @@ def places_of(
     return tuple(_without_every_level(product.levels, table[among]) for product in products)
 
 
+def labels_in_place(
+    table: pd.DataFrame, names: Sequence[str], labels: Sequence[str], hit: np.ndarray
+) -> list[str]:
+    """Return the factors that may describe some rows, in the order that `places_of` expects: a
+    label of a table that names them by at most two levels takes the place of their numbers.
+
+    Parameters
+    ----------
+    table : one row a case
+    names : factors that may describe the place
+    labels : columns of names, such as that of a load case, which change no case
+    hit : the rows, shape (n,) bool
+    """
+    short = [
+        name for name in labels if name in names and table[name][hit].nunique() <= NAMED_BY_LABELS
+    ]
+    long = [name for name in labels if name in names and name not in short]
+    return [*long, *(name for name in names if name not in labels), *short]
+
+
+NAMED_BY_LABELS = 2  # largest number of labels that describe a place
+
+
 def _without_every_level(product: Levels, table: pd.DataFrame) -> Levels:
     """Return the levels of a place without those of a factor of which it holds every level."""
     return {name: own for name, own in product.items() if len(own) < table[name].nunique()}
