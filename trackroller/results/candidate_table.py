@@ -16,7 +16,7 @@ from trackroller.results.answer import STATES, Column
 from trackroller.results.case_ranges import CaseRanges
 from trackroller.results.comparison import Comparison, wilson
 from trackroller.results.fatigue_lines import line_of, lines_text
-from trackroller.results.life_columns import EVIDENCE, OF_PAIR, RIVALS, lacks_a_body
+from trackroller.results.life_columns import BESIDE, EVIDENCE, OF_PAIR, RIVALS, lacks_a_body
 from trackroller.results.subgroups import (
     case_text,
     labels_in_place,
@@ -709,7 +709,7 @@ def _other_ends(own: Comparison, limits: list[str]) -> np.ndarray:
     range, shape (2, n) [h]; NaN where none is known.
     """
     others = [
-        place for place, name in enumerate(limits) if name != "fatigue" and name not in RIVALS
+        place for place, name in enumerate(limits) if name != "fatigue" and name not in BESIDE
     ]
     value = own.hours_by_limit("")
     assert value is not None  # a study with second models has the hours of limits
