@@ -416,6 +416,16 @@ def test_rollers_are_cards_on_a_phone(page):
     assert page.run("document.documentElement.scrollWidth") <= 400
 
 
+def test_a_requirement_takes_strokes_and_keeps_their_unit(page):
+    show(page, "requirement")
+    fill = '(label, value) => { const f = document.querySelector(`.requirement [aria-label="${label}"]`); '
+    fill += "f.value = value; f.dispatchEvent(new Event('change')); }"
+    for label, value in (("Strokes a day", "400"), ("Stroke [m]", "800 mm"), ("Days a year", "250")):
+        page.run(f"({fill})({json.dumps(label)}, {json.dumps(value)})")
+    duty = page.run("trackroller.state.values.duty")
+    assert yaml.safe_load(duty) == {"days_per_year": 250, "strokes_per_day": 400, "stroke": "800 mm"}
+
+
 def test_what_a_requirement_lacks_is_said(page):
     show(page, "requirement")
     page.run(

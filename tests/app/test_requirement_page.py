@@ -45,6 +45,16 @@ def test_the_page_says_what_size_says():
     assert list(map(float, ratios["rows"][0][1:])) == pytest.approx(found.ratios.table.loc["mid"].tolist(), rel=5e-4)
 
 
+def test_the_duty_may_be_in_strokes_as_in_a_file():
+    """400 strokes of 2 m at 30 m/min are 4/9 hours a day; two rollers pass each point 800 times a day."""
+    values = {name: value for name, value in ROLLER.items() if name != "guide_overrollings_per_hour"}
+    strokes = "{strokes_per_day: 400, stroke: 2 m, rollers_on_rail: 2}"
+    shown = sized(values | {"velocity": 30, "duty": strokes}, "", "rollers.csv", ASKED, "preview")
+    hours = values | {"velocity": 30, "duty": f"{{hours_per_day: {4 / 9}}}", "guide_overrollings_per_hour": 1800}
+    same = sized(hours, "", "rollers.csv", ASKED, "preview")
+    assert shown["tables"] == same["tables"] and shown["lead"] == same["lead"]
+
+
 def test_a_carriage_takes_the_place_of_the_roller_on_the_screen():
     text = EXAMPLE.replace("motor_force: 0\n", "motor_force: 0\n      contact_model: sliding\n")
     Path("shuttle.yaml").write_text(text)

@@ -110,6 +110,7 @@ def test_a_short_study_needs_no_cluster_and_a_finished_one_no_scheduler(tmp_path
     assert "cluster" not in trackroller("plan", "long.yaml", cwd=tmp_path).stdout
 
 
+@pytest.mark.slow
 def test_words_of_a_designer_are_understood_or_answered(tmp_path):
     """A drawn groove takes the place of the example's radius; each refusal says what to write."""
     points = [f"{0.05 * i:.2f},{-(7 - (49 - (0.05 * i) ** 2) ** 0.5):.6f}" for i in range(-120, 121)]
@@ -245,6 +246,13 @@ def test_an_answer_without_a_solution_loads_no_heavy_package(words, code, heavy,
     assert not loaded & (heavy | {"xarray", "matplotlib"})
 
 
+def test_a_plan_needs_no_compiled_solver(tmp_path):
+    """What a case serves of the limits is known without the solver."""
+    text = "import sys, trackroller.cli.study; print('numba' in sys.modules)"
+    done = subprocess.run([sys.executable, "-c", text], capture_output=True, text=True, cwd=tmp_path)
+    assert done.stdout.split() == ["False"], done.stderr
+
+
 # with what `trackroller solve` takes 1.5 s of processor time; each of these packages takes 0.03 to 0.3 s more
 NOT_FOR_ONE_ROLLER = {
     *("dask.base", "pint.registry", "jinja2", "matplotlib", "SALib", "netCDF4"),
@@ -275,6 +283,7 @@ def test_a_file_of_one_roller_loads_what_writes_it(tmp_path):
     assert not loaded & (NOT_FOR_ONE_ROLLER - {"netCDF4"})
 
 
+@pytest.mark.slow
 def test_a_unit_is_converted_although_it_was_left_out(tmp_path):
     """xarray does without pint in this process, and a quantity takes it in."""
     loaded, printed = loaded_by(["solve", "--json", "--set", "radial_force=-0.25 kN"], tmp_path)

@@ -186,13 +186,14 @@ def test_values_that_nobody_gave_are_said(tmp_path, monkeypatch):
 
 def test_each_bearing_of_the_repository_states_its_page_and_the_ratings_of_a_row():
     """A pair of 6000: C = 4.55 kN and C_0 = 1.96 kN each, the outer diameter 26 mm."""
-    text = run(SHELVES / "bearings.csv", "--of", "bearing", "--set", "axis_distance=40")
-    assert "rows: 10" in text
+    text = run(SHELVES / "bearings.csv", "--of", "bearing", "--set", "axis_distance=60")
+    assert "rows: 21" in text
     lines = [line.split(";") for line in (SHELVES / "bearings.csv").read_text().splitlines() if line[0] != "#"]
     rows = {line[0]: dict(zip(lines[0], line, strict=True)) for line in lines[1:]}
     own = rows["2 x 6000"]
     values = (own["dynamic_rating [N]"], own["static_rating [N]"], own["outer_diameter [mm]"])
     assert values == ("4550", "1960", "26")
+    assert {row["bore [mm]"] for row in rows.values()} == {"5", "6", "7", "8", "10", "12", "15", "17", "20", "25"}
     for row in rows.values():
         assert row["page"].startswith("https://") and row["rows"] == "2"
         assert float(row["static_rating [N]"]) < float(row["dynamic_rating [N]"])

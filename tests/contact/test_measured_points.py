@@ -272,6 +272,7 @@ def test_a_pressure_that_changes_with_the_smoothing_is_flagged(noise, smooth, fl
     assert (wrong > 0.15) == flagged, "the flag tells the wrong pressures"
 
 
+@pytest.mark.slow
 def test_the_flag_of_the_smoothing_does_not_depend_on_the_cases_beside():
     x = np.linspace(-5.0, 5.0, 500)
     z = np.sqrt(6.6**2 - (abs(x) + 0.3) ** 2) + np.random.default_rng(3).normal(0.0, 8e-4, 500)

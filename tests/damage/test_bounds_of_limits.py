@@ -41,7 +41,7 @@ def check_bounds(cases, model):
     return most[bounded], used[bounded]
 
 
-@pytest.mark.parametrize("model", ["sliding", "kalker"])
+@pytest.mark.parametrize("model", ["sliding", pytest.param("kalker", marks=pytest.mark.slow)])
 def test_a_bound_tells_no_exceeded_limit_kept(model):
     most, used = check_bounds(with_strengths(random_designs(25, 3), 4), model)
     assert 15 < most.size < 80 and (used < 0.95 * most).all()

@@ -268,6 +268,7 @@ def test_a_body_that_breaks_has_no_life_that_a_groove_could_outlast():
     assert worn(ds) == {"roller": False, "guide": True}
 
 
+@pytest.mark.slow
 def test_page_and_terminal_name_the_body_that_outlives_the_groove(tmp_path):
     (tmp_path / "case.yaml").write_text(yaml.safe_dump({**GIVEN, **UNLIKE, "contact_model": "kalker"}))
     shown = trackroller("solve", "case.yaml", cwd=tmp_path).stdout
@@ -502,6 +503,7 @@ accuracy: preview
 """
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("most", "told"), [("0.5", True), ("1000", False)])
 def test_terminal_sheet_rows_and_answer_tell_of_work_outside_the_table(tmp_path, most, told):
     (tmp_path / "case.yaml").write_text(TABLE_CASE.replace("MOST", most))

@@ -46,6 +46,7 @@ def test_the_found_entry_gives_the_lives_of_the_table():
     assert ds.catalogue_life_km.values == pytest.approx(km, rel=1e-4)
 
 
+@pytest.mark.slow
 def test_nine_of_ten_intervals_hold_the_truth():
     """Lives that scatter by 10 %; 300 tables, of which 90 % +- 3.5 % (two deviations) hold each value."""
     rng = np.random.default_rng(5)

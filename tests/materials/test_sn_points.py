@@ -17,7 +17,7 @@ from trackroller.errors import InputError
 from trackroller.materials import add_material, builtin_database, load_database
 from trackroller.materials.tables import material_details
 from trackroller.roller.case import to_table
-from trackroller.roller.stages.outcome import solved_of
+from trackroller.roller.case_limits import solved_of
 from trackroller.study.spectrum.file import Spectrum
 from trackroller.study.spectrum.solve import solve_spectrum
 

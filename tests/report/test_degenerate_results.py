@@ -155,7 +155,7 @@ def without(name: str, ds: xr.Dataset) -> xr.Dataset:
 
 
 POOR = {"constant": constant, "one level": one_level, "one row": one_row, "no row": no_row}
-QUICKEST = ("decide", "how sure", "what matters by morris", "best", "which model", "how it behaves")
+QUICKEST = ("decide", "how sure")
 
 
 def write_all(ds: xr.Dataset, folder: Path) -> str:
@@ -198,8 +198,10 @@ def broken_pages(ds: xr.Dataset, outputs: list[str], folder: Path) -> dict[str, 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", STUDIES)
-def test_an_output_that_is_missing_in_all_rows_stops_no_page(solved, tmp_path, name):
+def test_an_output_that_is_missing_in_all_rows_stops_no_page(solved, tmp_path, monkeypatch, name):
     # each output goes with one question and each question has its share of them; the next test crosses them all
+    # and writes the figures, which are only laid out here
+    monkeypatch.setattr("matplotlib.figure.Figure.savefig", lambda *_, **__: None)
     ds = solved(name)
     share = floats(ds)[list(STUDIES).index(name) :: len(STUDIES)]
     assert share

@@ -49,6 +49,7 @@ def test_probabilities_and_b10_count_what_the_verdict_counts():
     np.testing.assert_allclose(b10, nine)
 
 
+@pytest.mark.slow
 def test_a_search_does_not_recommend_what_exceeds_a_limit():
     keys = {"factors": {"roller_profile_radius": {"values": [-6.2, -6.4, -6.7, -7, -7.4]}}, "method": "optimise"}
     keys["factors"] |= {"radial_force": {"values": [-80, -200]}, "friction_coefficient": {"values": [0.1, 0.3]}}

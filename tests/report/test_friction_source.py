@@ -46,6 +46,7 @@ def warned(answer):
     return [one.where for one in answer.warnings if one.code == "doubtful"]
 
 
+@pytest.mark.slow
 def test_typical_friction_below_the_tests_of_the_dry_pair_is_warned_of_and_the_remedy_works():
     pair = {"roller_material": STEEL, "guide_material": STEEL}
     ds = tr.solve(tr.Case(friction_coefficient=None, **pair), contact_model="sliding")

@@ -42,6 +42,7 @@ def leading(answer):
     return {key: answer.table[key].iloc[0] for key in answer.table}
 
 
+@pytest.mark.slow
 def test_the_smallest_design_that_meets_a_share_of_the_drawn_conditions_is_built():
     """All designs that meet the share by their rows are as large or larger, but for one step and the told error."""
     wanted = {LIFE: {"min": 20, "probability": 0.9}}
@@ -73,6 +74,7 @@ def test_listed_sizes_give_the_smallest_that_meets():
     assert f"of 32 drawn conditions reach 25 h; {percent(0.95)} are wanted" in headline_of(answer).text
 
 
+@pytest.mark.slow
 def test_corners_of_a_front_are_the_ends_of_the_ranges():
     """The life grows with the size, and with the contact angle: its largest value is that of both largest ends."""
     factors = {**STUDY["factors"], "contact_angle": {"uniform": [25, 40]}}
@@ -102,6 +104,7 @@ def test_corners_of_a_front_are_the_ends_of_the_ranges():
     assert answer.headline["designs"][1]["name"]["axis_distance"] == pytest.approx(knee["size"])
 
 
+@pytest.mark.slow
 def test_a_requirement_bounds_the_front_and_one_design_is_named():
     keys = {"goals": {"axis_distance": "min", LIFE: "max"}, "requirement": {LIFE: {"min": 100}}}
     _, frame, answer = searched(**keys)
@@ -111,6 +114,7 @@ def test_a_requirement_bounds_the_front_and_one_design_is_named():
     assert worst[answer.picture["met"]].min() >= 100 and (worst < 100).any()
 
 
+@pytest.mark.slow
 def test_where_no_design_meets_the_nearest_one_is_named_and_none_is_built():
     _, frame, answer = searched(requirement={LIFE: {"min": 1e7}})
     near = answer.headline["nearest"]
@@ -120,6 +124,7 @@ def test_where_no_design_meets_the_nearest_one_is_named_and_none_is_built():
     assert near["name"] == {"axis_distance": 30.0}
 
 
+@pytest.mark.slow
 def test_a_smallest_design_says_what_it_lasts_at_reference():
     """The required life of the headline is that of the design solved alone at `reference`, at its worst load."""
     _, _, answer = searched(goals={"axis_distance": "min"}, requirement={LIFE: {"min": 100}})
@@ -131,6 +136,7 @@ def test_a_smallest_design_says_what_it_lasts_at_reference():
     assert "goal_1" not in {column.name for column in answer.columns}  # the size stands in the column of the choice
 
 
+@pytest.mark.slow
 def test_a_requirement_within_the_error_of_the_solution_is_solved_finer():
     _, _, answer = searched(goals={LIFE: "max"})
     longest = answer.headline["designs"][0]["goals"][0]["value"]
@@ -159,6 +165,7 @@ def test_searches_without_an_order_have_an_answer(keys, kind, rows):
         assert [one.code for one in answer.warnings] == ["not_held"] and answer.headline["designs"] == []
 
 
+@pytest.mark.slow
 def test_a_search_whose_last_designs_share_a_material_has_an_answer():
     factors = {
         "roller_material": {"values": ["1.7225-quenched-tempered", "PA6"]},
@@ -171,6 +178,7 @@ def test_a_search_whose_last_designs_share_a_material_has_an_answer():
     assert answer.headline["designs"][0]["name"]["axis_distance"] == best["axis_distance"] == 30
 
 
+@pytest.mark.slow
 def test_what_a_tolerance_does_is_the_worse_of_both_sides():
     results, _, answer = searched(goals={LIFE: "max"}, factors={**DRAWN, "radial_force": {"values": [-250]}})
     beside = [one["values"][0] for one in optimum_of(results)["neighbours"]]

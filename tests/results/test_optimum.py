@@ -203,6 +203,7 @@ def test_a_wrong_search_is_refused(keys, says):
         changed(**keys).design()
 
 
+@pytest.mark.slow
 def test_a_target_on_a_force_decides_a_search_without_lives_and_stresses():
     """The goal asks for little force in contact 1, the target for enough of it in both conditions."""
     base = {"guide_curve_radius": "inf", "axial_force": 30, "motor_force": 0, "radial_force": -80}

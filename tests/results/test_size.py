@@ -148,6 +148,7 @@ def test_a_shelf_of_one_roller_and_a_study_are_sized_too(shelf):
         ({}, {"safety": 2, "least": "prize"}, "^least = 'prize'.*Did you mean 'price'"),
         ({}, {"life": 100, "failures": "105 %"}, "^failures = '105 %'.*a number in"),
         ({}, {"life": 100, "failures": "inf"}, "^failures = 'inf'.*a number in"),
+        ({}, {"safety": 1e300}, "^safety = 1e.300 takes radial_force to -1.5e.302 N.*such as 1.5"),
         ({}, {"wear_depth": 0.1}, "^wear_depth = 0.1 .*required_travel"),
         ({}, {"life": 10, "wear_depth": "0.1 kg"}, "^wear_depth = '0.1 kg'.*converted to mm"),
         ({}, {"temperature": "hot"}, "^temperature = 'hot'.*degC"),

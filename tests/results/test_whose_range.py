@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+import json
+import re
+
 import numpy as np
 import pytest
 
 import trackroller as tr
 from trackroller.report.headlines import headline_of
+from trackroller.report.tables.rows import rows_of
+from trackroller.results.roller_answer import answer_of_roller
 
 BASE = {"axis_distance": 26, "contact_angle": 45, "motor_force": 0, "friction_coefficient": 0.2, "axial_force": 4}
 LIFE = "pair_life_to_first_limit_hours"
@@ -87,3 +92,56 @@ def test_candidates_that_may_hold_every_condition_are_not_ruled_out(loads, kind)
     """The close groove holds at −60 N and is not judged at −2,000 N, where the other one breaks."""
     factors = {"roller_profile_radius": {"values": [-7, -6.02]}, "radial_force": {"values": loads}}
     assert solved(factors=factors).answer.kind == kind
+
+
+LOADS = {"roller_profile_radius": {"values": [-6.3, -7]}, "radial_force": {"values": [-60, -120]}}
+
+
+def test_a_required_life_of_the_roller_is_its_life_by_fatigue():
+    """Wear ends the plastic roller long before fatigue does; the life that was asked for is judged, wear is said."""
+    least = 5000.0
+    results = solved(WORN, factors=LOADS, outputs=OUTPUTS, requirement={"roller_life_hours": {"min": least}})
+    rows = results.table
+    by_groove = rows.groupby("roller_profile_radius")
+    fatigue = by_groove["roller_life_hours"].min()
+    first = results.data[f"{LIFE}_low"].min("radial_force").to_series()
+    assert (first < least).all() and fatigue[-6.3] > least > fatigue[-7.0]
+    answer = results.answer
+    assert answer.output[0] == "roller_life_hours"
+    assert answer.table["state"].tolist() == ["met", "missed"]
+    assert answer.table["low"].tolist() == pytest.approx([fatigue[-6.3], fatigue[-7.0]])
+    assert answer.headline["earlier"]["limit"] == "wear"
+    assert answer.headline["earlier"]["low"] == pytest.approx(first[-6.3])
+    text = headline_of(answer).text
+    assert "life of the roller" in text and "wear of the roller comes first" in text
+
+
+def test_a_sheet_judges_the_life_of_the_roller_that_was_asked():
+    loads = {"roller_profile_radius": -6.3, "radial_force": -60}
+    sheet = tr.solve(BASE | WORN | loads, outputs=OUTPUTS, **MODEL)
+    life = float(sheet["roller_life_hours"])
+    assert float(sheet[f"{LIFE}_high"]) < life
+    for least, state in ((0.99 * life, "met"), (1.01 * life, "missed")):
+        asked = sheet.assign_attrs(requirement=json.dumps({"roller_life_hours": {"min": least}}))
+        answer = answer_of_roller(asked)
+        assert answer.headline["states"] == [state]
+        assert "required life of the roller at least" in headline_of(answer).text
+
+
+@pytest.mark.parametrize("wanted", [{"min": 20}, {"max": 200}])
+def test_an_output_of_a_roller_that_skids_everywhere_is_said_by_its_cause(wanted, tmp_path):
+    """All loads skid: the record says so, and neither headline nor table shows an infinite force."""
+    factors = {"roller_profile_radius": {"values": [-6.3, -7]}, "motor_force": {"values": [-60, -70]}}
+    base = {"radial_force": -60}
+    results = solved(base, factors=factors, requirement={"normal_force_1": wanted})
+    assert (results.table["regime"] == 1).all() and results.table["normal_force_1"].notna().all()
+    answer = results.answer
+    assert answer.headline["nearest"]["cause"] == "skids" and set(answer.table["ends"]) == {"skids"}
+    text = headline_of(answer).text
+    assert text.endswith("skids everywhere.")
+    tr.report(results, tmp_path / "page.html")
+    rows = rows_of(answer)
+    cells = [cell.text for row in rows.cells for cell in row]
+    assert "not held" in cells and not [one for one in (*cells, *rows.shared, text) if "\u221e" in one]
+    shown = re.sub(r"<script.*?</script>", "", (tmp_path / "page.html").read_text(), flags=re.S)
+    assert "\u221e N" not in shown and "\u2212\u221e" not in shown

@@ -70,6 +70,7 @@ def test_names_of_fields():
     assert long_name_of("carriage_speed_in_curve") == "speed, curve"
 
 
+@pytest.mark.slow
 def test_the_life_of_each_row_is_that_of_the_worst_roller():
     """Each carriage is solved by `trackroller.carriage`, and the damage of the cases is summed here once more."""
     levels = {

@@ -79,6 +79,36 @@ def test_a_plan_states_time_and_error_of_each_rung(tmp_path, monkeypatch):
     assert f"{duration(seconds / 2)} by snakemake --cores 2" in whole and "tolerance" not in dict(rows)
 
 
+@pytest.mark.parametrize(
+    ("given", "expected"),
+    [
+        ({}, []),
+        (
+            {"base": {"layer_flexibility": 1e-5}},
+            ["for 3 of 3 cases with a film (layer_flexibility): those above are of"],
+        ),
+        ({"base": {"friction_law": FALLING}}, ["with friction that falls with the slip speed"]),
+        ({"normal": "halfspace"}, ["with normal: halfspace"]),
+        ({"contact_model": "kalker", "slip_terms": ["profile", "curve"]}, ["with slip_terms: profile, curve"]),
+        (
+            {"factors": {"friction_coefficient": {"values": [0.4, 0.41, 0.6]}}},
+            ["for 2 of 3 cases with friction above 0.4: those above are of friction up to 0.4 without a film"],
+        ),
+        (
+            {"factors": {"contact_model": {"values": ["sliding", "kalker"]}, "axial_force": {"values": [0, 30]}}},
+            ["for studies that vary contact_model"],
+        ),
+    ],
+)
+def test_a_plan_says_for_which_cases_no_errors_were_measured(given, expected, tmp_path):
+    study = parse_study({"name": "surfaces", "factors": {"axial_force": {"values": [0, 10, 30]}}} | given)
+    rows = plan_rows(study, status_of(study, study_folder("surfaces", tmp_path)))
+    told = [text.removeprefix("not measured ") for name, text in rows if text.startswith("not measured ")]
+    assert len(told) == len(expected) and all(map(str.startswith, told, expected))
+    shown = any("peak stress" in text for name, text in rows if name == "accuracy")
+    assert shown == (not expected or "those above" in expected[0])
+
+
 def test_a_plan_says_which_designs_miss_a_tolerance(tmp_path):
     study = parse_study({"name": "fine", "accuracy": 0.01, "factors": {"axial_force": {"values": [0, 30]}}})
     text = dict(plan_rows(study, status_of(study, study_folder("fine", tmp_path))))["tolerance"]

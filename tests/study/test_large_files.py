@@ -3,7 +3,11 @@
 from __future__ import annotations
 
 import hashlib
+import json
 import resource
+import subprocess
+import sys
+from pathlib import Path
 
 import fake_solver
 import netCDF4
@@ -17,6 +21,8 @@ from trackroller.errors import InputError
 from trackroller.study.file.load import load_study
 from trackroller.study.run import run_study
 from trackroller.study.store import chunks, netcdf
+from trackroller.study.store.gather import write_design
+from trackroller.study.store.ledger import working_ledger
 from trackroller.study.store.netcdf import MOST_VARIABLES
 
 MANY = 4_000_000_000
@@ -104,6 +110,68 @@ def test_a_large_file_that_holds_its_values_is_read(tmp_path, monkeypatch):
     monkeypatch.setattr(netcdf, "memory", lambda: 1e6)
     with pytest.raises(InputError, match="fits the memory"):
         netcdf.read_result(tmp_path / "ds.nc")
+
+
+@pytest.mark.skipif(not Path("/proc/self/status").exists(), reason="the peak of memory is read as Linux tells it")
+def test_many_variables_take_little_more_memory_than_their_values(tmp_path):
+    """The library keeps up to 64 MB of each open variable; without a small cache this file takes twice its values."""
+    size, count = 500_000, 40
+    random = np.random.default_rng(1).random(size)
+    values = xr.Dataset({f"v{i}": ("case", random + i) for i in range(count)})
+    packed = {str(name): {"zlib": True, "complevel": 1} for name in values}
+    values.to_netcdf(tmp_path / "many.nc", encoding=packed)
+    program = """if True:
+        import re, sys
+        from pathlib import Path
+        from trackroller.study.store.netcdf import read_netcdf
+        def peak():
+            return int(re.search(r"VmHWM:\\s+(\\d+)", Path("/proc/self/status").read_text())[1])
+        before = peak()
+        read_netcdf(Path(sys.argv[1]), "file", "")
+        print(peak() - before)
+        """
+    command = [sys.executable, "-c", program, str(tmp_path / "many.nc")]
+    kilobytes = int(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
+    assert 0.9 < kilobytes * 1024 / (8 * size * count) < 1.5
+
+
+def test_the_cache_of_the_library_is_as_before_after_a_file(tmp_path):
+    before = netCDF4.get_chunk_cache()
+    with pytest.raises(RuntimeError), netcdf.small_cache():
+        assert netCDF4.get_chunk_cache()[0] == netcdf.CACHE_BYTES < before[0]
+        raise RuntimeError
+    assert netCDF4.get_chunk_cache() == before
+
+
+def test_a_design_is_packed_and_read_as_it_was(tmp_path):
+    """The mapping of a bearing and the pair of materials stand in each of 4,000 cases."""
+    bearing = {
+        "rows": 2,
+        "row_distance": 8,
+        "dynamic_rating": 4500,
+        "static_rating": 2000,
+        "e": 0.3,
+        "X": 0.56,
+        "Y": 1.5,
+    }
+    bearing |= {"X0": 0.6, "Y0": 0.5, "kind": "ball"}
+    study = {
+        "name": "many",
+        "base": {"bearing": bearing},
+        "factors": {
+            "friction_coefficient": {"linspace": [0.05, 0.4, 1000]},
+            "material_pair": {"values": [["PA6", "1.7225-normalised"], ["POM", "PA6"]]},
+            "axial_force": {"values": [0, 10]},
+        },
+        "outputs": ["forces", "contact", "life", "limits"],
+    }
+    with working_ledger(load_study(study), tmp_path) as ledger:
+        write_design(ledger)
+        path = ledger.folder.design
+        assert path.stat().st_size < 30 * 4000
+        again = xr.load_dataset(path)
+        xr.testing.assert_equal(again, ledger.cases.design)
+        assert json.loads(str(again.bearing.values[-1]))["dynamic_rating"] == 4500
 
 
 def test_a_study_with_a_bomb_among_its_chunks_solves_the_chunk_again(tmp_path):

@@ -12,6 +12,7 @@ from trackroller.damage import limit_word
 from trackroller.errors import InputError, check_names
 from trackroller.report.sizing import head_of, lead_of, notes_of, shown
 from trackroller.results.size import REQUIRED, Sizing, size
+from trackroller.roller.duty import STROKES_ATTRIBUTE
 from trackroller.roller.stored_inputs import given_inputs
 from trackroller.study.file.shelf import ROLLER
 from trackroller.yaml_file import read_mapping
@@ -59,6 +60,7 @@ def sized(
         own, options, beside = read(values)
         case = given_inputs(own) | options | beside | {"accuracy": accuracy}
         case.pop("outputs", None)
+        case.pop(STROKES_ATTRIBUTE, None)  # hours and overrollings follow from them
     check_names("requirement", required, REQUIRED)
     limits: dict[str, Any] = {name: str(text).strip() or None for name, text in required.items()}
     return _on_page(size(case, table, **limits))

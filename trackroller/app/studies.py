@@ -14,7 +14,7 @@ import math
 import os
 import subprocess
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -275,46 +275,57 @@ def _entry(name: str) -> dict[str, Any] | None:
         if _is_link(RESULTS / check_name(name)):
             return None
         return _REFUSED | {"name": name, "error": str(exc)}
-    progress: dict[str, Any] = {}
-    with contextlib.suppress(OSError, ValueError):
-        progress = json.loads((folder.root / PROGRESS).read_text(encoding="utf-8"))
+    progress = _progress_of(folder)
     works = _works(name, folder)
     if not (works or progress or folder.gathered.is_file() or is_study(folder.root)):
         return None
-    chunks = folder.record().get("chunks", {})
-    total = progress.get("total") or sum(chunks.values()) or None
-    solved = sum(n for key, n in chunks.items() if folder.chunk(key).is_file())
-    whole = folder.gathered.is_file() and solved == sum(chunks.values())
     files = list(_stats(folder.root))
     newest = max((stat.st_mtime for stat in files), default=0.0)
     size = sum(stat.st_size for stat in files)
     error = ""
     if not works:
         error = progress.get("error") or _altered(folder.gathered, newest, size)
+    return {
+        "name": name,
+        "question": folder.earlier().get("description", ""),
+        "step": progress.get("step", "starting"),
+        "error": error,
+        **_state_of(folder, progress, works, bool(error)),
+        "failed": progress.get("failed"),
+        "bytes": size,
+        "date": datetime.datetime.fromtimestamp(newest).isoformat(" ", "minutes"),
+        "pages": [page for page in PAGES if (folder.root / page).is_file()],
+    }
+
+
+def _progress_of(folder: StudyFolder) -> dict[str, Any]:
+    """Return what the process of a study wrote of its progress; {} without such a file."""
+    with contextlib.suppress(OSError, ValueError):
+        progress: dict[str, Any] = json.loads((folder.root / PROGRESS).read_text(encoding="utf-8"))
+        return progress
+    return {}
+
+
+def _state_of(
+    folder: StudyFolder, progress: Mapping[str, Any], works: bool, has_error: bool
+) -> dict[str, Any]:
+    """Return the state of a study, and how many of its cases are done."""
+    chunks = folder.record().get("chunks", {})
+    total = progress.get("total") or sum(chunks.values()) or None
+    solved = sum(n for key, n in chunks.items() if folder.chunk(key).is_file())
+    whole = folder.gathered.is_file() and solved == sum(chunks.values())
     done = solved
     if works:
         state = "running"
         done = progress.get("done", solved)
-    elif error:
+    elif has_error:
         state = "stopped"
     elif whole:
         state = "done"
         done = total
     else:
         state = "paused"
-    return {
-        "name": name,
-        "question": folder.earlier().get("description", ""),
-        "state": state,
-        "step": progress.get("step", "starting"),
-        "error": error,
-        "total": total,
-        "done": done,
-        "failed": progress.get("failed"),
-        "bytes": size,
-        "date": datetime.datetime.fromtimestamp(newest).isoformat(" ", "minutes"),
-        "pages": [page for page in PAGES if (folder.root / page).is_file()],
-    }
+    return {"state": state, "total": total, "done": done}
 
 
 def _stats(root: Path) -> Iterator[os.stat_result]:

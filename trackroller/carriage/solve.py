@@ -624,7 +624,7 @@ def _unused_loads(roller: MountedRoller) -> Iterator[str]:
         if name not in LIVES_OF_PAIR or math.isfinite(own.most):
             yield (
                 f"requirement.{name} in its file is not judged: of a carriage only a smallest life "
-                "is."
+                f"of the pair is. Write {LIVES_OF_PAIR[0]}."
             )
 
 

@@ -9,6 +9,7 @@ import os
 import shlex
 from collections.abc import Mapping
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from trackroller.cli.case import (
     YAML,
@@ -21,6 +22,11 @@ from trackroller.cli.case import (
 from trackroller.cli.usage import print_doubts, print_line
 from trackroller.errors import InputError
 from trackroller.files import sha256, write_text
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from trackroller.carriage.file import Carriage
 
 # line of a study by which its table is known to be unchanged
 TABLE_OF_US = "# Written beside it: {}, SHA-256 {}"
@@ -58,39 +64,57 @@ def run_carriage(
     if target is not None and study:
         table = _beside(target)
     from trackroller.carriage.file import load_carriage
-    from trackroller.carriage.files import spectrum_of, study_of
-
-    # heavy: scipy
-    from trackroller.carriage.solve import doubts_of_rollers, forces_of, solve_carriage
     from trackroller.report.pages.carriage import print_carriage, write_carriage  # heavy: jinja2
     from trackroller.report.pages.sheet import as_json as text_of
-    from trackroller.roller.stored_inputs import doubts_of
-    from trackroller.study.progress import progress_bar
 
     whole = load_carriage(file)
-    if (spectrum is not None or study) and page is None and not as_json:
-        ds = forces_of(whole)  # loads need neither margins nor lives
-        print_doubts(doubts_of_rollers(whole, ds))
-    else:
-        with progress_bar(whole.name, len(whole.cases) >= MANY) as bar:
-            bar.started(len(whole.cases), 0)
-            ds = solve_carriage(whole, advanced=lambda count: bar.advanced(count, 0))
-        print_doubts(doubts_of(ds))
-    if target is not None and spectrum is not None:
-        write_yaml_file(target, spectrum_of(whole, ds, spectrum))
-    elif target is not None and table is not None:
-        keys, rows = study_of(whole, ds, table.name)
-        write_text(table, rows)
-        digest = hashlib.sha256(rows.encode()).hexdigest()
-        write_yaml_file(target, keys, TABLE_OF_US.format(table.name, digest))
-    elif target is not None:
-        write_result(ds, target)
+    loads_alone = (spectrum is not None or study) and page is None and not as_json
+    ds = _solved(whole, loads_alone)
+    if target is not None:
+        _write(whole, ds, target, spectrum, table)
     if page is not None:
         write_carriage(ds, page, file.name)
     if as_json:
         print(text_of(ds))
     elif target is None:
         print_carriage(ds)
+
+
+def _solved(whole: Carriage, loads_alone: bool) -> xr.Dataset:
+    """Return the solution of a carriage, or its loads, which need neither margins nor lives; print
+    what is doubtful.
+    """
+    # heavy: scipy
+    from trackroller.carriage.solve import doubts_of_rollers, forces_of, solve_carriage
+    from trackroller.roller.stored_inputs import doubts_of
+    from trackroller.study.progress import progress_bar
+
+    if loads_alone:
+        ds = forces_of(whole)
+        print_doubts(doubts_of_rollers(whole, ds))
+        return ds
+    with progress_bar(whole.name, len(whole.cases) >= MANY) as bar:
+        bar.started(len(whole.cases), 0)
+        ds = solve_carriage(whole, advanced=lambda count: bar.advanced(count, 0))
+    print_doubts(doubts_of(ds))
+    return ds
+
+
+def _write(
+    whole: Carriage, ds: xr.Dataset, target: Path, spectrum: str | None, table: Path | None
+) -> None:
+    """Write the spectrum of one roller, a study of all loads with its table, or netCDF."""
+    from trackroller.carriage.files import spectrum_of, study_of
+
+    if spectrum is not None:
+        write_yaml_file(target, spectrum_of(whole, ds, spectrum))
+    elif table is not None:
+        keys, rows = study_of(whole, ds, table.name)
+        write_text(table, rows)
+        digest = hashlib.sha256(rows.encode()).hexdigest()
+        write_yaml_file(target, keys, TABLE_OF_US.format(table.name, digest))
+    else:
+        write_result(ds, target)
 
 
 def _page(report: Path | None) -> Path | None:

@@ -145,8 +145,8 @@ def _left_out(words: str) -> tuple[str, ...]:
 def _served(case: Case, options: Mapping[str, Any]) -> tuple[str, ...]:
     """Return the groups of outputs of the checked limits whose inputs a case gives."""
     from trackroller.roller.case import to_table
+    from trackroller.roller.case_limits import solved_of, to_compute  # heavy: as above
     from trackroller.roller.options import Options
-    from trackroller.roller.stages.outcome import solved_of, to_compute  # heavy: as above
 
     of_limits = Options(**{**options, "outputs": ("limits",)})
     limits = to_compute(solved_of(to_table(case), {}, of_limits), of_limits)
@@ -347,27 +347,36 @@ def solve_and_tell(  # noqa: PLR0913 - one argument for each option of the comma
     chosen = _options(given, options, limits, page is not None, plain)
     if no_shortcuts:
         chosen["shortcuts"] = False
-    tell_start(case, settings)
     dataset = solve_case(given, options, beside, **chosen)
+    tell_start(case, settings)
     if target is not None:
         _write_roller(dataset, target, book)
-    from trackroller.report.pages.sheet import as_json as json_of  # heavy: rich and jinja2
-    from trackroller.report.pages.sheet import print_facts, print_limits, write_sheet
-
     if page is not None:
+        from trackroller.report.pages.sheet import write_sheet  # heavy: rich and jinja2
+
         write_sheet(dataset, page, _name(case))
-    shows_limits = limits is not None and not is_failed(dataset)
-    if as_json:
-        print(json_of(dataset))
-    elif target is None and shows_limits:
-        print_limits(dataset)
-    elif target is None:
-        print_facts(dataset)
+    if as_json or target is None:
+        _print_case(dataset, as_json, limits is not None)
     if not is_failed(dataset):
         return 0
     if as_json or target is not None:
         print(f"trackroller: the case failed: {dataset['reason'].item()}", file=sys.stderr)
     return 1
+
+
+def _print_case(dataset: xr.Dataset, as_json: bool, margins_alone: bool) -> None:
+    """Print the result of a case as JSON, its margins alone, or its facts; a case that failed has
+    no margins.
+    """
+    from trackroller.report.pages.sheet import as_json as json_of  # heavy: rich and jinja2
+    from trackroller.report.pages.sheet import print_facts, print_limits
+
+    if as_json:
+        print(json_of(dataset))
+    elif margins_alone and not is_failed(dataset):
+        print_limits(dataset)
+    else:
+        print_facts(dataset)
 
 
 def _check_search_alone(
@@ -491,10 +500,7 @@ def run_wear(
     from there. `as_json` prints JSON in place of the tables.
     """
     target = None if out is None else writable_data(out)
-    if report is None:
-        page = None
-    else:
-        page = writable_page(report)
+    page = _page(report)
     new, options, beside = case_of(case, settings)
     tell_start(case, settings)
     tell_doubts(new)
@@ -504,7 +510,6 @@ def run_wear(
     from trackroller.report.pages.wear import write_wear
     from trackroller.results.wear_answer import answer_of_wear
     from trackroller.roller.wear import wear
-    from trackroller.study.store.netcdf import read_netcdf
 
     def tell(dataset: xr.Dataset, goal: float) -> None:
         if target is not None:
@@ -514,16 +519,7 @@ def run_wear(
             depth = 1e3 * float(last["groove_depth"].max())
             print_line(f"{float(last['travel']):.4g} of {goal:g} km, depth {depth:.3g} um")
 
-    before = None
-    if target is not None and target.exists() and target.stat().st_size:
-        before = read_netcdf(
-            target, "--out", "A run goes on from what the file holds: give another name."
-        )
-        if "next_step" not in before:
-            allowed = "a new file, or one that `trackroller wear` wrote, to go on from"
-            wrong = "holds something else"
-            raise InputError("--out", str(out), allowed, "Give another name.", wrong)
-    dataset = wear(new, to, resume=before, tell=tell, **options)
+    dataset = wear(new, to, resume=_states_before(target, out), tell=tell, **options)
     if target is not None:
         write_result(dataset, target)
     worn = with_beside(dataset, beside)
@@ -533,6 +529,21 @@ def run_wear(
         print(json_of(worn))
     else:
         print_record(answer_of_wear(worn))
+
+
+def _states_before(target: Path | None, out: Path | None) -> xr.Dataset | None:
+    """Return the states from which a run of wear goes on; None without a file that holds some."""
+    from trackroller.study.store.netcdf import read_netcdf
+
+    if target is None or not target.exists() or not target.stat().st_size:
+        return None
+    remedy = "A run goes on from what the file holds: give another name."
+    before = read_netcdf(target, "--out", remedy)
+    if "next_step" not in before:
+        allowed = "a new file, or one that `trackroller wear` wrote, to go on from"
+        wrong = "holds something else"
+        raise InputError("--out", str(out), allowed, "Give another name.", wrong)
+    return before
 
 
 def is_failed(dataset: xr.Dataset) -> bool:

@@ -345,21 +345,24 @@ def size(  # noqa: PLR0913 - one argument for each option of the command
     ] = None,
     life: Annotated[
         str | None,
-        typer.Option("--life", help="required life: '3 years' beside a duty, or hours [h]"),
+        typer.Option("--life", help="required life: '3 years' beside a duty, or hours of travel"),
     ] = None,
     failures: Annotated[
         str | None, typer.Option("--failures", help="share that may fail within --life, such as 5%")
     ] = None,
     safety: Annotated[
-        str | None, typer.Option("--safety", help="factor on all forces within all limits")
+        str | None,
+        typer.Option("--safety", help="factor >= 1 on all forces within all limits, such as 1.5"),
     ] = None,
     temperature: Annotated[
         str | None,
-        typer.Option("--temperature", help="permissible temperature [degC], such as '60 degC'"),
+        typer.Option("--temperature", help="permissible temperature in degC: 60, or '60 degC'"),
     ] = None,
     wear_depth: Annotated[
         str | None,
-        typer.Option("--wear-depth", help="permissible wear depth [mm] within --life: '0.05 mm'"),
+        typer.Option(
+            "--wear-depth", help="permissible wear depth within --life, in mm: 0.05, or '50 um'"
+        ),
     ] = None,
     least: Annotated[
         str | None, typer.Option("--least", help="column of the shelf, such as price")

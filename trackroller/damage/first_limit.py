@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from trackroller.damage.limit import Limit, SolvedRollers, Values, variables
+from trackroller.damage.limit import Limit, LimitUse, SolvedRollers, Values, variables
 from trackroller.damage.pair import first_failure
 from trackroller.numerics.parameter import Parameter
 from trackroller.numerics.variable import BODIES, LIFE
@@ -194,31 +194,43 @@ def states(
     return np.where((has_bound & (least > 1.0)) | broken, STATES.index("exceeded"), state)
 
 
-def _ends(hours: np.ndarray, low: np.ndarray | None, high: np.ndarray | None) -> list[np.ndarray]:
-    """Return the life of a limit and the ends of its range, which is the life itself where the
-    limit gives none.
+def _ends(own: LimitUse) -> np.ndarray:
+    """Return the life of a limit and the ends of its range, (end, n, body), which is the life
+    itself where the limit gives none.
     """
+    low = own.life_low
+    high = own.life_high
     if low is None:
-        low = hours
+        low = own.life_hours
     if high is None:
-        high = hours
-    return [hours, low, high]
+        high = own.life_hours
+    return np.array([own.life_hours, low, high])
 
 
-def _bounds(solved: SolvedRollers, limits: Sequence[Limit]) -> np.ndarray:
-    """Return the bounds of utilisations that stand in place of numbers, (n, limit, body) [1]; NaN
-    where the number counts.
-    """
-    out = np.full((len(solved.rolling_radius), len(limits), len(BODIES)), np.nan)
+def _lacking(solved: SolvedRollers, limits: Sequence[Limit]) -> np.ndarray:
+    """Return where a limit lacks a value, (n, limit, body) bool."""
+    out = np.zeros((len(solved.rolling_radius), len(limits), len(BODIES)), dtype=bool)
     for i, limit in enumerate(limits):
-        bounded = limit.kept_by_bound(solved)
-        if limit.bound is not None and bounded.any():
-            out[:, i] = np.where(bounded, limit.bound(solved), np.nan)
+        out[:, i] = limit.lacking(solved)
     return out
 
 
+def _bound(solved: SolvedRollers, limit: Limit) -> np.ndarray:
+    """Return the bound of the utilisation that stands in place of the number, (n, body) [1]; NaN
+    where the number counts.
+    """
+    bounded = limit.kept_by_bound(solved)
+    if limit.bound is None or not bounded.any():
+        return np.full(bounded.shape, np.nan)
+    return np.where(bounded, limit.bound(solved), np.nan)
+
+
 def limit_uses(
-    places: Sequence[SolvedRollers], limits: Sequence[Limit], numbers: Sequence[int], unknown: int
+    places: Sequence[SolvedRollers],
+    limits: Sequence[Limit],
+    numbers: Sequence[int],
+    unknown: int,
+    served: np.ndarray | None = None,
 ) -> Values:
     """Return how far each limit is used, hours to each and to the first, their ranges, and which
     one is first.
@@ -234,6 +246,8 @@ def limit_uses(
         Number of each limit in the flags of `limiting_mechanism`.
     unknown : int
         Number for bodies of which no limit is known.
+    served : numpy.ndarray of bool, optional
+        Which limits count for a case, (n, limit), by default all. Of the others nothing is known.
 
     Returns
     -------
@@ -251,39 +265,41 @@ def limit_uses(
     """
     shape = len(places), len(places[0].rolling_radius), len(limits), len(BODIES)
     used = np.full(shape, np.nan)
+    at_most = np.full(shape[1:], np.nan)
     broken = np.zeros(shape[1:], dtype=bool)
-    lives = {end: np.full(shape, np.nan) for end in ENDS}
+    if served is None:
+        served = np.ones(shape[1:3], dtype=bool)
+    lives = np.full((len(ENDS), *shape), np.nan)
     timed = np.zeros(len(limits), dtype=bool)
-    lacking = broken
-    if limits:
-        lacking = np.stack([limit.lacking(places[0]) for limit in limits], axis=1)
+    lacking = _lacking(places[0], limits)
     for i, limit in enumerate(limits):
         assert limit.use is not None
-        concerned = [body in limit.bodies for body in BODIES]
+        if not served[:, i].any():
+            continue
+        counts = served[:, i, None]
+        concerned = counts & [body in limit.bodies for body in BODIES]
+        at_most[:, i] = np.where(counts, _bound(places[0], limit), np.nan)
         for place, solved in enumerate(places):
             own = limit.use(solved, dict(solved.values))
             if own.utilisation is not None:
                 used[place, :, i] = np.where(concerned, own.utilisation, np.nan)
             if own.life_hours is not None:
                 timed[i] = True
-                for end, hours in zip(
-                    ENDS, _ends(own.life_hours, own.life_low, own.life_high), strict=True
-                ):
-                    lives[end][place, :, i] = np.where(concerned, hours, np.nan)
+                lives[:, place, :, i] = np.where(concerned, _ends(own), np.nan)
             if own.at_once is not None:
-                broken[:, i] = own.at_once
-    at_most = _bounds(places[0], limits)
+                broken[:, i] = own.at_once & counts
     used = np.where(np.isnan(at_most), used, np.nan)
     at_once = breaking(np.asarray(broken.any(axis=1)), limits)
     out: Values = {
         "utilisation": used[0],
         AT_MOST: at_most,
-        "limit_state": states(used, lives[""][0], at_once, limits, ~np.isnan(at_most)),
+        "limit_state": states(used, lives[0, 0], at_once, limits, ~np.isnan(at_most)),
     }
     # the worse and the better place are the last but one and the last one; without placeholders
     # there is one place
-    for end, place in zip(ENDS, (0, min(1, len(places) - 1), len(places) - 1), strict=True):
-        life = lives[end][place]
+    at = (0, min(1, len(places) - 1), len(places) - 1)
+    for place_of_end, (end, place) in enumerate(zip(ENDS, at, strict=True)):
+        life = lives[place_of_end, place]
         first, which = first_of(life, used[0], timed, limits, at_once, lacking)
         out |= {f"life_hours_by_limit{end}": life, f"life_to_first_limit_hours{end}": first}
         out[f"pair_life_to_first_limit_hours{end}"] = first_failure(*first.T)[0]

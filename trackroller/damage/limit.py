@@ -303,17 +303,19 @@ class Limit:
             out |= np.isnan(solved.materials[name]) & concerned
         return out
 
-    def served(self, solved: SolvedRollers) -> bool:
-        """Return whether a case has all that the limit requires, or gives a field that serves this
-        limit alone.
+    def served(self, solved: SolvedRollers) -> np.ndarray:
+        """Return which cases have all that its use by a body requires, or give a field that
+        serves this limit alone, (n,) bool.
         """
         own = [
             *(one.name for one in self.parameters if one.allow_missing),
             *(one.name for one in self.mappings),
         ]
-        columns = [solved.cases[name] for name in own if name in solved.cases]
-        given = not all(missing(column).all() for column in columns)
-        return given or not self.lacking(solved).all()
+        out = np.asarray(~self.lacking(solved).all(axis=1))
+        for name in own:
+            if name in solved.cases:
+                out |= ~missing(solved.cases[name])
+        return out
 
     def kept_by_bound(self, solved: SolvedRollers) -> np.ndarray:
         """Return which bodies get a bound of the utilisation in place of the number, (n, body)
@@ -326,11 +328,15 @@ class Limit:
             return np.zeros((len(solved.rolling_radius), len(BODIES)), dtype=bool)
         return np.asarray(self.bound(solved.at_end(0)) < 1.0)
 
-    def moves(self, solved: SolvedRollers) -> bool:
-        """Return whether the use of the limit rests on a value of a material that is known within
-        a range only.
+    def moves(self, solved: SolvedRollers) -> np.ndarray:
+        """Return which cases use the limit by a value of a material that is known within a range
+        only, (n,) bool.
         """
-        return any(name in solved.ends for name, _ in self.required_of(solved))
+        out = np.zeros(len(solved.rolling_radius), dtype=bool)
+        for name, _ in self.required_of(solved):
+            if name in solved.ends:
+                out |= np.any(solved.ends[name] != 1.0, axis=(1, 2))
+        return out
 
 
 def variables(group: str, *rows: tuple[Any, ...]) -> tuple[Variable, ...]:

@@ -9,8 +9,7 @@ from trackroller.results.life_columns import FIRST_LIMIT, OF_PAIR
 def required_of_output(answer: Answer) -> list[Required]:
     """Return what is required of the output of an answer.
 
-    A required life of the pair or the roller is compared with the life to the first limit, as its
-    verdict is.
+    A required life of the pair is compared with the life to the first limit, as its verdict is.
     """
     name = answer.output[0]
     names: tuple[str, ...] = (name,)

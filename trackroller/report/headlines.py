@@ -31,6 +31,8 @@ Keys of `Answer.headline`; a key that is missing, None, NaN or empty is left out
 `exceeded`         {limit, body, use [1], hours}: the worst check of the leader above 100 %
 `second`           {limit, verdict, low, high}: second model ("rating") that turns the leader's
                    verdict; a state of `STATES`; its life at the worst condition [h]
+`earlier`          {limit, body, low, high}: first limit of the leader, where a life by fatigue is
+                   required and this limit comes before it; its life at the worst condition [h]
 `measure`          {what, of, on, turn, units, low, high}: placeholder, its material, the other one,
                    where the leader turns, and its range
 `give`             {what}: load that was not given, in words: "the motor force"
@@ -38,7 +40,8 @@ Keys of `Answer.headline`; a key that is missing, None, NaN or empty is left out
                    fails_counted}:
                    `meets` and `perhaps` count the conditions that surely meet it and that may;
                    `judged` those that the model judges; `fails` says where it surely fails, in
-                   words, or counts the causes (`fails_counted`)
+                   words, or counts the causes (`fails_counted`); `cause` why it holds nowhere
+                   ("skids"), '' otherwise
 `up_to`, `from_on`  levels of the single numeric choice between which all conditions meet the
                    requirement
 `share`, `share_low`, `share_high`  share of the drawn conditions that meets it, Wilson's interval
@@ -91,6 +94,7 @@ from trackroller.errors import listing
 from trackroller.parameters.carriage_fields import parameter_of
 from trackroller.report.bounds import bounds_of_output
 from trackroller.report.numbers import (
+    NOT_HELD,
     as_required,
     capital,
     carried,
@@ -99,6 +103,7 @@ from trackroller.report.numbers import (
     level_text,
     long_name,
     lowered,
+    may_be_lost,
     on_duty,
     percent,
     plain,
@@ -106,6 +111,8 @@ from trackroller.report.numbers import (
     years_of,
 )
 from trackroller.results.answer import Answer, Caution, Column, Required
+from trackroller.results.life_columns import OF_PAIR
+from trackroller.roller.output_names import body_of
 from trackroller.study.design.levels import NAMED
 
 MOST_WORDS = 40
@@ -309,7 +316,7 @@ def _lasts(answer: Answer) -> list[str]:
         place = " at its worst condition"
         if _one_condition(answer):
             place = ""
-        clauses.append(f"{whose}{_value_said(answer)}{place}{_then(head)}")
+        clauses.append(f"{whose}{_at_worst(answer)}{place}{_then(head)}")
         if answer.kind in ELSEWHERE:
             clauses += _goals_said(head)
     clauses += _turn(head)
@@ -398,6 +405,8 @@ def _nearest(answer: Answer) -> list[str]:
     if _known(near, "low") and near["low"] > 0 and near["holds"] == near["of"]:
         clauses[0] += f", {_output(answer, near['low'])} at the worst"
     fails = _short(near.get("fails"))
+    if near.get("cause"):
+        return [*clauses, f"{near['cause']} everywhere"]
     if fails == "everywhere":
         return [*clauses, "fails everywhere"]
     if fails and near.get("fails_counted"):
@@ -460,7 +469,18 @@ def _worst(answer: Answer) -> list[str]:
     head = answer.headline
     if not _known(head, "low"):
         return []
-    return [f"{_value_said(answer)} at the worst{_then(head)}"]
+    return [f"{_at_worst(answer)} at the worst{_then(head)}"]
+
+
+def _at_worst(answer: Answer) -> str:
+    """Return the value of the leader at its worst condition, or why it has none there: an output
+    that is no life has no value where the roller does not roll.
+    """
+    head = answer.headline
+    ends = [head["low"], head.get("high", head["low"])]
+    if may_be_lost(answer.question, answer.output[2]) and any(map(math.isinf, ends)):
+        return str(head.get("ends") or NOT_HELD)
+    return _value_said(answer)
 
 
 def what_matters(answer: Answer) -> Headline:
@@ -1170,9 +1190,9 @@ def _notes(head: Mapping[str, Any]) -> list[str]:
 def _output(
     answer: Answer, low: float, high: float | None = None, notes: Sequence[str] = ()
 ) -> str:
-    """Return a value of the output of an answer, or a range; hours alone say that it is a life."""
+    """Return a value of the output of an answer, or a range; hours alone are a life of the pair."""
     value = _value(answer, low, high, notes)
-    if answer.output[2] == "h":
+    if answer.output[2] == "h" and not body_of(answer.output[0]):
         return value
     return f"{lowered(answer.output[1])} {value}"
 
@@ -1221,7 +1241,9 @@ def _then(head: Mapping[str, Any]) -> str:
 
 
 def _other_rules(head: Mapping[str, Any]) -> list[str]:
-    """Return a second model that turns the verdict, and the check that is exceeded most."""
+    """Return a second model that turns the verdict, a limit that comes before the required life,
+    and the check that is exceeded most.
+    """
     clauses = []
     second = head.get("second")
     if second:
@@ -1235,6 +1257,10 @@ def _other_rules(head: Mapping[str, Any]) -> list[str]:
         if second["verdict"] == "open" and _known(second, "low"):
             life = [f"{carried_range(second['low'], second['high'])} h"]
         clauses.append(_noted(f"the {second['limit']} {verb[second['verdict']]}", life))
+    earlier = head.get("earlier")
+    if earlier:
+        hours = carried_range(earlier["low"], earlier["high"])
+        clauses.append(f"{_limit_of(earlier)} comes first ({hours} h)")
     exceeded = head.get("exceeded")
     if exceeded:
         clauses.append(f"{exceeded['limit']} exceeded ({percent(exceeded['use'])})")
@@ -1250,10 +1276,11 @@ def _required(answer: Answer) -> list[str]:
 
 def _bound(required: Required, answer: Answer) -> str:
     """Return a requirement with its unit, and with the words of its output where it is another than
-    the table's; one life needs no words.
+    the table's; a single life of the pair needs no words.
     """
     lives = sum(one.units == "h" for one in answer.required)
-    if required.output == answer.output[0] or (required.units == "h" and lives == 1):
+    of_pair = required.output in OF_PAIR
+    if required.output == answer.output[0] or (of_pair and lives == 1):
         words = ""
     else:
         words = f"{lowered(required.words)} "

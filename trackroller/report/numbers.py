@@ -105,6 +105,24 @@ def near(value: float, span: float) -> str:
     return rounded(round(value, digits) + 0.0)
 
 
+NOT_HELD = "not held"
+UNITS_OF_LIVES = ("h", "overrollings", "km")
+
+
+def may_be_lost(question: str, units: str) -> bool:
+    """Return whether an infinite number of candidates is that of a condition that is not held: no
+    life, which may be unlimited.
+    """
+    return question in ("decide", "how sure") and units not in UNITS_OF_LIVES
+
+
+def held_text(value: float) -> str:
+    """Write a value of a candidate; an infinite one is that of a condition that is not held."""
+    if math.isinf(value):
+        return NOT_HELD
+    return carried(value)
+
+
 def life(value: float) -> str:
     """Write a life: three figures, 'unlimited', or 'unknown'."""
     if math.isnan(value):

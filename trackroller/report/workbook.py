@@ -265,48 +265,53 @@ def write_roller(ds: xr.Dataset, path: Path) -> Path:
     Further sheets hold the rest of its record: `headline`, `columns`, `warnings`, and one for each
     further table.
     """
-    inputs = record.inputs_of(ds)
-    example = record.names_not_given(ds.attrs)
-    own = record.radii_of(ds) | {name: value for name, value in inputs.items() if value is not None}
-    units = dict.fromkeys(RADII, "mm")
-    duty = duty_of(ds) or {}
-    sources = dict.fromkeys(own, "given") | dict.fromkeys(example, "example")
-    if record.friction_records(ds.attrs):  # left out, or a level of the database
-        sources["friction_coefficient"] = "database"
-    strokes = strokes_of(ds) or {}
-    if strokes:
-        sources[OVERROLLINGS] = "strokes"
-    rows = [
-        [name, _plain(value), units.get(name, unit_of(name)), sources[name]]
-        for name, value in own.items()
-    ]
-    by_strokes = {}
-    if strokes:
-        by_strokes = {"hours_per_day": "strokes"}
-    units_of_strokes = {"stroke": "m"}
-    for name, value in (duty | strokes).items():
-        rows.append([name, value, units_of_strokes.get(name, "-"), by_strokes.get(name, "given")])
-    rows = [[name, long_name(name), *others] for name, *others in rows]
-    sheets = [Table("inputs", "Inputs", ["input", "meaning", "value", "unit", "from"], rows)]
-    known = parts_in(
-        ds, (str(name) for name, v in ds.data_vars.items() if v.dtype.kind in "fiu"), ()
-    )
-    numbers = [
-        (name, part.words, part.values(ds).item())
-        for name, part in known.items()
-        if "limit" not in part.at
-    ]
-    meanings = [
-        [name, words, in_words(name, [value])[0], unit_of(name)]
-        for name, words, value in numbers
-        if value == value
-    ]
-    sheets.append(Table("results", "Results", ["result", "meaning", "value", "unit"], meanings))
     answer = answer_of_roller(ds)
     limits = _rows_sheet(answer)
-    sheets.append(Table("limits", "Limits", limits.heads, limits.rows))
-    sheets += [_headline_sheet(answer), *_further_sheets(answer)]
+    sheets = [
+        _inputs_sheet(ds),
+        _results_sheet(ds),
+        Table("limits", "Limits", limits.heads, limits.rows),
+        _headline_sheet(answer),
+        *_further_sheets(answer),
+    ]
     return put(path, lambda beside: _save(beside, map(_Sheet.of, sheets)))
+
+
+def _inputs_sheet(ds: xr.Dataset) -> Table:
+    """Return the inputs of one case, its duty and its strokes, and where each value is from."""
+    strokes = strokes_of(ds) or {}
+    given = {name: value for name, value in record.inputs_of(ds).items() if value is not None}
+    inputs = record.radii_of(ds) | given
+    example = record.names_not_given(ds.attrs)
+    sources = dict.fromkeys(inputs, "given") | dict.fromkeys(example, "example")
+    if record.friction_records(ds.attrs):  # left out, or a level of the database
+        sources["friction_coefficient"] = "database"
+    if strokes:
+        sources |= {OVERROLLINGS: "strokes", "hours_per_day": "strokes"}
+    units = dict.fromkeys(RADII, "mm")
+    rows = [
+        [name, long_name(name), _plain(value), units.get(name, unit_of(name)), sources[name]]
+        for name, value in inputs.items()
+    ]
+    units = {"stroke": "m"}
+    rows += [
+        [name, long_name(name), value, units.get(name, "-"), sources.get(name, "given")]
+        for name, value in ((duty_of(ds) or {}) | strokes).items()
+    ]
+    return Table("inputs", "Inputs", ["input", "meaning", "value", "unit", "from"], rows)
+
+
+def _results_sheet(ds: xr.Dataset) -> Table:
+    """Return the numbers that are known of one case, without those of single limits."""
+    names = [str(name) for name, own in ds.data_vars.items() if own.dtype.kind in "fiu"]
+    rows = []
+    for name, part in parts_in(ds, names, ()).items():
+        if "limit" in part.at:
+            continue
+        value = part.values(ds).item()
+        if not math.isnan(value):
+            rows.append([name, part.words, in_words(name, [value])[0], unit_of(name)])
+    return Table("results", "Results", ["result", "meaning", "value", "unit"], rows)
 
 
 def _plain(value: Any) -> Any:

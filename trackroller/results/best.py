@@ -212,8 +212,8 @@ def answer_of_search(results: SolvedCases) -> Answer:
         solution leaves the requirement open), `open` (a range leaves it open), or `none`: no
         candidate holds, or none meets the requirement. The headline holds `designs` (name, goals,
         `at`, `stopped`), `binds`, `accuracy`, `extrapolated`, `second` and `exceeded`. Where no
-        candidate is known to meet the requirement, `nearest` stands in place of `designs`;
-        `measure` of `open` is the value whose range leaves it open.
+        candidate is known to meet the requirement, `nearest` stands in place of `designs`; of
+        `open`, `measure` is the value whose range leaves it open.
 
     Raises
     ------

@@ -709,8 +709,8 @@ def _exceeded(own: Comparison) -> dict[str, Any]:
     beyond = np.where((state == words.index("exceeded")) & (use > 1.0), use, np.nan)
     flattened = beyond.reshape(len(beyond), -1)
     most = np.where(np.isnan(flattened), -np.inf, flattened)
-    place = most.argmax(axis=1)
-    worst = most[np.arange(len(place)), place]
+    limit_and_body = most.argmax(axis=1)
+    worst = most.max(axis=1)
     rows = own.own & np.isfinite(worst)
     if not own.drawn:
         rows &= own.reachable
@@ -718,29 +718,24 @@ def _exceeded(own: Comparison) -> dict[str, Any]:
         return nothing
     names = [str(name) for name in data["limit"].values]
     hours = own.hours_by_limit("")
-    case = np.full(own.count, -1)
     order = np.flatnonzero(rows)
     order = order[np.lexsort((-worst[order], own.candidate[order]))]
     numbers, first = np.unique(own.candidate[order], return_index=True)
-    case[numbers] = order[first]
-    out: dict[str, list[Any]] = {name: [] for name in nothing}
-    for row in case:
-        if row < 0:
-            for name, value in nothing.items():
-                out[name].append(value)
-            continue
-        limit, body = divmod(int(place[row]), len(BODIES))
-        out["exceeded"].append(
-            f"{limit_word(names[limit])} of the {BODIES[body]} {100 * worst[row]:.3g} %"
-        )
-        out["exceeded_by"].append(limit_word(names[limit]))
-        out["exceeded_body"].append(BODIES[body])
-        out["use"].append(float(worst[row]))
+    records = [nothing] * own.count
+    for number, row in zip(numbers, order[first], strict=True):
+        limit, body = divmod(int(limit_and_body[row]), len(BODIES))
+        word = limit_word(names[limit])
         own_hours = np.nan
         if hours is not None:
             own_hours = float(hours[row, limit, body])
-        out["use_hours"].append(own_hours)
-    return out
+        records[number] = {
+            "exceeded": f"{word} of the {BODIES[body]} {100 * worst[row]:.3g} %",
+            "exceeded_by": word,
+            "exceeded_body": BODIES[body],
+            "use": float(worst[row]),
+            "use_hours": own_hours,
+        }
+    return {name: [record[name] for record in records] for name in nothing}
 
 
 def _edges(own: Comparison) -> list[str]:

@@ -504,8 +504,8 @@ class Comparison:
         named = [n for n in OF_MATERIALS if n in self.results.table]
         if not named:
             return np.full(len(rows), "", dtype=object)
-        texts = self.results.table[named].astype(str).agg(" / ".join, axis=1).to_numpy(dtype=object)
-        return np.asarray(texts[rows])
+        names = self.results.table[named].iloc[rows].astype(str)
+        return names.agg(" / ".join, axis=1).to_numpy(dtype=object)
 
     @cached_property
     def rankable(self) -> bool:

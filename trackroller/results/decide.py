@@ -13,6 +13,7 @@ import pandas as pd
 from trackroller.damage import limit_word
 from trackroller.methods.b10 import quantile
 from trackroller.methods.optimise import nondominated_ranks
+from trackroller.parameters import BODIES
 from trackroller.parameters.carriage_fields import long_name_of
 from trackroller.results.answer import Answer
 from trackroller.results.candidate_table import (
@@ -22,10 +23,11 @@ from trackroller.results.candidate_table import (
     shared_names,
     states_of,
 )
+from trackroller.results.case_ranges import CaseRanges
 from trackroller.results.comparison import EQUAL, Comparison
 from trackroller.results.effect_curves import Effects
 from trackroller.results.ends_by_factor import ends_by_factor
-from trackroller.results.life_columns import OF_PAIR
+from trackroller.results.life_columns import FIRST_LIMIT, OF_PAIR
 from trackroller.results.search_fitness import normalised
 from trackroller.results.solved_cases import SolvedCases
 from trackroller.results.study_facts import (
@@ -285,9 +287,8 @@ class Decider:
         share = 0.0
         if own.drawn:
             share = 0.1
-        return np.asarray(
-            number <= share * np.bincount(own.candidate[own.own], minlength=own.count)
-        )
+        of = np.bincount(own.candidate[own.own], minlength=own.count)
+        return np.asarray(number <= share * of)
 
     def _beats(self, one: int, other: int) -> bool:
         """Return whether a candidate is never worse than another one by more than the error, and
@@ -424,7 +425,10 @@ def _headline(own: Comparison, table: pd.DataFrame, decision: Decision) -> dict[
         head["nearest"] = {
             "name": names_of(own, [decision.order[0]])[0],
             **{key: plain(one[key]) for key in NEAREST},
+            "cause": "",
         }
+        if one["holds"] == 0 and one["judged"] == one["of"]:
+            head["nearest"]["cause"] = causes_text(own, own.rows[int(one["number"])])
     return head | _level_reached(own, table)
 
 
@@ -462,6 +466,9 @@ def leading(own: Comparison, one: pd.Series) -> dict[str, Any]:
             "use": float(one["use"]),
             "hours": float(one["use_hours"]),
         }
+    earlier = _earlier_end(own, int(one["number"]), float(one["low"]))
+    if earlier:
+        head["earlier"] = earlier
     if one["second_state"] not in ("", one["state"]):
         head["second"] = {
             "limit": plain(one["second"]),
@@ -473,6 +480,29 @@ def leading(own: Comparison, one: pd.Series) -> dict[str, Any]:
         head |= {key: float(one[key]) for key in ("share", "share_low", "share_high")}
         head |= {"wanted": own.wanted_share, "n": int(one["n"]), "judged": int(one["judged"])}
     return head
+
+
+def _earlier_end(own: Comparison, number: int, low: float) -> dict[str, Any]:
+    """Return the first limit of a candidate at its worst condition, where the life of a body is
+    compared and this limit comes before its low end [h]; {} otherwise.
+    """
+    results = own.results
+    name, _, units = own.ranges.output
+    if units != "h" or name == FIRST_LIMIT[0] or FIRST_LIMIT[0] not in results.table:
+        return {}
+    first = CaseRanges(results, FIRST_LIMIT, True)
+    rows = own.rows[number]
+    rows = rows[(own.reachable & own.ranges.holds & first.holds)[rows]]
+    if not len(rows) or not first.low[rows].min() < low:
+        return {}
+    worst = rows[np.argmin(first.low[rows])]
+    limit, guide = (part[worst] for part in first.first_at("_low"))
+    return {
+        "limit": limit_word(str(limit)),
+        "body": BODIES[int(guide)],
+        "low": float(first.low[worst]),
+        "high": float(first.high[rows].min()),
+    }
 
 
 def not_held_by_any(own: Comparison) -> dict[str, Any]:

@@ -493,36 +493,16 @@ def _b10_bands(
     """
     results = own.results
     design = own.results.design
-    lives = [
-        name
-        for name, _, _ in (results.life or ("", "", ""), *results.fatigue_lives)
-        if name in results.table
-    ]
-    lives = [name for name in dict.fromkeys(lives) if is_life(name)]
+    lives = _lives_of(results)
     if not (design.method.points or design.method.sampled) or not lives:
         return xr.Dataset()
-    points: list[Any]
+    columns = _columns(results, lives)
+    points: list[Any] = [design.method.independent_rows(design)]
     if design.method.points:
         points = list(design.points)
-    else:
-        points = [design.method.independent_rows(design)]
-    columns = _columns(results, lives)
     values = np.full((3, len(columns), len(points)), np.nan)
     for i, column in enumerate(columns):
-        given = deviations.get(scattering_body(column.name))
-        known = results.with_breaks(column)
-        moved, scatter = _drawn_lives(own, dataclasses.replace(column, values=known), given)
-        if given is None:
-            best = np.zeros(design.size)
-        else:
-            best = given
-        for p, rows in enumerate(points):
-            counted = np.arange(design.size)[rows]
-            counted = counted[~np.isnan(known[counted])]
-            if counted.size < 2:
-                continue
-            values[0, i, p] = b10(known[counted], best[counted])[0]
-            values[1:, i, p] = np.quantile(b10_of_draws(moved[counted], scatter[counted]), BAND)
+        values[:, i] = _b10_of(own, column, points, deviations)
     names = {
         "b10_tests": "life that 90 % reach, with the scatter of the material",
         "b10_tests_low": "its low end, 90 % by the tests",
@@ -543,6 +523,39 @@ def _b10_bands(
             "life_units": ("life", [column.units for column in columns]),
         },
     )
+
+
+def _lives_of(results: SolvedCases) -> list[str]:
+    """Return the names of the lives of a study: the compared one first, then those of fatigue."""
+    names = [name for name, _, _ in results.fatigue_lives]
+    if results.life:
+        names.insert(0, results.life[0])
+    return [name for name in dict.fromkeys(names) if name in results.table and is_life(name)]
+
+
+def _b10_of(
+    own: ByTests, column: Output, points: list[Any], deviations: Mapping[str, np.ndarray]
+) -> np.ndarray:
+    """Return B10 of a life by the fitted values, and both ends of its band by the tests, (3,
+    points); NaN at a point with fewer than two lives.
+    """
+    design = own.results.design
+    lives = own.results.with_breaks(column)
+    given = deviations.get(scattering_body(column.name))
+    drawn, drawn_scatter = _drawn_lives(own, dataclasses.replace(column, values=lives), given)
+    scatter = np.zeros(design.size)
+    if given is not None:
+        scatter = given
+    out = np.full((3, len(points)), np.nan)
+    for p, rows in enumerate(points):
+        counted = np.arange(design.size)[rows]
+        counted = counted[~np.isnan(lives[counted])]
+        if counted.size < 2:
+            continue
+        out[0, p] = b10(lives[counted], scatter[counted])[0]
+        draws = b10_of_draws(drawn[counted], drawn_scatter[counted])
+        out[1:, p] = np.quantile(draws, BAND)
+    return out
 
 
 def b10_of_draws(lives: np.ndarray, scatter: np.ndarray) -> np.ndarray:

@@ -176,29 +176,25 @@ def pareto(
     """
     if len(objectives) < 2:
         raise InputError("pareto", dict(objectives), "at least two outputs, each with min or max")
+    design = results.design
     constraints = list(constraints)
     limited_names = {name for text in constraints for name in names_in(text)}
-    keep: tuple[str, ...] = ("rolling",)
-    if "regime" in limited_names:
-        keep = REGIMES[:3]
-    ds = results.data
-    design = results.design
-    dims = results.dims
-    regime = regimes(ds, dims)
     names = dict.fromkeys([*objectives, *sorted(limited_names)])
     columns = {name: results.quantity(name) for name in names}
     limited = {name: results.constrained(name) for name in limited_names}
-    own, model = _own_rows(design)
+    regime = regimes(results.data, results.dims)
+    keep: tuple[str, ...] = ("rolling",)
+    if "regime" in limited_names:
+        keep = REGIMES[:3]
     counted = np.isin(regime, [REGIMES.index(name) for name in keep])
-    undefined = np.isnan(np.stack([columns[name][0].astype(float) for name in objectives])).any(
-        axis=0
-    )
+    own, model = _own_rows(design)
+    goals = np.stack([columns[name][0].astype(float) for name in objectives])
+    undefined = np.isnan(goals).any(axis=0)
     allowed, excluded = _allowed(undefined, limited, constraints, own, counted)
-    shown = {
-        n: readable(c)[allowed]
-        for n, c in design.columns.items()
-        if not (model and n == "contact_model")
-    }
+    shown = {}
+    for name, values in design.columns.items():
+        if not (model and name == "contact_model"):
+            shown[name] = readable(values)[allowed]
     attrs: dict[str, Any] = {
         "constraints": "; ".join(constraints),
         "factors": ", ".join(n for n in design.factors if n in shown),

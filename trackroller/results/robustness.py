@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -69,56 +69,83 @@ def robustness(results: SolvedCases, log_life_scatter: Mapping[str, np.ndarray])
     InputError
         If the study has another design.
     """
-    ds = results.data
     design = results.design
-    config = results.config
     if not design.method.points:
         allowed = "method inner_outer: lists as outer array, distributions as inner array"
         raise InputError("method", design.method.name, allowed)
-    regime = regimes(ds, results.dims)
-    names = list(config.analysis.outputs or default_names(ds, design.factors, results.dims))
-    goals = [statistic(goal) for goal in config.pareto]
-    names += [
-        output for kind, output in goals if kind not in ("", "probability") and output not in names
-    ]
-    columns = outputs(
-        ds, design.factors, names, scale="natural", unlimited=True, allowed=results.allowed
+    columns = _compared_columns(results)
+    by_output = [_of_column(results, column, log_life_scatter) for column in columns]
+    variables = _stacked(by_output) | _regime_probabilities(results)
+    out = xr.Dataset(variables, coords=_coordinates(design, columns))
+    largest = max((float(own.max()) for own in log_life_scatter.values()), default=0.0)
+    least = min((float(own.min()) for own in log_life_scatter.values()), default=0.0)
+    out.attrs = _attributes(design, largest) | {
+        "study": results.study.merged(),
+        "least_log_life_scatter": least,
+        "outputs_named": int(results.config.analysis.outputs is not None),
+    }
+    return out
+
+
+def _compared_columns(results: SolvedCases) -> list[Output]:
+    """Return the outputs that are summarised: those that the study names, or the usual ones, and
+    those of its goals.
+    """
+    config = results.config
+    factors = results.design.factors
+    names = list(config.analysis.outputs or default_names(results.data, factors, results.dims))
+    for kind, output in map(statistic, config.pareto):
+        if kind not in ("", "probability") and output not in names:
+            names.append(output)
+    return outputs(
+        results.data, factors, names, scale="natural", unlimited=True, allowed=results.allowed
     )
-    by_output = []
-    for column in columns:
-        scatter = log_life_scatter.get(scattering_body(column.name), np.zeros(design.size))
-        # a life that wear or the bearing ends has no scatter of an S-N line
-        if of_first_limit(column.name):
-            scatter = np.where(
-                results.ended_by_fatigue(body_of(column.name) or "roller"), scatter, 0.0
-            )
-        values = results.with_breaks(column)
-        by_output.append(_statistics(values, regime, is_life(column.name), scatter, design.points))
-        beyond = np.where(beyond_sn_data(results, column.name), column.values, np.nan)
-        by_output[-1]["beyond_data"] = np.array(
-            [np.fmin.reduce(beyond[rows]) for rows in design.points]
-        )
-    out = xr.Dataset(coords=_coordinates(design, columns))
+
+
+def _of_column(
+    results: SolvedCases, column: Output, log_life_scatter: Mapping[str, np.ndarray]
+) -> dict[str, np.ndarray]:
+    """Return the statistics of an output at each design point, and its shortest value beyond the
+    S-N data.
+    """
+    design = results.design
+    scatter = log_life_scatter.get(scattering_body(column.name), np.zeros(design.size))
+    # a life that wear or the bearing ends has no scatter of an S-N line
+    if of_first_limit(column.name):
+        by_fatigue = results.ended_by_fatigue(body_of(column.name) or "roller")
+        scatter = np.where(by_fatigue, scatter, 0.0)
+    regime = regimes(results.data, results.dims)
+    values = results.with_breaks(column)
+    statistics = _statistics(values, regime, is_life(column.name), scatter, design.points)
+    beyond = np.where(beyond_sn_data(results, column.name), column.values, np.nan)
+    shortest = np.array([np.fmin.reduce(beyond[rows]) for rows in design.points])
+    return statistics | {"beyond_data": shortest}
+
+
+def _stacked(by_output: Sequence[Mapping[str, np.ndarray]]) -> dict[str, Any]:
+    """Return the statistics of all outputs as variables of a data set."""
+    variables: dict[str, Any] = {}
     for key in dict.fromkeys(key for one in by_output for key in one):
         axes: tuple[str, ...] = ("output", "point")
         if key == "percentile_value":
             axes = ("output", "point", "percentile")
-        out[key] = (
-            axes,
-            np.stack([one[key] for one in by_output]),
-            {"comment": "in the units of the output"},
-        )
+        values = np.stack([one[key] for one in by_output])
+        variables[key] = (axes, values, {"comment": "in the units of the output"})
+    return variables
+
+
+def _regime_probabilities(results: SolvedCases) -> dict[str, Any]:
+    """Return the probability of each regime at each design point, and its interval, as
+    variables.
+    """
+    regime = regimes(results.data, results.dims)
     events = np.stack([regime == i for i in range(len(REGIMES))], axis=1).astype(float)
-    for end, value in zip(("", "_low", "_high"), at_points(events, design), strict=True):
+    bounds = at_points(events, results.design)
+    variables: dict[str, Any] = {}
+    for end, value in zip(("", "_low", "_high"), bounds, strict=True):
         attrs = {"units": "1", "long_name": f"probability{end.replace('_', ' ')} of the regime"}
-        out[f"probability{end}"] = (("regime", "point"), value.T, attrs)
-    largest = max((float(own.max()) for own in log_life_scatter.values()), default=0.0)
-    out.attrs = _attributes(design, largest) | {"study": results.study.merged()}
-    out.attrs["least_log_life_scatter"] = min(
-        (float(own.min()) for own in log_life_scatter.values()), default=0.0
-    )
-    out.attrs["outputs_named"] = int(config.analysis.outputs is not None)
-    return out
+        variables[f"probability{end}"] = (("regime", "point"), value.T, attrs)
+    return variables
 
 
 def _attributes(design: Design, scatter: float) -> dict[str, str | int | float]:

@@ -199,42 +199,28 @@ def _reported(
 ) -> Ledger:
     """Polish the recommended candidate, solve the optima at reference, and gather all."""
     study = search.study
-    choices = _choices(search.study)
+    choices = _choices(study)
     usable = decided.violation.min() < 1  # a candidate that is never valid is no optimum
+    candidates = decided
+    reached: dict[str, bool] = {}
     if usable:
         candidates, reached = _with_corners(search, decided, choices)
-    else:
-        candidates = decided
-        reached = {}
     front = np.flatnonzero(nondominated_ranks(candidates.costs, candidates.missed) == 0)
     best = candidates.take(front)
     chosen = recommended(best)
     corners = [best_in(best, goal) for goal in range(best.costs.shape[1])]
+    optima: list[dict[str, Any]] = []
+    neighbours: list[dict[str, Any]] = []
     if usable:
         shown = np.union1d(spread(best.costs, REPORTED), [chosen, *corners])
-    else:
-        shown = np.empty(0, int)
-    exact = {"accuracy": "reference"}
-    if study.config.contact_model == TABLE:
-        exact["contact_model"] = ELEMENTS
-    around = []
-    if usable:
-        checked = search.judged(_with(study, **exact), best.genes[shown])
-        around = _neighbours(choices, best.genes[chosen])
-    else:
-        checked = best.take(shown)
-    if around:
-        moved = search.judged(study, np.array([genes for *_, genes in around]))
-    else:
-        moved = best.take(np.empty(0, int))
-    polished = len(candidates.genes) - len(decided.genes)
-    beside = f"{polished} polished designs, {len(around)} neighbours"
-    beside = f"solved beside the budget: {beside}, {len(shown)} optima at reference"
-    if usable:
-        tell(beside)
+        optima = _optima(search, best.take(shown), front[shown])
+        neighbours = _neighbours_of(search, choices, best.genes[chosen])
+        polished = len(candidates.genes) - len(decided.genes)
+        beside = f"{polished} polished designs, {len(neighbours)} neighbours"
+        tell(f"solved beside the budget: {beside}, {len(optima)} optima at reference")
     else:
         tell("no design is valid, so there is no optimum to check")
-    result = facts | {
+    record = facts | {
         "goals": dict(candidates.goals),
         "front": len(front),
         "recommended": int(front[chosen]),
@@ -243,19 +229,42 @@ def _reported(
             {"goal": name, "design": int(front[row]), "solved": reached.get(name, False)}
             for name, row in zip(candidates.goals, corners, strict=True)
         ],
-        "optima": [
-            {"design": int(front[row])}
-            | _optimum(best.take(np.array([row])), checked.take(np.array([i])))
-            for i, row in enumerate(shown)
-        ],
-        "neighbours": [
-            {"choice": name, "step": step} | _neighbour(moved.take(np.array([i])))
-            for i, (name, step, _) in enumerate(around)
-        ],
+        "optima": optima,
+        "neighbours": neighbours,
     }
     with search.runner.solved(search.of(study, candidates.genes)) as ledger:
-        gather(ledger, tell, {OPTIMUM: json.dumps(result)})
+        gather(ledger, tell, {OPTIMUM: json.dumps(record)})
     return ledger
+
+
+def _optima(
+    search: _CandidateSearch, candidates: Judged, numbers: np.ndarray
+) -> list[dict[str, Any]]:
+    """Solve candidates at `reference`, and return the record of each; `numbers` are theirs among
+    all gathered candidates.
+    """
+    exact = {"accuracy": "reference"}
+    if search.study.config.contact_model == TABLE:
+        exact["contact_model"] = ELEMENTS
+    checked = search.judged(_with(search.study, **exact), candidates.genes)
+    return [
+        {"design": int(number)} | _optimum(candidates.take(row), checked.take(row))
+        for number, row in zip(numbers, np.arange(len(numbers))[:, None], strict=True)
+    ]
+
+
+def _neighbours_of(
+    search: _CandidateSearch, choices: Mapping[str, Factor], genes: np.ndarray
+) -> list[dict[str, Any]]:
+    """Solve the candidates that a tolerance makes of one, and return the record of each."""
+    around = _neighbours(choices, genes)
+    if not around:
+        return []
+    moved = search.judged(search.study, np.array([own for *_, own in around]))
+    return [
+        {"choice": name, "step": step} | _neighbour(moved.take(np.array([i])))
+        for i, (name, step, _) in enumerate(around)
+    ]
 
 
 def _optimum(of_search: Judged, checked: Judged) -> dict[str, Any]:

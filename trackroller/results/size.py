@@ -25,7 +25,9 @@ from trackroller.errors import InputError, raise_all, unknown_name
 from trackroller.files import files_beside
 from trackroller.numerics.numbers import finite_number
 from trackroller.numerics.plain import mapping_of
+from trackroller.parameters import PARAMETERS
 from trackroller.parameters.example import EXAMPLE, used_of
+from trackroller.results.life_columns import FIRST_LIMIT
 from trackroller.results.load_ratio import EXACT, FORCES, LoadRatios, load_ratios
 from trackroller.results.mounting import Mounting, rollers_by_place
 from trackroller.results.results import Results
@@ -504,7 +506,7 @@ def _life_of(keys: Mapping[str, Any]) -> str:
             return DEFAULT
     if OVERROLLINGS in keys["base"] or OVERROLLINGS in keys["factors"]:
         return DEFAULT
-    return "roller_life_hours"
+    return FIRST_LIMIT[0]
 
 
 def _path_of(case: Any) -> Path | None:
@@ -572,7 +574,13 @@ def _overloaded(keys: Mapping[str, Any], safety: str | float) -> dict[str, Any]:
         )
     base = dict(keys["base"])
     for name in FORCES:
-        base[name] = factor * finite_number(base.get(name, EXAMPLE[name]), "N", f"base.{name}")
+        force = finite_number(base.get(name, EXAMPLE[name]), "N", f"base.{name}")
+        base[name] = factor * force
+        parameter = PARAMETERS[name]
+        if parameter.accepts(np.array(force)) and not parameter.accepts(np.array(base[name])):
+            wrong = f"takes {name} to {base[name]:.3g} N"
+            allowed = f"a factor at which it is {parameter.allowed()}"
+            raise InputError("safety", safety, allowed, "Give a smaller one, such as 1.5.", wrong)
     left = {
         name: value
         for name, value in keys.items()

@@ -355,12 +355,10 @@ class SolvedCases:
     def material(self, body: str) -> np.ndarray:
         """Return the name of the material of a body in every case, shape (n,)."""
         if "material_pair" in self.table:
-            return (
-                self.table["material_pair"]
-                .str.split(" / ")
-                .str[BODIES.index(body)]
-                .to_numpy(dtype=str)
-            )
+            # a study has few pairs in many cases
+            number, pairs = pd.factorize(self.table["material_pair"], use_na_sentinel=False)
+            names = pd.Series(pairs).str.split(" / ").str[BODIES.index(body)]
+            return names.to_numpy(dtype=str)[number]
         name = f"{body}_material"
         given = self.table.get(name, pd.Series(str(self.base.get(name, "")), self.table.index))
         return given.to_numpy(dtype=str)
@@ -502,8 +500,7 @@ class SolvedCases:
 
     @cached_property
     def judged_targets(self) -> dict[str, np.ndarray]:
-        """Return the life that judges a target on the life of a pair or a roller, shape (n,) each
-        [h].
+        """Return the life that judges a target on the life of a pair, shape (n,) each [h].
 
         It is the low end of the life to the first limit, as in the verdict: a longer life by one
         limit is of no use if another limit comes first. Other targets are judged by the result that

@@ -92,6 +92,7 @@ def answer_of_wear(ds: xr.Dataset) -> Answer:
         columns=COLUMNS,
         required=required,
         parts=tuple(parts),
+        not_used=_not_judged(ds),
         not_given=_not_given(ds),
         warnings=tuple(_warnings(ds, guesses)),
         facts=facts_of_data(ds, name="A track roller while it wears"),
@@ -199,6 +200,12 @@ def _required(ds: xr.Dataset) -> tuple[Required, ...]:
     if travels:
         return (Required("travel", "travel", "km", least=max(travels)),)
     return ()
+
+
+def _not_judged(ds: xr.Dataset) -> dict[str, str]:
+    """Return the requirements that a run of wear does not judge."""
+    others = [name for name in requirement_of(ds) if name not in OF_PAIR]
+    return {f"requirement.{name}": "a run of wear judges a life of the pair" for name in others}
 
 
 def _state(

@@ -78,35 +78,14 @@ def answer_which_model(results: SolvedCases) -> Answer:
     compared = compared_output(results, required)
     assert compared is not None
     ranges = CaseRanges(results, *compared)
-    parts = {model: _of_model(results, ranges, model, models[0]) for model in models}
-    table = pd.DataFrame([parts[model] for model in models])
-    verdicts = {str(row["verdict"]) for row in parts.values()}
-    leaders = {str(row["leader_key"]) for row in parts.values()}
-    changed = [word for word, own in (("verdict", verdicts), ("order", leaders)) if len(own) > 1]
+    rows = [_of_model(results, ranges, model, models[0]) for model in models]
+    table = pd.DataFrame(rows)
+    several = len(set(table["leader"])) > 1 or table["leader"].iloc[0] != ""
+    head = _headline(rows, table, models[0])
     every = np.ones(len(results.table), dtype=bool)
     by_others = bool(((table["solved_by"] != "") & (table["solved_by"] != table["model"])).any())
-    several = len(set(table["leader"])) > 1 or table["leader"].iloc[0] != ""
-    base = models[0]
-    smallest = np.nan
-    if table["ratio_low"].notna().any():
-        smallest = float(np.nanmin(table["ratio_low"]))
-    largest = np.nan
-    if table["ratio_high"].notna().any():
-        largest = float(np.nanmax(table["ratio_high"]))
-    head = {
-        "changes": " and ".join(changed),
-        "base": base,
-        "models": [
-            {**{k: plain(v) for k, v in parts[m].items() if k in TOLD}, "leader": parts[m]["names"]}
-            for m in models
-        ],
-        "smallest": smallest,
-        "largest": largest,
-    }
-    if parts[base]["solved_by"] not in ("", base):
-        head["base_by"] = parts[base]["solved_by"]
     kind = "same"
-    if changed:
+    if head["changes"]:
         kind = "changes"
     return Answer(
         question="which model",
@@ -125,6 +104,31 @@ def answer_which_model(results: SolvedCases) -> Answer:
         warnings=(*_alike(table), *case_cautions(results, ranges, every)),
         facts=facts_of(results),
     )
+
+
+def _headline(rows: list[dict[str, Any]], table: pd.DataFrame, base: str) -> dict[str, Any]:
+    """Return what changes with the contact model, the decision of each model, and the range of
+    their ratios to the most exact one, `base`.
+    """
+    changed = []
+    for word, column in (("verdict", "verdict"), ("order", "leader_key")):
+        if len({str(row[column]) for row in rows}) > 1:
+            changed.append(word)
+    models = []
+    for row in rows:
+        facts = {name: plain(value) for name, value in row.items() if name in TOLD}
+        models.append({**facts, "leader": row["names"]})
+    head = {
+        "changes": " and ".join(changed),
+        "base": base,
+        "models": models,
+        "smallest": float(table["ratio_low"].min()),
+        "largest": float(table["ratio_high"].max()),
+    }
+    solvers = str(table["solved_by"].iloc[0])
+    if solvers not in ("", base):
+        head["base_by"] = solvers
+    return head
 
 
 TOLD = ("model", "verdict", "low", "high", "error", "meets", "of", "holds")

@@ -39,11 +39,20 @@ def is_frictionless(table: CaseTable) -> np.ndarray:
     return table.friction_coefficient == 0.0
 
 
-def distinct_mechanics(table: CaseTable) -> tuple[np.ndarray, np.ndarray]:
+def distinct_mechanics(
+    table: CaseTable, marks: np.ndarray | None = None
+) -> tuple[np.ndarray, np.ndarray]:
     """Group cases whose forces, tractions and stresses are equal.
 
     Travel speed (under constant friction), overrollings per hour and strength do not change forces
     and stresses.
+
+    Parameters
+    ----------
+    table : CaseTable
+        The n cases.
+    marks : numpy.ndarray, optional
+        Numbers that cases of a group have in common as well, (n, k).
 
     Returns
     -------
@@ -64,7 +73,10 @@ def distinct_mechanics(table: CaseTable) -> tuple[np.ndarray, np.ndarray]:
     for texts in (*mappings, table.loss_tables):
         known = {text: i for i, text in enumerate(dict.fromkeys(texts.tolist()))}
         columns.append(np.array([known[text] for text in texts.tolist()], dtype=float))
-    return distinct_rows(np.stack(columns, axis=1))
+    values = np.stack(columns, axis=1)
+    if marks is not None:
+        values = np.hstack([values, marks])
+    return distinct_rows(values)
 
 
 def distinct_rows(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

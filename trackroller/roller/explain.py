@@ -13,6 +13,7 @@ import numpy as np
 from trackroller.parameters.accuracy import PEAK_OUTPUTS, RUNGS
 from trackroller.parameters.contact_models import DECLARED
 from trackroller.roller import distinct_contacts
+from trackroller.roller.case_limits import marks_of_limits
 
 if TYPE_CHECKING:
     from trackroller.roller.case import CaseTable
@@ -71,7 +72,8 @@ def explain(table: CaseTable, options: Options) -> list[Stage]:
     outputs = set(options.outputs)
     part = table
     if shortcuts and n > 1:
-        part = table.take(distinct_contacts.distinct_mechanics(table)[0])
+        marks = marks_of_limits(table, options)
+        part = table.take(distinct_contacts.distinct_mechanics(table, marks)[0])
     mirrored = distinct_contacts.is_mirror_symmetric(part)
     free = distinct_contacts.is_frictionless(part)
     if not shortcuts:

@@ -28,8 +28,8 @@ from trackroller.materials.material import UNNAMED
 from trackroller.materials.properties import Value
 from trackroller.parameters import BODIES, MAPPING_FIELDS, PARAMETERS
 from trackroller.roller.case import CaseTable
+from trackroller.roller.case_limits import solved_of, to_compute
 from trackroller.roller.dataset import NOTES
-from trackroller.roller.stages.outcome import solved_of, to_compute
 from trackroller.roller.stored_inputs import is_default
 
 if TYPE_CHECKING:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from trackroller.contact.friction_laws import law_of
+from trackroller.damage import checked_limits, first_limit
 from trackroller.errors import Collector, InputError
 from trackroller.numerics.plain import plain
 from trackroller.parameters import OPTIONS
@@ -53,6 +54,7 @@ class Options(_Fields):  # type: ignore[misc, valid-type]
                 check_accuracy(self.accuracy, self.contact_model, self.outputs)
         wrong.check()
         check_pairs(self.hertz, self.normal, self.slip_terms, self.contact_model)
+        check_not_checked(self.outputs, self.not_checked)
         check_spin_model((self.spin_model,), (self.contact_model,))
 
     @property
@@ -176,6 +178,25 @@ def check_pairs(hertz: str, normal: str, slip_terms: Collection[str], contact_mo
     declared.check("normal", normal)
     for term in slip_terms:
         declared.check("slip_terms", term)
+
+
+def check_not_checked(outputs: Collection[str], not_checked: Collection[str]) -> None:
+    """Refuse to leave out every limit where the outputs ask for limits.
+
+    Parameters
+    ----------
+    outputs, not_checked : collection of str
+        Values of these options.
+
+    Raises
+    ------
+    InputError
+        If no limit is left.
+    """
+    if first_limit.GROUP in outputs and not checked_limits(outputs, not_checked):
+        remedy = f"Name fewer limits, or remove {first_limit.GROUP} from outputs."
+        wrong = f"leaves out every limit, and the outputs ask for {first_limit.GROUP}"
+        raise InputError("not_checked", ", ".join(not_checked), "", remedy, wrong)
 
 
 def check_surface(contact_model: str, friction_law: object, film: float) -> None:

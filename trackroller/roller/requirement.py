@@ -29,8 +29,8 @@ if TYPE_CHECKING:
 KEY = "requirement"
 WORDS = ("min", "max", "probability")
 DEFAULT = "pair_life_hours"  # of {min: 500} without the name of an output
-# that a target in hours may name
-LIVES_OF_PAIR = ("pair_life_to_first_limit_hours", DEFAULT, "roller_life_hours")
+# lives of the pair, which count to the first limit; that of one body by fatigue counts by itself
+LIVES_OF_PAIR = ("pair_life_to_first_limit_hours", DEFAULT)
 YEARS = re.compile(r"\s*([0-9.eE+-]+)\s*(?:a|yr|yrs|year|years)\s*", re.ASCII)
 
 

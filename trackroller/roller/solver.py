@@ -18,6 +18,7 @@ from trackroller.parameters.accuracy import RUNGS, Accuracy
 from trackroller.roller import distinct_contacts, temperature
 from trackroller.roller.block_results import BlockResults, join
 from trackroller.roller.case import Case, CaseTable, is_single, to_table
+from trackroller.roller.case_limits import marks_of_limits, solved_of, to_compute, with_weakest
 from trackroller.roller.dataset import NOTES, VARIABLES, build, file_attributes, joined
 from trackroller.roller.expected_errors import tell_errors
 from trackroller.roller.failures import with_reasons
@@ -267,16 +268,12 @@ def _solve_window(table: CaseTable, options: Options) -> BlockResults:
 
     distinct = one_handed
     number = np.arange(len(table))
-    # limits of patches depend on the speed and on all values of the materials
-    if (
-        options.shortcuts
-        and len(table) > 1
-        and not stages_outcome.of_patches(_limits(one_handed, options))
-    ):
-        rows, number = distinct_contacts.distinct_mechanics(one_handed)
+    if options.shortcuts and len(table) > 1:
+        marks = marks_of_limits(one_handed, options)
+        rows, number = distinct_contacts.distinct_mechanics(one_handed, marks)
         distinct = one_handed.take(rows)
         if options.at_most:
-            distinct = stages_outcome.with_weakest(distinct, one_handed, number)
+            distinct = with_weakest(distinct, one_handed, number)
     at_temperature, block = temperature.settle(
         one_handed, solve_all(distinct).take(number), options, solve_all
     )
@@ -303,18 +300,21 @@ def _groups(table: CaseTable, options: Options) -> Iterator[tuple[str, int, np.n
     """Yield contact model, factor on the elements across, and rows of cases that can be solved in
     one batch.
 
-    Frictionless cases and those with a film are batches alone.
+    Frictionless cases and those with a film are batches alone, and so are cases with the same
+    limits.
     """
     bare = distinct_contacts.is_frictionless(table) & options.shortcuts
     across = finer_across(table, options)
     has_film = (table.layer_flexibility > 0.0).astype(float)
-    columns = bare, *(getattr(table, name) for name in MECHANICAL_MAPPINGS), has_film, across
+    limits = marks_of_limits(table, options)[:, 0]
+    mappings = (getattr(table, name) for name in MECHANICAL_MAPPINGS)
+    columns = limits, bare, *mappings, has_film, across
     keys = list(zip(*(column.tolist() for column in columns), strict=True))
     rows: dict[tuple, list[int]] = {}
     for i, key in enumerate(keys):
         rows.setdefault(key, []).append(i)
     for key, own in rows.items():
-        yield model_in_use(options, key[1], key[-2]), key[-1], np.array(own)
+        yield model_in_use(options, key[2], key[-2]), key[-1], np.array(own)
     if not keys:
         yield options.contact_model, 1, np.arange(0)
 
@@ -371,7 +371,7 @@ def block_of(results: StageResults, options: Options) -> BlockResults:
 
 def _limits(table: CaseTable, options: Options) -> tuple[Limit, ...]:
     """Return the limits to compute for cases that are not solved yet."""
-    return stages_outcome.to_compute(stages_outcome.solved_of(table, {}, options), options)
+    return to_compute(solved_of(table, {}, options), options)
 
 
 def assemble(block: BlockResults, options: Options, single: bool) -> xr.Dataset:

@@ -17,6 +17,7 @@ from trackroller.contact.friction_laws import law_of
 from trackroller.contact.models import CLASSES
 from trackroller.parameters.accuracy import RUNGS
 from trackroller.roller.expected_errors import is_rung, told_weights
+from trackroller.roller.measured_errors import ORDINARY_FRICTION
 from trackroller.roller.options import model_in_use
 
 if TYPE_CHECKING:
@@ -32,7 +33,6 @@ FORCES = {
     "friction_energy": "friction_energy_error_estimate",
 }
 PEAKS = ("below_surface", "at_surface")
-ORDINARY_FRICTION = 0.4  # largest friction of the designs that the factors were measured on
 
 
 def calibrate(table: CaseTable, block: BlockResults, options: Options) -> None:

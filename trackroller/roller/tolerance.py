@@ -12,9 +12,9 @@ import numpy as np
 from trackroller.damage import fatigue
 from trackroller.parameters.accuracy import RUNGS, Tolerance
 from trackroller.roller.block_results import BlockResults, join
+from trackroller.roller.case_limits import solved_of
 from trackroller.roller.dataset import validity_bit
 from trackroller.roller.expected_errors import least_errors
-from trackroller.roller.stages.outcome import solved_of
 
 if TYPE_CHECKING:
     from trackroller.roller.case import CaseTable

@@ -21,7 +21,7 @@ from trackroller.numerics.threads import thread_count
 from trackroller.parameters import OPTIONS, REGIMES
 from trackroller.parameters.accuracy import tolerance_of
 from trackroller.parameters.contact_models import EXACTNESS, LEVELS, measured_costs
-from trackroller.roller.measured_errors import errors_of_rung
+from trackroller.roller.measured_errors import ORDINARY_FRICTION, errors_of_rung
 from trackroller.study.cost import (
     START,
     bytes_a_case,
@@ -41,6 +41,8 @@ from trackroller.study.store.ledger import Ledger, chunk_size, study_folder, unu
 from trackroller.study.store.manifest import why_altered
 
 if TYPE_CHECKING:
+    import xarray as xr
+
     from trackroller.study.file.study import Study
 
 # s here; a shorter study waits longer for the workers of a cluster than it gains by them
@@ -77,6 +79,8 @@ class Status:
         Number and levels of the first chunk that is not solved; '' without one.
     corrupt : list of str
         Damaged or altered files, and what is wrong with each.
+    uncalibrated : dict
+        Number of cases for whose surfaces no errors were measured, by what the surfaces have.
     """
 
     total: int
@@ -92,6 +96,7 @@ class Status:
     upcoming: str = ""
     by_level: dict[tuple[str, str], int] = field(default_factory=dict)
     corrupt: list[str] = field(default_factory=list)
+    uncalibrated: dict[str, int] = field(default_factory=dict)
 
     @property
     def missing(self) -> int:
@@ -191,6 +196,7 @@ def status_of(study: Study, folder: StudyFolder) -> Status:
             *(f"{path}: it is gone" for path in folder.lost_files()),
             *filter(None, map(why_altered, (folder.design, folder.gathered))),
         ],
+        uncalibrated=_uncalibrated(ledger.cases.design),
     )
     for name, factor in study.drawn.factors.items():
         if factor.discrete:
@@ -199,6 +205,17 @@ def status_of(study: Study, folder: StudyFolder) -> Status:
             )
             status.by_level |= {(name, level): count for level, count in counts.most_common()}
     return status
+
+
+def _uncalibrated(cases: xr.Dataset) -> dict[str, int]:
+    """Return how many cases have surfaces for which no errors were measured, by what these have."""
+    high = cases["friction_coefficient"].values > ORDINARY_FRICTION
+    film = cases["layer_flexibility"].values > 0.0
+    counts = {
+        f"friction above {ORDINARY_FRICTION:g}": int(np.sum(high)),
+        "a film (layer_flexibility)": int(np.sum(film)),
+    }
+    return {what: count for what, count in counts.items() if count}
 
 
 def plan_rows(study: Study, status: Status) -> list[tuple[str, str]]:
@@ -272,25 +289,50 @@ def _accuracy_rows(study: Study, status: Status) -> list[tuple[str, str]]:
             f"{word} {_percent(errors[name].p95)}" for name, word in SHOWN.items() if name in errors
         ]
         rows.append(("accuracy", ", ".join(parts)))
-    if model:
-        text = "numerical, which 95 % of random designs keep"
-        if model != EXACTNESS[0]:
-            text = f"{text}; the error of {model} as a model comes on top"
-        rows.append(("errors", text))
+    rows += [("errors", text) for text in _error_texts(study, status, model)]
     if chosen not in LEVELS:
         rows.append(("tolerance", _tolerance_text(study)))
     return rows
 
 
+def _error_texts(study: Study, status: Status, model: str) -> list[str]:
+    """Return what the errors of rungs are, and for which cases they were not measured."""
+    if not model:
+        return [f"not measured {_why_not_measured(study)}"]
+    text = "numerical, which 95 % of random designs keep"
+    if model != EXACTNESS[0]:
+        text = f"{text}; the error of {model} as a model comes on top"
+    alike = f"of friction up to {ORDINARY_FRICTION:g} without a film"
+    return [
+        text,
+        *(
+            f"not measured for {count} of {status.total} cases with {what}: those above are {alike}"
+            for what, count in status.uncalibrated.items()
+        ),
+    ]
+
+
 def _model_with_known_errors(study: Study) -> str:
-    """Return the contact model of a study whose errors on each rung were measured; '' for others:
-    several models, solved patches, falling friction.
+    """Return the contact model of a study whose errors on each rung were measured; '' for others,
+    see `_why_not_measured`.
     """
-    varied = {"contact_model", "normal"} & set(study.factors)
-    constant = all(law_of(law).is_constant for law in study.friction_laws)
-    if varied or not constant or study.options.get("normal", "hertz") != "hertz":
+    if _why_not_measured(study):
         return ""
     return str(study.options.get("contact_model", OPTIONS["contact_model"].default))
+
+
+def _why_not_measured(study: Study) -> str:
+    """Return why the errors of a rung were not measured for a study; '' if they were."""
+    varied = [name for name in ("contact_model", "normal") if name in study.factors]
+    if varied:
+        return f"for studies that vary {' and '.join(varied)}"
+    for name in ("normal", "slip_terms"):
+        value = study.options.get(name, OPTIONS[name].default)
+        if value != OPTIONS[name].default:
+            return f"with {name}: {', '.join(np.atleast_1d(value))}"
+    if not all(law_of(law).is_constant for law in study.friction_laws):
+        return "with friction that falls with the slip speed"
+    return ""
 
 
 def _percent(share: float) -> str:

@@ -17,6 +17,7 @@ import numpy as np
 import xarray as xr
 
 import trackroller as tr
+from trackroller.parameters import OPTIONS
 from trackroller.parameters.accuracy import PRESETS, RUNGS
 from trackroller.parameters.contact_models import DECLARED
 from trackroller.roller import solver
@@ -43,6 +44,7 @@ FINEST = replace(
 LEVELS = (50, 99)  # percentiles of the page
 FILM = 1e-5  # mm3/N, layer of 10 um with a shear modulus of 1 GPa
 HEATED = {"heat_transfer_coefficient": 20.0, "cooled_area": 3000.0}  # W/(m2 K) and mm2, what the limit of heat needs
+WORN = {"guide_overrollings_per_hour": 100.0, "permissible_wear_depth": 0.05}  # 1/h and mm, for the limit of wear
 PATCH_LIMITS = ("shakedown", "heat", "multiaxial")  # limits that take time
 
 
@@ -107,19 +109,39 @@ def film_costs(cases: list[tr.Case], repeats: int) -> list[dict[str, Any]]:
 def limit_costs(cases: list[tr.Case], repeats: int) -> dict[str, float]:
     """Return the costs of groups of limits in addition to complete ordinary designs, over the yardstick.
 
-    The group `limits` has whatever the materials of a design allow, `limits with heat` heat as well, which needs fields
-    that few cases give.
+    The group `limits` has whatever the materials of a design allow, wear, and bounds where a study takes them. `limits
+    with heat` has heat as well, which needs fields that few cases give. All settings take turns, and each repetition
+    counts by its difference from the complete cases beside it, because a small cost is the difference of larger ones.
     """
-    one = min(seconds(cases, [YARDSTICK], COMPLETE, repeats))
-    standard = [("kalker", "standard")]
-    complete = min(seconds(cases, standard, COMPLETE, repeats))
-    heated = [replace(case, **HEATED) for case in cases]
-    asked = {"limits": (cases, "limits"), "limits with heat": (heated, "limits")}
-    asked |= {name: (heated, name) for name in PATCH_LIMITS}
-    return {
-        name: max(min(seconds(own, standard, (*COMPLETE, group), repeats)) - complete, 0.0) / one
-        for name, (own, group) in asked.items()
+    worn = [replace(case, **WORN) for case in cases]
+    heated = [replace(case, **HEATED, **WORN) for case in cases]
+    bounds = {"at_most": tuple(OPTIONS["at_most"].values)}
+    given = {"contact_model": "kalker", "accuracy": "standard"}
+    asked: dict[str, tuple[list[tr.Case], dict[str, Any]]] = {
+        "yardstick": (cases, {"outputs": COMPLETE, "contact_model": YARDSTICK[0], "accuracy": YARDSTICK[1]}),
+        "complete": (cases, given | {"outputs": COMPLETE}),
+        "limits": (worn, given | {"outputs": (*COMPLETE, "limits")} | bounds),
+        "limits with heat": (heated, given | {"outputs": (*COMPLETE, "limits")} | bounds),
     }
+    asked |= {name: (heated, given | {"outputs": (*COMPLETE, name)}) for name in PATCH_LIMITS}
+    spent = processor_times(asked, repeats)
+    return {
+        name: max(float(np.median(spent[name] - spent["complete"])), 0.0) / float(np.min(spent["yardstick"]))
+        for name in list(asked)[2:]
+    }
+
+
+def processor_times(asked: dict[str, tuple[list[tr.Case], dict[str, Any]]], repeats: int) -> dict[str, np.ndarray]:
+    """Return the processor times of all cases by setting, (repeats,) each [s]; the settings take turns."""
+    for cases, options in asked.values():
+        tr.solve(cases[:2], **options)  # compiled and loaded
+    spent = {name: np.empty(repeats) for name in asked}
+    for turn in range(repeats):
+        for name, (cases, options) in asked.items():
+            start = time.process_time()
+            tr.solve(cases, **options)
+            spent[name][turn] = time.process_time() - start
+    return spent
 
 
 def all_costs(truth: Truth, few: int, repeats: int) -> dict[str, Any]:

@@ -35,7 +35,7 @@ def check(read: dict[str, list], made: random_tables.RandomTable, seed: int) -> 
 
 
 @pytest.mark.parametrize("kind", KINDS)
-@pytest.mark.parametrize("part", range(PARTS))
+@pytest.mark.parametrize("part", [0, *(pytest.param(part, marks=pytest.mark.slow) for part in range(1, PARTS))])
 def test_a_random_table_of_cases_is_read_right_or_refused(kind, part, tmp_path):
     accepted = 0
     for seed in range(part, PARTS * share(kind), PARTS):

@@ -315,3 +315,26 @@ def test_what_stands_beside_a_table_in_vain_is_refused(text, more, message, tmp_
         of_table(tmp_path, monkeypatch, text, factors=factors)
     if "smal," in text:  # as the message says
         assert of_table(tmp_path, monkeypatch, TABLE, factors=factors).drawn.size == 3
+
+
+@pytest.mark.parametrize("cell", ["small", "A-1"])
+def test_a_line_end_in_a_text_of_a_row_is_refused(cell, tmp_path, monkeypatch):
+    rows = [row.replace(cell, f'"{cell}\n2"') for row in ROWS]
+    with pytest.raises(InputError, match=r"rollers.csv, line 3: .* holds a control character"):
+        study(tmp_path, monkeypatch, rows)
+    assert study(tmp_path, monkeypatch, [row.replace("\n", "") for row in rows]).parsed  # as the message says
+
+
+def test_a_lost_sign_of_a_groove_is_refused_beside_others(tmp_path, monkeypatch):
+    rows = [f"R{i};{20 + i};-{6.5 + 0.1 * i:g};1.7225-normalised;0.1;9;A" for i in range(6)]
+    wrong = [rows[0], rows[1].replace("-6.6", "6.6"), *rows[2:]]
+    with pytest.raises(InputError, match=r"rollers.csv, line 3: roller_profile_radius = '6.6 mm' .*Write -6.6 for a"):
+        study(tmp_path, monkeypatch, wrong)
+    assert study(tmp_path, monkeypatch, rows).drawn.size  # as the message says
+    alone = [row.replace(";-", ";") for row in rows[:1]]
+    assert study(tmp_path, monkeypatch, [*alone, alone[0].replace("R0", "S")]).drawn.size
+
+
+def test_a_price_in_another_currency_is_refused_by_its_cell(tmp_path, monkeypatch):
+    with pytest.raises(InputError, match=r"line 2: price = '12.50 USD' .*a number in EUR"):
+        study(tmp_path, monkeypatch, (ROWS[0].replace("12.50", "12.50 USD"), *ROWS[1:]))

@@ -399,7 +399,7 @@ def test_cells_that_share_a_long_text_take_little_memory(letters, why, tmp_path)
     ("part", "content", "why"),
     [
         ("sheet1.xml", (ROW, 400_000), "unpacks to at most 25 MB"),
-        ("sheet1.xml", (ROW, 60_000), "500,000 cells"),
+        pytest.param("sheet1.xml", (ROW, 60_000), "500,000 cells", marks=pytest.mark.slow),
         ("sheet1.xml", ('<row><c r="XFD1"><v>1</v></c></row>', 1), "1,000 columns"),
         ("sheet1.xml", ('<row r="99999999"><c><v>1</v></c></row>', 1), "500,000 cells"),
     ],

@@ -11,7 +11,14 @@ from typing import Any
 
 from markupsafe import Markup
 
-from trackroller.report.numbers import capital, carried_range, grouped, unit_text
+from trackroller.report.numbers import (
+    NOT_HELD,
+    capital,
+    carried_range,
+    grouped,
+    may_be_lost,
+    unit_text,
+)
 from trackroller.report.pictures.axis import Axis
 from trackroller.report.pictures.frame import bounds_of
 from trackroller.report.pictures.marks import (
@@ -47,6 +54,7 @@ class Bars:
     bounds : required values with their words
     state : column of the verdict, which colours the bars; '' without one
     length : smallest width, into which the ticks of the head have to fit [px]
+    loses : whether an infinite number is that of a condition that is not held
     """
 
     title: str
@@ -57,6 +65,7 @@ class Bars:
     bounds: tuple[tuple[float, str], ...]
     state: str = ""
     length: float = LENGTH
+    loses: bool = False
 
     @classmethod
     def of(cls, answer: Answer) -> Bars | None:
@@ -79,7 +88,9 @@ class Bars:
         length = LENGTH
         if any(column.role == "use" for column in answer.columns):
             length = SHORT
-        return cls(capital(answer.output[1]), unit, axis, columns, False, bounds, state, length)
+        loses = may_be_lost(answer.question, answer.output[2])
+        title = capital(answer.output[1])
+        return cls(title, unit, axis, columns, False, bounds, state, length, loses)
 
     def head(self) -> Markup:
         """Return the axis that stands in the head of the table."""
@@ -153,9 +164,9 @@ class Bars:
         if first.until:
             high = float(row[first.until])
         best = float(row.get("best", math.nan))
-        if not (math.isnan(best) or math.isnan(low)):
+        if not (math.isnan(best) or math.isnan(low) or self._is_lost(low)):
             yield line("t", self.axis.place(low), "50%", self.axis.place(best), "50%")
-        if not math.isnan(low):
+        if not math.isnan(low) and not self._is_lost(low):
             start = self.axis.place(low)
             end = start
             if not math.isnan(high):
@@ -184,8 +195,17 @@ class Bars:
                 text = " to ".join(dict.fromkeys((grouped(100 * low, 3), grouped(100 * high, 3))))
                 texts.append(f"{column.title} {text} %")
             else:
-                texts.append(f"{column.title} {carried_range(low, high)} {self.units}".rstrip())
+                text = f"{carried_range(low, high)} {self.units}".rstrip()
+                if self._is_lost(low):
+                    text = NOT_HELD
+                texts.append(f"{column.title} {text}")
         return ", ".join(texts) or "unknown"
+
+    def _is_lost(self, value: float) -> bool:
+        """Return whether a value is that of a condition that is not held, which has no place on the
+        axis; a life may be unlimited.
+        """
+        return self.loses and math.isinf(value)
 
     def key(self) -> list[tuple[Markup, str]]:
         """Return the marks of a bar with their words."""

@@ -14,8 +14,10 @@ from trackroller.report.numbers import (
     capital,
     carried_range,
     grouped,
+    held_text,
     level_text,
     lowered,
+    may_be_lost,
     unit_text,
     year_text,
     year_words,
@@ -217,6 +219,9 @@ def _range_text(
         return f"> {tick_text(LONG_LIFE)}"
     if column.kind == "years":
         return year_text(ends[0])
+    lost = may_be_lost(answer.question, column.units)
+    if lost and any(map(math.isinf, ends)):
+        return " to ".join(dict.fromkeys(held_text(end) for end in ends))
     return carried_range(*ends, _error_of(row, column), _bounds(answer, column))
 
 

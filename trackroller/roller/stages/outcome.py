@@ -3,27 +3,23 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Iterable
-from functools import cache, partial
+from collections.abc import Mapping, Sequence
+from functools import cache
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from trackroller.contact import close_fit
-from trackroller.contact.drawn_profiles import gap
 from trackroller.contact.slip import pole_split
-from trackroller.damage import LIMITS, checked_limits, computed, first_limit
+from trackroller.damage import LIMITS, checked_limits, first_limit
 from trackroller.damage.histories import RollerTractions
-from trackroller.damage.limit import TRACTIONS, Limit, LimitUse, SolvedRollers
+from trackroller.damage.limit import Limit, SolvedRollers
 from trackroller.damage.wear import BEYOND_TABLE, KM_PER_HOUR
-from trackroller.damage.wear import TABLE as WEAR_TABLE
 from trackroller.halfspace.tractions import Tractions
-from trackroller.numerics.rows import distinct
-from trackroller.numerics.variable import BODIES
-from trackroller.parameters import CONTACT_MODELS, MAPPING_FIELDS, PARAMETERS
+from trackroller.parameters import CONTACT_MODELS
 from trackroller.parameters.validity import VALIDITY
 from trackroller.roller.case import CaseTable
-from trackroller.roller.case_table import TEXTS
+from trackroller.roller.case_limits import has_results, of_patches, solved_of, to_compute
 from trackroller.roller.geometry import rolling_radius
 from trackroller.roller.stages.scene import StageResults, surface_tractions
 
@@ -52,124 +48,6 @@ def finish(table: CaseTable, block: BlockResults, options: Options) -> None:
     validity(table, block, options)
 
 
-def solved_of(
-    table: CaseTable,
-    values: dict[str, np.ndarray],
-    options: Options,
-    regime: np.ndarray | None = None,
-) -> SolvedRollers:
-    """Return cases, materials and results as the limits receive them."""
-    fields = [field.name for field in dataclasses.fields(table.roller)]
-    names = [name for name in fields if name not in TEXTS or name == "sn_points"]
-    cases = {name: getattr(table, name) for name in (*PARAMETERS, *MAPPING_FIELDS)}
-    if options.wear_law == "energy":  # with another law a table of the materials serves nothing
-        cases[WEAR_TABLE.name] = table.loss_tables
-    return SolvedRollers(
-        cases,
-        {
-            name: np.array([getattr(body, name) for body in (table.roller, table.guide)]).T
-            for name in names
-        },
-        values,
-        rolling_radius(
-            table.axis_distance, table.guide_profile_radius, np.deg2rad(table.contact_angle)
-        ),
-        vars(options),
-        regime=regime,
-        unworn_gap=partial(_unworn_gap, table),
-        ends=_ends(table),
-    )
-
-
-def _ends(table: CaseTable) -> dict[str, np.ndarray]:
-    """Return the ends of the ranges of placeholders as `SolvedRollers` has them.
-
-    A value whose place in its range is given has no range, and a given factor replaces that of the
-    wear coefficient.
-    """
-    given = ~np.isnan(table.placeholder_position)
-    out = {}
-    bodies = [distinct(own.ends) for own in (table.roller, table.guide)]
-    ranges = [ends for materials, _ in bodies for ends in materials]
-    for name in sorted({name for ends in ranges for name in ends}):
-        is_fixed = given
-        if name == "wear_coefficient":
-            is_fixed = given | ~np.isnan(table.wear_coefficient_factor)
-        columns = [
-            np.array([ends.get(name, (1.0, 1.0)) for ends in materials])[place]
-            for materials, place in bodies
-        ]
-        out[name] = np.where(is_fixed[:, None, None], 1.0, np.stack(columns, axis=1))
-    return {name: shares for name, shares in out.items() if np.any(shares != 1.0)}
-
-
-def with_weakest(table: CaseTable, cases: CaseTable, number: np.ndarray) -> CaseTable:
-    """Return cases that several others share, with the lowest yield strength among these.
-
-    Parameters
-    ----------
-    table, cases : CaseTable
-        The m cases with a mechanics of their own, and all n cases.
-    number : numpy.ndarray of int
-        Number in `table` of each case, (n,).
-
-    Notes
-    -----
-    The strength decides which bodies need a number of shakedown, see `Limit.kept_by_bound`. A
-    mechanics gets the number if one of its cases needs it.
-    """
-    ends = _ends(cases).get("yield_strength", np.ones((len(cases), 2, 2)))
-    weakest = {}
-    for i, body in enumerate(BODIES):
-        own = getattr(cases, body).yield_strength * ends[:, i, 0]
-        lowest = np.full(len(table), np.inf)
-        np.fmin.at(lowest, number, own)
-        lowest[np.isinf(lowest)] = np.nan
-        weakest[body] = dataclasses.replace(getattr(table, body), yield_strength=lowest)
-    return dataclasses.replace(table, **weakest)
-
-
-def to_compute(solved: SolvedRollers, options: Options) -> tuple[Limit, ...]:
-    """Return the limits to compute: those named among the outputs, and the checked ones that a
-    case serves.
-    """
-    candidates = computed(options.outputs, options.not_checked, options.life_criterion)
-    return tuple(
-        own
-        for own in candidates
-        if own.group in options.outputs or own.use is None or own.served(solved)
-    )
-
-
-def of_patches(limits: Iterable[Limit]) -> tuple[Limit, ...]:
-    """Return the limits that need the tractions of each case, not of each mechanics alone."""
-    return tuple(
-        limit
-        for limit in limits
-        if TRACTIONS in limit.needs and (limit.shared is None or not limit.shared_by_mechanics)
-    )
-
-
-def _unworn_gap(table: CaseTable, case: int, contact: int, lateral: np.ndarray) -> np.ndarray:
-    """Return the gap of the undeformed profiles at lateral places of one contact of a case, see
-    `SolvedRollers`.
-    """
-    alpha = float(np.deg2rad(table.contact_angle[case]))
-    axis = float(table.axis_distance[case])
-    guide_radius = float(table.guide_profile_radius[case])
-    between = gap(
-        str(table.guide_profile[case]),
-        str(table.roller_profile[case]),
-        guide_radius,
-        float(table.roller_profile_radius[case]),
-        alpha,
-        float(rolling_radius(axis, guide_radius, alpha)),
-        float(table.guide_curve_radius[case]),
-        contact + 1,
-    )
-    return between.lateral(lateral)
-
-
 def limits(
     table: CaseTable, v: dict[str, np.ndarray], options: Options, regime: np.ndarray
 ) -> None:
@@ -181,10 +59,10 @@ def limits(
     on_patches = of_patches(computed_limits)  # see `patch_limits`
     for limit in computed_limits:
         if limit not in on_patches:
-            v |= limit.evaluate(solved)
+            v |= _evaluated(limit, solved, options)
     places = [solved]
-    if any(limit.moves(solved) for limit in computed_limits):
-        places += [_at_end(solved, computed_limits, end) for end in (0, 1)]
+    if any(limit.moves(solved).any() for limit in computed_limits):
+        places += [_at_end(solved, computed_limits, options, end) for end in (0, 1)]
         for end, place in zip(("low", "high"), places[1:], strict=True):
             names = [
                 result.name
@@ -196,36 +74,61 @@ def limits(
     if first_limit.GROUP in options.outputs:
         names = list(LIMITS)
         counted = checked_limits(options.outputs, options.not_checked)
-        known = list(counted)
-        for i, limit in enumerate(counted):
-            if limit not in computed_limits:
-                known[i] = _nothing(limit)
-        v |= first_limit.limit_uses(
-            places, known, [names.index(limit.name) for limit in counted], len(names)
-        )
+        numbers = [names.index(limit.name) for limit in counted]
+        known = _known_uses(counted, solved, options)
+        v |= first_limit.limit_uses(places, counted, numbers, len(names), known)
     for name in [name for name in v if name.startswith("_") and name != BEYOND_TABLE]:
         del v[name]
 
 
-def _nothing(limit: Limit) -> Limit:
-    """Return a limit that no case serves, of which nothing is known."""
-    unknown = LimitUse(None, None)
-    return dataclasses.replace(limit, use=lambda solved, results: unknown, bound=None)
+def _known_uses(limits: Sequence[Limit], solved: SolvedRollers, options: Options) -> np.ndarray:
+    """Return for which cases the checked limits were computed, (n, limit) bool."""
+    own = [has_results(limit, solved, options) for limit in limits]
+    return np.array(own, dtype=bool).reshape(len(limits), -1).T
 
 
-def _at_end(solved: SolvedRollers, limits: tuple[Limit, ...], end: int) -> SolvedRollers:
+def _evaluated(limit: Limit, solved: SolvedRollers, options: Options) -> dict[str, np.ndarray]:
+    """Return the results of a limit; cases for which it is not computed keep their values, or have
+    NaN.
+    """
+    concerned = has_results(limit, solved, options)
+    return _of_cases(concerned, limit.evaluate(solved), solved.values)
+
+
+def _of_cases(
+    concerned: np.ndarray, own: Mapping[str, np.ndarray], others: Mapping[str, np.ndarray]
+) -> dict[str, np.ndarray]:
+    """Return values (n, ...) of the cases concerned, and for the others those of the same name or
+    NaN.
+    """
+    if concerned.all():
+        return dict(own)
+    return {
+        name: np.where(
+            concerned.reshape(-1, *(1,) * (value.ndim - 1)), value, others.get(name, np.nan)
+        )
+        for name, value in own.items()
+    }
+
+
+def _at_end(
+    solved: SolvedRollers, limits: tuple[Limit, ...], options: Options, end: int
+) -> SolvedRollers:
     """Return the rollers and their results with the placeholders at the worse (0) or the better (1)
     end.
     """
     values = dict(solved.values)
     moved = solved.at_end(end)
     on_patches = of_patches(limits)
-    for limit in (limit for limit in limits if limit.moves(solved)):
+    for limit in limits:
+        concerned = limit.moves(solved) & has_results(limit, solved, options)
+        if not concerned.any():
+            continue
         if limit in on_patches:
             own = {result.name: values[f"_{end}_{result.name}"] for result in limit.results}
         else:
             own = limit.evaluate(dataclasses.replace(moved, values=values))
-        values |= own
+        values |= _of_cases(concerned, own, values)
     return dataclasses.replace(moved, values=values)
 
 
@@ -257,7 +160,7 @@ def patch_limits(results: StageResults, options: Options, limits: tuple[Limit, .
         ready = solved
         if limit.shared is not None:
             ready = dataclasses.replace(solved, values=results.values | limit.shared(solved))
-        if limit.moves(solved):
+        if limit.moves(solved).any():
             for end in (0, 1):
                 at_end = limit.evaluate(ready.at_end(end))
                 results.values |= {f"_{end}_{one.name}": at_end[one.name] for one in limit.results}
@@ -298,7 +201,10 @@ def outlives_groove(table: CaseTable, block: BlockResults, options: Options) -> 
     solved = solved_of(table, v, options.changed(at_most=()), block.regime)
     run_in = v["run_in_distance"] / (KM_PER_HOUR * table.velocity)
     counted = [own for own in to_compute(solved, options) if own.use is not None]
-    known = first_limit.limit_uses([solved], counted, range(len(counted)), len(counted))
+    computed_for = _known_uses(counted, solved, options)
+    known = first_limit.limit_uses(
+        [solved], counted, range(len(counted)), len(counted), computed_for
+    )
     return np.asarray(known["life_to_first_limit_hours"] > run_in[:, None])
 
 
@@ -356,6 +262,7 @@ def validity(table: CaseTable, block: BlockResults, options: Options) -> None:
         if "run_in_distance" in v:
             warn("worn", outlives_groove(table, block, options))
         if BEYOND_TABLE in v:
-            warn("wear_extrapolated", v.pop(BEYOND_TABLE))
+            # NaN where the wear of a case is not computed
+            warn("wear_extrapolated", v.pop(BEYOND_TABLE) > 0.0)
     block.bodies = body | block.bits[:, None]  # The flags of the equilibrium hold for both bodies.
     block.bits |= body[:, 0] | body[:, 1]

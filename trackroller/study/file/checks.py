@@ -19,7 +19,13 @@ from trackroller.numerics.numbers import number_or_nan
 from trackroller.parameters import BODIES, MATERIAL_FIELDS, PARAMETERS
 from trackroller.roller.fields import FIELDS, other_than_default
 from trackroller.roller.geometry import contact_geometry, geometry_problem, geometry_problems
-from trackroller.roller.options import check_accuracy, check_pairs, check_spin_model, check_surface
+from trackroller.roller.options import (
+    check_accuracy,
+    check_not_checked,
+    check_pairs,
+    check_spin_model,
+    check_surface,
+)
 from trackroller.study.design.build import MAX_CASES
 from trackroller.study.design.carriage_cases import ROW
 from trackroller.study.design.factor_names import (
@@ -64,6 +70,7 @@ def _check_options(study: Study) -> None:
     for model, normal in itertools.product(levels("contact_model"), levels("normal")):
         check_pairs(study.config.hertz, normal, study.config.slip_terms, model)
     check_spin_model(levels("spin_model"), levels("contact_model"))
+    check_not_checked(config.outputs, config.not_checked)
     given = {
         name: study.factors.get(name, study.config.base.get(name))
         for name in ("travel", "guide_profile", "roller_profile")

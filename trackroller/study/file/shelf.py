@@ -22,7 +22,7 @@ from trackroller.damage.bearing import FIELD as BEARING
 from trackroller.damage.catalogue import FIELD as CATALOGUE
 from trackroller.damage.mapping import MappingField
 from trackroller.damage.stud import FIELD as STUD
-from trackroller.errors import Collector, InputError, nearest, raise_all
+from trackroller.errors import Collector, InputError, checked_text, nearest, raise_all
 from trackroller.files import find_beside
 from trackroller.methods.factor import ROWS
 from trackroller.numerics.numbers import finite_number
@@ -52,6 +52,7 @@ FIELDS = (BEARING, CATALOGUE, STUD)  # mappings of a case whose keys are columns
 PROFILES = ("roller_profile", "guide_profile")  # their cells name files of points
 OUTER_DIAMETER = "outer_diameter"  # of the bearings in a shelf of bearings
 MEASURED = ("kg", "mm", "N", "N mm", "MPa", "h", "W", "K")  # units to which those of goods convert
+MANY_GROOVES = 5  # beside which a single convex roller is asked about
 CURRENCIES = ("EUR", "USD", "GBP", "CHF", "JPY", "CNY", "SEK", "PLN", "CZK", "INR", "KRW")
 KIND = "shelf"  # of the file, in messages
 Keys = Mapping[str, tuple[MappingField, str]]
@@ -163,10 +164,11 @@ def _sound_rows(
         filled = _filled(shelf, places.leave_out(shelf, rows, error), values)
     for name in {*base} - {*values}:
         del base[name]
-    try:
-        _check_ratings(shelf, filled)
-    except InputError as error:
-        return list(places.leave_out(shelf, filled, error))
+    for check in (_check_ratings, _check_grooves):
+        try:
+            check(shelf, filled)
+        except InputError as error:
+            filled = list(places.leave_out(shelf, filled, error))
     return filled
 
 
@@ -304,6 +306,28 @@ def _check_ratings(shelf: str, rows: list[dict[str, Any]]) -> None:
     )
 
 
+def _check_grooves(shelf: str, rows: list[dict[str, Any]]) -> None:
+    """Refuse a convex roller in a shelf whose other rollers have grooves: a sign is lost easily.
+
+    A shelf with several convex rollers means them.
+    """
+    name = "roller_profile_radius"
+    parameter = PARAMETERS[name]
+    radii = {str(row.get("name")): finite_number(row.get(name), parameter.unit) for row in rows}
+    convex = [row for row, radius in radii.items() if radius > 0]
+    grooves = [row for row, radius in radii.items() if radius < 0]
+    if len(convex) != 1 or len(grooves) < MANY_GROOVES:
+        return
+    field = f"{field_of_row(shelf, convex[0])}.{name}"
+    remedy = (
+        f"Write {-radii[convex[0]]:g} for a groove, or put the convex roller into a shelf of its "
+        "own."
+    )
+    allowed = "a radius below 0, as in the other rows"
+    wrong = "is that of a convex roller"
+    raise InputError(field, f"{radii[convex[0]]:g} mm", allowed, remedy, wrong)
+
+
 def _read(shelf: str, file: Any, places: Places) -> dict[str, Any]:
     """Return the rows of a file and the units of its further columns, and note where the rows
     stand.
@@ -428,6 +452,7 @@ def _note_names(table: UserTable, shelf: str, path: Path, places: Places) -> Non
                 raise InputError("name", name, "a name in each row", "Name the row.").at(
                     path, number
                 )
+            _checked_cell(name, "name", (path, number))
             if before is not None:
                 stands = f"stands in line {before[1]} too"
                 error = InputError(
@@ -487,8 +512,26 @@ def _own_columns(
         elif all(_is_plain_number(cell) for cell in cells.values() if cell):
             columns[name] = [float(cell) if cell else None for cell in cells.values()]
         else:
-            columns[name] = [str(cell) for cell in cells.values()]
+            columns[name] = [
+                _checked_text_of(head, cell, (path, number), wrong)
+                for number, cell in cells.items()
+            ]
     return columns, shown
+
+
+def _checked_text_of(head: str, cell: str, place: Place, wrong: Collector) -> str:
+    """Return a cell of a column of words; a character that tables cannot show adds an error."""
+    with wrong.part():
+        _checked_cell(cell, head, place)
+    return str(cell)
+
+
+def _checked_cell(cell: str, head: str, place: Place) -> None:
+    """Refuse a text with line ends, or with other characters that tables cannot show."""
+    try:
+        checked_text(cell, head)
+    except InputError as error:
+        raise error.at(*place) from None
 
 
 def _is_plain_number(cell: str) -> bool:
@@ -508,7 +551,7 @@ def _number(head: str, cell: str, unit: str, place: Place, wrong: Collector) -> 
     number = finite_number(cell.removesuffix(unit).strip())
     with wrong.part():
         try:
-            if math.isnan(number):
+            if math.isnan(number) and unit not in CURRENCIES:
                 number = finite_number(cell, unit, head)
             if math.isnan(number):
                 raise InputError(

@@ -20,6 +20,7 @@ from trackroller.study.store import chunks
 from trackroller.study.store.folder import Tell, reporting, unheard
 from trackroller.study.store.ledger import Ledger
 from trackroller.study.store.manifest import digests_of
+from trackroller.study.store.netcdf import small_cache
 from trackroller.study.store.provenance import DATE
 from trackroller.study.store.put import put
 from trackroller.study.store.solved_dataset import labelled
@@ -33,8 +34,27 @@ def write_design(ledger: Ledger) -> None:
     path = ledger.folder.design
     title = f"Cases of the parameter study '{ledger.study.name}' of locating-bearing track rollers"
     described = design.assign_attrs(file_attributes(title, "drawn") | design.attrs)
-    encoding = {str(name): {"_FillValue": None} for name in described.variables}
-    put(path, lambda beside: described.to_netcdf(beside, engine="netcdf4", encoding=encoding))
+    encoding = {str(name): _packed(v) for name, v in described.variables.items()}
+
+    def save(beside: Path) -> None:
+        with small_cache():
+            described.to_netcdf(beside, engine="netcdf4", encoding=encoding)
+
+    put(path, save)
+
+
+def _packed(values: xr.Variable) -> dict[str, Any]:
+    """Return how a column of a design is stored: packed.
+
+    The library packs characters, and no strings: the mapping of a bearing in each of a million
+    cases takes 500 MB as strings.
+    """
+    encoding: dict[str, Any] = {"_FillValue": None}
+    if values.dims:
+        encoding |= {"zlib": True, "complevel": 4, "shuffle": True}
+        if values.dtype.kind in "OUT":
+            encoding["dtype"] = "S1"
+    return encoding
 
 
 def gather(ledger: Ledger, tell: Tell = unheard, attrs: Mapping[str, str] | None = None) -> Path:
@@ -78,7 +98,8 @@ def gather(ledger: Ledger, tell: Tell = unheard, attrs: Mapping[str, str] | None
     def save(beside: Path) -> None:
         results = labelled(study, study.drawn, ledger.cases.design, collect(ledger))
         results.attrs.pop(DATE)  # equal results are equal files; the plan keeps the date
-        results.assign_attrs(attrs or {}).to_netcdf(beside, engine="netcdf4")
+        with small_cache():
+            results.assign_attrs(attrs or {}).to_netcdf(beside, engine="netcdf4")
 
     with reporting(folder):
         put(folder.gathered, save)

@@ -23,7 +23,7 @@ const TABS = [
 const OPEN = ["Loads and use", "Roller and guide"];
 const INSTEAD = { axis_distance: ["outer_radius", "groove_depth"], outer_radius: ["axis_distance"], groove_depth: ["axis_distance"] };
 const DRAWN = "Sizes of a drawing, duty";
-const DUTY = ["hours_per_day", "days_per_year"];
+const DUTY = ["hours_per_day", "days_per_year", "strokes_per_day", "stroke", "rollers_on_rail"]; // the sheet shows the first two
 const DECIDED = ["outputs", "accuracy", "stop_if", "shortcuts"]; // options that the page sets itself
 
 // The values of a material that have a unit.
@@ -88,7 +88,7 @@ async function start() {
     { ...contour, name: "rail_diameter", label: "Rail diameter", symbol: "", meaning: "of a round rail: twice the guide profile radius", value: 2 * contour.value, ends: contour.ends?.map((end) => 2 * end) ?? null },
     { change: (value, moving) => change(contour.name)(scaled(value, 0.5), moving), curve: () => variants.curve(contour.name), factor: (range) => study.add(contour.name, range?.map((end) => end / 2)) },
   );
-  const dutyOf = (name) => String(state.values.duty ?? "").match(new RegExp(`${name}"?:\\s*([^,}\\s]+)`))?.[1];
+  const dutyOf = (name) => String(state.values.duty ?? "").match(new RegExp(`(?:^|[{,\\s"])${name}"?:\\s*([^,}]+)`))?.[1].trim();
   const setDuty = (name) => (value) => {
     const given = Object.entries({ ...Object.fromEntries(DUTY.map((key) => [key, dutyOf(key)])), [name]: value }).filter(([, size]) => size !== undefined && size !== null);
     state.change({ duty: given.length ? `{${given.map((pair) => pair.join(": ")).join(", ")}}` : null });
@@ -131,7 +131,7 @@ async function start() {
     redo.disabled = !edited().canRedo();
   };
   const carriage = carriageView(state, { changed: steps });
-  const requirement = requirementView(state, offered, { duty: [["hours_per_day", "Hours a day"], ["days_per_year", "Days a year"]].map(([name, label]) => [name, label, () => dutyOf(name), setDuty(name)]) });
+  const requirement = requirementView(state, offered, { duty: [["hours_per_day", "Hours a day", "of travel; or the strokes instead"], ["days_per_year", "Days a year", "of travel; 365 if not given"], ["strokes_per_day", "Strokes a day", "to and fro count two; in place of hours a day"], ["stroke", "Stroke [m]", "length of a stroke, such as 2 m"], ["rollers_on_rail", "Rollers that pass a point of the rail", "in a stroke; 1 if not given"]].map(([name, label, help]) => [name, label, help, () => dutyOf(name), setDuty(name)]) });
   const reset = el("button", { type: "button", onclick: () => state.replace(offered.first) }, "Reset");
   const pin = el("button", { type: "button", onclick: () => state.pin() }, "Pin");
   const sheet = el("a", { target: "_blank", rel: "noopener" }, "Printable sheet");

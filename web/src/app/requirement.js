@@ -3,7 +3,7 @@ import { ask } from "./api.js";
 import { el, replace } from "../dom.js";
 
 const CASE = ["radial_force", "axial_force", "motor_force", "velocity", "friction_coefficient", "guide_profile_radius", "guide_curve_radius", "contact_angle", "guide_overrollings_per_hour"];
-const REQUIRED = [["life", "Life", "such as 3 years beside a duty, or hours"], ["failures", "Failures by then", "such as 5 %; needs the scatter of the materials"], ["safety", "Safety against overload", "factor on all forces within all limits, such as 1.5"], ["temperature", "Permissible temperature [degC]", "of roller and guide, such as 60 degC; needs the heat transfer of the roller"], ["wear_depth", "Permissible wear depth [mm]", "within the required life, such as 0.05 mm"], ["least", "Least", "column of the shelf, such as price; without one the longest life leads"]];
+const REQUIRED = [["life", "Life", "such as 3 years beside a duty, or hours"], ["failures", "Failures by then", "such as 5 %; a typical scatter where the materials state none"], ["safety", "Safety against overload", "factor on all forces within all limits, such as 1.5"], ["temperature", "Permissible temperature [degC]", "of roller and guide, such as 60 degC; needs the heat transfer of the roller"], ["wear_depth", "Permissible wear depth [mm]", "within the required life, such as 0.05 mm"], ["least", "Least", "column of the shelf, such as price; without one the longest life leads"]];
 
 export function requirementView(state, offered, { duty }) {
   const own = { carriage: "", shelf: "", required: Object.fromEntries(REQUIRED.map(([name]) => [name, ""])) };
@@ -20,7 +20,7 @@ export function requirementView(state, offered, { duty }) {
     return { ...row, name };
   });
   const guide = text("Guide material", "a name of the database", "", (value) => state.change({ guide_material: value || null }), "materials");
-  const dutyRows = duty.map(([name, label]) => ({ ...text(label, `${label} of travel`, "", (value) => duty.find(([key]) => key === name)[3](value || null)), name }));
+  const dutyRows = duty.map(([name, label, help, get, set]) => ({ ...text(label, help, "", (value) => set(value || null)), name, get }));
   const carriage = text("Carriage file, in place of these loads", "a carriage file of this folder; its rollers' files give rail and duty", "", (value) => ((own.carriage = value), draw()), "carriage-choice");
   const shelf = text("Shelf: a table of rollers", "CSV or .xlsx of this folder: name, dimensions as parameters, price", "", (value) => (own.shelf = value), "shelf-files");
   const required = REQUIRED.map(([name, label, help]) => text(label, help, "", (value) => (own.required[name] = value)));
@@ -33,7 +33,7 @@ export function requirementView(state, offered, { duty }) {
   function draw() {
     for (const row of given) row.input.value = state.values[row.name] ?? "";
     guide.input.value = state.values.guide_material ?? "";
-    for (const row of dutyRows) row.input.value = duty.find(([name]) => name === row.name)[2]() ?? "";
+    for (const row of dutyRows) row.input.value = row.get() ?? "";
     loads.disabled = own.carriage !== "";
   }
 
