@@ -901,6 +901,7 @@ def carriage(answer: Answer) -> Headline:
     margins = [
         f"{one['of']} × {grouped(one['times'], 3)} to {one['end']} ({one['case']})"
         for one in head["margins"]
+        if one["times"] > 0  # otherwise the loads lift a contact already
     ]
     if answer.kind == "unsettled":
         return _joined(
@@ -937,7 +938,10 @@ def _carriage_lasts(answer: Answer, margins: Sequence[str]) -> Headline:
     if _known(head, "part"):
         clauses.append(f"{percent(head['part'])} of it by {head['case']}")
     if head["unknown"]:
-        clauses.append(f"the life of {listing(head['unknown'])} is not known")
+        why = ""
+        if head["unknown_in"] and not _known(head, "at_most"):
+            why = f" (not on both contacts in {head['unknown_in']})"
+        clauses.append(f"the life of {listing(head['unknown'])} is not known{why}")
     if head["state"]:
         of = ""
         if head["of"]:
