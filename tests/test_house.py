@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import ast
 import graphlib
+import re
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -287,3 +288,10 @@ def test_a_crowded_line_is_found(text):
 )
 def test_a_plain_line_is_not_found(text):
     assert crowded(ast.parse(text)) == []
+
+
+def test_the_recipes_have_lines_of_the_package():
+    """The examples of CONTRIBUTING become files of the package, where ruff refuses a longer line."""
+    recipes = re.findall(r"```python\n(.*?)```", (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8"), re.DOTALL)
+    assert len(recipes) == 3
+    assert max(len(line) for recipe in recipes for line in recipe.splitlines()) <= 100

@@ -5,8 +5,10 @@ import pytest
 from carts import ROLLER, cart, rollers_below, rollers_between, shuttle
 
 import trackroller as tr
+from trackroller.carriage.example import EXAMPLE
 from trackroller.report.headlines import end_of_carriage, headline_of
 from trackroller.results.carriage_answer import answer_of_carriage
+from trackroller.yaml_file import parse_mapping
 
 POM = ROLLER | {"guide_material": "POM-C", "permissible_wear_depth": 0.2, "guide_overrollings_per_hour": 60}
 LAW = {"radial_force": 90.0, "axial_force": 40.0, "basic_life": 100.0, "law": "lubricated"}
@@ -83,20 +85,41 @@ def test_a_catalogue_that_is_exceeded_comes_first_and_one_that_ends_sooner_is_to
     assert not any("catalogue" in words for words in answer.not_checked["roller"])
 
 
+def test_each_end_of_a_life_adds_up_one_line_and_names_it():
+    """Damage of the load cases by each line alone; the shorter sum is the low end, the longer one the high end."""
+    cases = [{"name": "slow", "share": 0.25, "speed": "0.5 m/s"}, {"name": "fast", "share": 0.75, "speed": "1 m/s"}]
+    ds = tr.carriage(cart(cases=cases))
+    answer = answer_of_carriage(ds)
+    own = ds.sel(roller=answer.headline["roller"], body=answer.headline["body"])
+    solved, time = alone(ds, answer.headline["roller"], ROLLER)
+    lines = {"fatigue": "bending line", "pressure_line": "rolling-contact line"}
+    for end, chosen in (("low", min), ("high", max)):
+        lives = {}
+        for name in lines:
+            of_case = solved[f"life_hours_by_limit_{end}"].sel(limit=name, body=answer.headline["body"]).values
+            lives[name] = float(time.sum() / (time / of_case).sum())
+            assert float(own[f"life_hours_by_limit_{end}"].sel(limit=name)) == pytest.approx(lives[name], rel=1e-3)
+        nearest = chosen(lives, key=lives.get)
+        assert answer.headline[end] == pytest.approx(lives[nearest], rel=1e-3)
+        assert answer.headline[f"line_{end}"] == lines[nearest]
+    assert f"({answer.headline['line_low']} to {answer.headline['line_high']})" in headline_of(answer).text
+
+
 def test_the_life_that_files_of_rollers_require_is_judged():
     cases = [{"name": "slow", "share": 0.25, "speed": "0.5 m/s"}, {"name": "fast", "share": 0.75, "speed": "1 m/s"}]
     ds = tr.carriage(cart(cases=cases))
-    life = {name: float(ds["life_hours"].sel(roller=name)) for name in ("FL", "RR")}
+    low, high = (float(ds[f"life_hours_{end}"].sel(roller="FL")) for end in ("low", "high"))
     pace = 0.25 / 1.8 + 0.75 / 3.6  # hours a km
-    for share, state in ((0.5, "met"), (2.0, "missed")):
-        travel = ROLLER | {"required_travel": share * life["FL"] / pace, "permissible_wear_depth": 900}
+    for least, state in ((0.5 * low, "met"), (np.sqrt(low * high), "open"), (2.0 * high, "missed")):
+        travel = ROLLER | {"required_travel": least / pace, "permissible_wear_depth": 900}
         rollers = rollers_below(roller=travel)
         own = tr.carriage(cart(cases=cases, rollers=rollers))
         answer = answer_of_carriage(own)
         assert answer.headline["state"] == state and f": {state}" in headline_of(answer).text
-        assert answer.required[0].least == pytest.approx(share * life["FL"], rel=1e-6)
+        assert answer.required[0].least == pytest.approx(least, rel=1e-6)
     rollers = rollers_below()
-    rollers["RR"]["roller"] = ROLLER | {"requirement": {"pair_life_hours": {"min": 2 * life["RR"]}, "slip": {"max": 1}}}
+    most = 2 * float(ds["life_hours_high"].sel(roller="RR"))
+    rollers["RR"]["roller"] = ROLLER | {"requirement": {"pair_life_hours": {"min": most}, "slip": {"max": 1}}}
     answer = answer_of_carriage(tr.carriage(cart(cases=cases, rollers=rollers)))
     assert answer.headline["state"] == "missed" and answer.headline["of"] == ["RR"]
     assert dict(zip(answer.table["roller"], answer.table["state"], strict=True))["FL"] == ""
@@ -128,3 +151,11 @@ def test_an_unknown_life_is_bounded_by_its_known_load_cases():
     assert "× 0 to" not in text
     assert f"{head['roller']} lasts at most" in text and "ends first" not in text and "pull" in text
     assert end_of_carriage(answer).startswith("The carriage lasts at most")
+
+
+def test_rollers_stand_in_the_order_in_which_they_fail():
+    """The lives of the rollers to their first limits, at their low ends, rise down the table."""
+    ds = tr.carriage(parse_mapping(EXAMPLE, "carriage"))
+    table = answer_of_carriage(ds).table
+    lives = {str(one): float(ds["life_hours_low"].sel(roller=one)) for one in ds["roller"].values}
+    assert sorted(lives, key=lives.get) == table["roller"].tolist() and len(set(lives.values())) > 1

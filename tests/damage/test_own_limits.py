@@ -82,7 +82,8 @@ def test_a_study_names_the_digest_and_an_edited_limit_solves_anew(place):
 
 def test_names_that_exist_and_empty_folders_are_refused(place):
     file = place / "config" / "limits" / "lining.py"
-    file.write_text(file.read_text(encoding="utf-8").replace('"permissible_pressure", "p_zul"', '"density", "p_zul"'))
+    declared = re.compile(r'Parameter\(\s*"permissible_pressure"')
+    file.write_text(declared.sub('Parameter("density"', file.read_text(encoding="utf-8")))
     assert "density' is a value of a material" in solve(place, "--allow-code", code=2)
     file.unlink()
     assert "a folder with limits" in solve(place, "--allow-code", code=2)

@@ -1,5 +1,7 @@
 """The line of tests in rolling contact: pressure by hardness, life by pressure, and its ranges."""
 
+import json
+
 import numpy as np
 import pytest
 from scipy.stats import norm
@@ -8,6 +10,11 @@ import trackroller as tr
 from trackroller.damage.pressure_line import pressure_of_hardness
 from trackroller.materials import builtin_database
 from trackroller.materials.pressure_line import BY_HARDNESS
+from trackroller.report.headlines import headline_of
+from trackroller.results.roller_answer import answer_of_roller
+from trackroller.roller.requirement import KEY
+from trackroller.study.spectrum.file import Spectrum
+from trackroller.study.spectrum.solve import solve_spectrum
 
 OUTPUTS = ("contact", "life", "limits")
 CASE = {"motor_force": 0, "guide_overrollings_per_hour": 500}
@@ -59,11 +66,86 @@ def test_the_life_is_that_of_the_line_by_hand():
     assert ends[1].sel(body="guide") / ends[0].sel(body="guide") == pytest.approx((high / low) ** 18, rel=1e-9)
 
 
-def test_it_is_a_second_model_that_ends_nothing():
-    weak = solved({"like": "1.7225-normalised", **LINE | {"rolling_pressure": 50.0}})
-    usual = solved()
-    assert weak.life_hours_by_limit.sel(limit="pressure_line", body="roller") < 1
-    assert weak.life_to_first_limit_hours.sel(body="roller") == usual.life_to_first_limit_hours.sel(body="roller")
+@pytest.mark.parametrize(("pressure", "lines"), [
+    (50.0, ("rolling-contact line", "bending line")),
+    (5000.0, ("bending line", "rolling-contact line")),
+])  # fmt: skip
+def test_life_is_a_range_whose_ends_are_both_lines(pressure, lines):
+    """The value stays that of the S-N curve; the ends are the lives by each line, and each names its line."""
+    ds = solved({"like": "1.7225-normalised", **LINE | {"rolling_pressure": pressure}})
+    roller = ds.sel(body="roller")
+    by_curve = float(ds.roller_life_hours)
+    by_pressure = float(roller.life_hours_by_limit.sel(limit="pressure_line"))
+    assert roller.life_to_first_limit_hours == roller.life_hours_by_limit.sel(limit="fatigue") == by_curve
+    ends = [float(roller[f"life_to_first_limit_hours_{end}"]) for end in ("low", "high")]
+    assert ends == sorted([by_curve, by_pressure])
+    for end in ("low", "high"):  # each line keeps its own life
+        assert roller[f"life_hours_by_limit_{end}"].sel(limit="fatigue") == by_curve
+    answer = answer_of_roller(ds)
+    row = answer.table.set_index(["limit", "body"]).loc[("fatigue", "roller")]
+    assert row["line"] == " to ".join(lines)
+    assert (row["low"], row["high"], row["hours"]) == (*ends, by_curve)
+    assert (answer.headline["line_low"], answer.headline["line_high"]) == lines
+    assert f"({lines[0]} to {lines[1]})" in headline_of(answer).text
+    ends = [float(ds[f"pair_life_to_first_limit_hours_{end}"]) for end in ("low", "high")]
+    middle = np.sqrt(ends[0] * ends[1])
+    for wanted, state in ((0.9 * ends[0], "met"), (middle, "open"), (1.1 * ends[1], "missed")):
+        stated = json.dumps({"pair_life_hours": {"min": wanted}})
+        required = answer_of_roller(ds.assign_attrs({KEY: stated}))
+        assert required.headline["state"] == state
+
+
+def test_a_material_of_bending_alone_says_so():
+    ds = solved("EN AW-7075")
+    answer = answer_of_roller(ds)
+    row = answer.table.set_index(["limit", "body"]).loc[("fatigue", "roller")]
+    assert row["line"] == "bending line alone"
+    assert row["low"] == row["high"] == float(ds.roller_life_hours)
+    assert answer.headline["line_low"] == answer.headline["line_high"] == ""
+    assert "line" not in headline_of(answer).text
+
+
+def test_an_sn_curve_of_rolling_tests_takes_no_line_of_its_hardness():
+    ds = solved({"like": "1.7225-normalised", "sn_in_rolling": 1})
+    assert np.isnan(ds.life_hours_by_limit.sel(limit="pressure_line", body="roller"))
+    assert ds.life_to_first_limit_hours_low.sel(body="roller") == ds.life_to_first_limit_hours_high.sel(body="roller")
+    table = answer_of_roller(ds).table.set_index(["limit", "body"])
+    assert table.loc[("fatigue", "roller"), "line"] == "S-N line of rolling tests alone"
+    with pytest.raises(tr.InputError, match=r"sn_in_rolling.*0 or 1"):
+        DB.material({"like": "C45", "sn_in_rolling": 0.5})
+
+
+def test_the_ends_at_a_failure_probability_are_the_outer_ones_of_both_scatters():
+    """Each line has the typical scatter of its own material; the outer ends count."""
+    ds = solved(failure_probability=0.05).sel(body="roller")
+    ends = {
+        end: ds[f"life_hours_by_limit_{end}"].sel(limit=["fatigue", "pressure_line"]).values for end in ("low", "high")
+    }
+    assert ds.life_to_first_limit_hours_low == ends["low"].min()
+    assert ds.life_to_first_limit_hours_high == ends["high"].max()
+
+
+def test_a_spectrum_adds_up_each_line_by_itself():
+    """Damage sums of both lines by hand; no block mixes them."""
+    blocks = [
+        {"name": "light", "distance": 900, "radial_force": -60},
+        {"name": "heavy", "distance": 100, "radial_force": -300},
+    ]
+    base = {"motor_force": 0, "axial_force": 0, "friction_coefficient": 0.2}
+    given = {"blocks": blocks, "base": base, "contact_model": "sliding", "limits": ["fatigue", "pressure_line"]}
+    ds = solve_spectrum(Spectrum.from_dict(given))
+    own: dict[tuple[str, str], float] = {}
+    for block in blocks:
+        case = base | {"radial_force": block["radial_force"]}
+        one = tr.solve(case, OUTPUTS, contact_model="sliding").sel(body="roller")
+        for name in ("fatigue", "pressure_line"):
+            for end in ("low", "high"):
+                life = float(one[f"life_hours_by_limit_{end}"].sel(limit=name))
+                own[name, end] = own.get((name, end), 0.0) + block["distance"] / 1000 / life
+    low = min(1 / own[name, "low"] for name in ("fatigue", "pressure_line"))
+    high = max(1 / own[name, "high"] for name in ("fatigue", "pressure_line"))
+    assert float(ds.life_to_first_limit_hours_low.sel(body="roller")) == pytest.approx(low, rel=1e-6)
+    assert float(ds.life_to_first_limit_hours_high.sel(body="roller")) == pytest.approx(high, rel=1e-6)
 
 
 def test_the_life_at_a_failure_probability_takes_the_scatter():

@@ -28,7 +28,7 @@ print(json.dumps([used.sel(body=body).values.tolist() for body in ("roller", "gu
 def test_a_limit_of_one_file_reaches_the_data_set(tmp_path):
     text = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
     recipe = text.partition("## Add a damage limit")[2].partition("\n## ")[0]
-    assert len(recipe.splitlines()) < 40 and len(re.findall(r"```python", recipe)) == 1
+    assert len(recipe.splitlines()) < 54 and len(re.findall(r"```python", recipe)) == 1
     shutil.copytree(ROOT / "trackroller", tmp_path / "trackroller")
     room = tmp_path / "trackroller" / "damage"
     (room / "lining.py").write_text(re.search(r"```python\n(.*?)```", recipe, re.DOTALL)[1], encoding="utf-8")

@@ -817,7 +817,7 @@ def test_a_table_over_temperature_can_be_added_and_listed(tmp_path):
 def test_the_list_counts_the_guesses_of_limits_too():
     rows = {row["name"]: row["placeholders"] for row in material_rows(load_database(None))}
     marked = [row for row in material_details(load_database(None), "POM") if row["placeholder"]]
-    assert rows["POM"] == str(len(marked)) == "7"
+    assert rows["POM"] == str(len(marked)) == "6"
 
 
 def test_the_energy_law_of_wear_can_be_added_listed_and_inherited(tmp_path):

@@ -38,7 +38,7 @@ STUDY = {
 def halton():
     text = RECIPE.read_text(encoding="utf-8")
     code = re.search(r"## Add a method.*?```python\n(.*?)```", text, re.DOTALL)[1]
-    assert len(code.splitlines()) < 30
+    assert len(code.splitlines()) < 34
     exec(compile(code, str(RECIPE), "exec"), {})
     yield "halton"
     del METHODS["halton"]

@@ -166,14 +166,41 @@ def test_a_required_travel_is_judged_by_the_first_limit(share, state):
         }
         return xr.Dataset(variables, coords={"contact": [1, 2], "body": ["roller", "guide"]})
 
-    def solved(**more):
+    def solved(keys=(), **more):
         base = {"guide_overrollings_per_hour": 1.0, **more}
-        return solve_spectrum(Spectrum.from_dict({"blocks": blocks, "base": base}), DB, solve=solve)
+        return solve_spectrum(Spectrum.from_dict({"blocks": blocks, "base": base, **dict(keys)}), DB, solve=solve)
 
     free = solved()
-    assert answer_of_spectrum(free).required == () and answer_of_spectrum(free).headline["state"] == ""
+    assert answer_of_spectrum(free).required == () and answer_of_spectrum(free).headline["states"] == []
     travel = float(free["roller_life_shifts"]) * 1.0  # km: a shift is one
     answer = answer_of_spectrum(solved(required_travel=share * travel))
-    assert answer.headline["state"] == state
+    assert answer.headline["states"] == [state]
     assert answer.required[0].least == pytest.approx(share * travel)
     assert headline_of(answer).text.endswith(f"km: {state}.")
+    hours = answer.headline["low"]
+    duty = {"hours_per_day": 10, "days_per_year": 100}
+    for wanted in (f"{share * hours} h", f"{share * hours / 1000} years"):
+        asked = {"requirement": {"pair_life_to_first_limit_hours": {"min": wanted}}, "duty": duty}
+        by_life = answer_of_spectrum(solved(asked))
+        assert by_life.headline["states"] == [state]
+        assert by_life.required[0].least == pytest.approx(share * hours)
+        assert "required" in headline_of(by_life).text and headline_of(by_life).text.endswith(f": {state}.")
+
+
+@pytest.mark.parametrize(
+    ("wanted", "part"),
+    [
+        ({"min": "2 years"}, "needs a duty"),
+        ({"peak_stress_roller": {"max": 500}}, "is not judged for a spectrum"),
+        ({"roller_life_hours": {"min": 500}}, "Write requirement: {pair_life_to_first_limit_hours: {min: 5000}}"),
+        ({"pair_life_hours": {"min": 500, "probability": 0.9}}, "min alone"),
+    ],
+)
+def test_a_requirement_that_a_spectrum_does_not_judge_is_refused(wanted, part):
+    blocks = [{"name": "b", "distance": 1000.0}]
+    with pytest.raises(tr.InputError, match=re.escape(part)):
+        Spectrum.from_dict({"blocks": blocks, "requirement": wanted})
+    remedy = {"pair_life_to_first_limit_hours": {"min": 5000}}
+    assert Spectrum.from_dict({"blocks": blocks, "requirement": remedy}).required == {
+        "pair_life_to_first_limit_hours": 5000.0
+    }

@@ -61,7 +61,7 @@ def test_the_limit_that_the_headline_names_leads_the_table():
 
 def test_a_required_life_and_a_required_stress_are_judged():
     """The example lasts some hours; the requirement of a stress has a row with its use."""
-    ds = tr.solve(tr.Case(**FREE), contact_model="sliding", accuracy="preview")
+    ds = tr.solve(tr.Case(**FREE), contact_model="sliding", accuracy="preview", not_checked=("pressure_line",))
     hours = float(ds["pair_life_to_first_limit_hours_low"])
     stress = float(ds["peak_stress"].sel(body="roller").max())
     for factor, state in ((0.9, "met"), (1.1, "missed")):

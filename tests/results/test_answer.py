@@ -9,6 +9,7 @@ import pandas as pd
 import pytest
 
 import trackroller as tr
+from trackroller.report.headlines import headline_of
 from trackroller.results.questions import question_of
 
 LIFE = "pair_life_to_first_limit_hours"
@@ -52,8 +53,9 @@ def grooves(tmp_path_factory):
 def raw(results):
     """Return one row a case from the variables of the data set, without the tables of the package."""
     names = [LIFE, "regime", "roller_profile_radius", "radial_force", "axial_force", "cooled_area"]
+    names += [f"{LIFE}_low", f"{LIFE}_high"]
     frame = results.data[[n for n in names if n in results.data.data_vars]].to_dataframe().reset_index()
-    return frame
+    return frame.assign(middle=np.sqrt(frame[f"{LIFE}_low"] * frame[f"{LIFE}_high"]))
 
 
 def test_a_decision_agrees_with_raw_rows(grooves):
@@ -67,25 +69,85 @@ def test_a_decision_agrees_with_raw_rows(grooves):
     for _, row in answer.table.iterrows():
         own = rows[(rows["roller_profile_radius"] == row["roller_profile_radius"])]
         inside = own[some[own.index]]
-        assert row["low"] == pytest.approx(np.where(inside["held"], inside[LIFE], 0.0).min(), rel=1e-9)
+        low, high = f"{LIFE}_low", f"{LIFE}_high"
+        assert row["low"] == pytest.approx(np.where(inside["held"], inside[low], 0.0).min(), rel=1e-9)
         assert row["holds"] == own["held"].sum()
         assert row["of"] == len(own)
-        assert row["best"] == pytest.approx(own[own["held"]][LIFE].max(), rel=1e-9)
-        assert row["median"] == pytest.approx(own[own["held"]][LIFE].median(), rel=1e-9)
+        assert row["best"] == pytest.approx(own[own["held"]][high].max(), rel=1e-9)
+        assert row["median"] == pytest.approx(own[own["held"]]["middle"].median(), rel=1e-9)
 
 
 def test_the_leader_and_its_ratios_agree_with_raw_rows(grooves):
     answer = grooves.answer
     rows = raw(grooves)
     rows = rows[(rows["cooled_area"] == 2000) & (rows["regime"] == 0)]
-    table = rows.pivot_table(index=["radial_force", "axial_force"], columns="roller_profile_radius", values=LIFE)
-    worst = table.min()
-    assert answer.table["roller_profile_radius"].iloc[0] == worst.idxmax()
-    leader = table[worst.idxmax()]
+    ends = [
+        rows.pivot_table(index=["radial_force", "axial_force"], columns="roller_profile_radius", values=f"{LIFE}_{end}")
+        for end in ("low", "high")
+    ]
+    worst = np.sqrt(ends[0].min() * ends[1].min())
+    leader = worst.idxmax()
+    assert answer.table["roller_profile_radius"].iloc[0] == leader
     for _, row in answer.table.iterrows():
-        ratio = (table[row["roller_profile_radius"]] / leader).dropna()
-        assert row["ratio_low"] == pytest.approx(ratio.min(), rel=1e-6)
-        assert row["ratio_high"] == pytest.approx(ratio.max(), rel=1e-6)
+        ratios = [(table[row["roller_profile_radius"]] / table[leader]).dropna() for table in ends]
+        middle = np.sqrt(ratios[0] * ratios[1])
+        assert row["ratio_low"] == pytest.approx(middle.min(), rel=1e-6)
+        assert row["ratio_high"] == pytest.approx(middle.max(), rel=1e-6)
+
+
+LINES = {"fatigue": "bending line", "pressure_line": "rolling-contact line"}
+
+
+def test_each_end_of_a_candidate_names_the_line_that_gives_it(grooves):
+    """At the worst condition the lives of both bodies by both lines are compared by hand."""
+    answer = grooves.answer
+    for _, row in answer.table[answer.table["holds"] > 0].iterrows():
+        hours = {}
+        for end in ("low", "high"):
+            own = grooves.data[f"life_hours_by_limit_{end}"].stack(row=grooves.dims)
+            hours[end] = own.sel(limit=list(LINES)).isel(row=int(row["case"]))
+        reached = {"low": hours["low"].min("limit"), "high": hours["high"].max("limit")}
+        lines = {}
+        for end, lives in reached.items():
+            body = str(lives["body"].values[int(lives.values.argmin())])
+            own = hours[end].sel(body=body)
+            nearest = own.values.argmin() if end == "low" else own.values.argmax()
+            lines[end] = LINES[str(own["limit"].values[nearest])]
+            assert row[end] == pytest.approx(float(lives.min()), rel=1e-9)
+        assert (row["line_low"], row["line_high"]) == (lines["low"], lines["high"])
+        assert row["line"] == f"{lines['low']} to {lines['high']}"
+    leader = answer.table.iloc[0]
+    assert (answer.headline["line_low"], answer.headline["line_high"]) == (leader["line_low"], leader["line_high"])
+    assert f"({leader['line_low']} to {leader['line_high']})" in headline_of(answer).text
+    assert answer.headline["ends"] == answer.headline["ends_high"] == "fatigue"
+
+
+def test_a_requirement_between_both_lines_asks_for_tests_in_rolling_contact(tmp_path_factory):
+    """Between both lines the requirement is open; below or above both it is not."""
+    factors = {"roller_profile_radius": {"values": [-6.6, -7.5]}}
+    kinds = {}
+    for least in (100.0, 20000.0, 1e9):
+        results = solved(tmp_path_factory, "between", factors=factors, requirement={"pair_life_hours": {"min": least}})
+        ends = [results.data[f"{LIFE}_{end}"].to_numpy() for end in ("low", "high")]
+        kinds[least] = results.answer.kind, results.answer.headline["measure"]
+        if least == 20000.0:
+            assert (ends[0] < least).all() and (ends[1] > least).all()
+            assert set(results.answer.table["state"]) == {"open"}
+    assert kinds[100.0][0] == "build"
+    assert kinds[20000.0][0] == "measure"
+    assert kinds[20000.0][1]["what"] == "fatigue in rolling contact"
+    assert kinds[20000.0][1]["of"] == "1.7225-quenched-tempered"
+    assert kinds[1e9][0] == "none"
+
+
+def test_a_material_of_bending_alone_is_named_so_in_the_table(tmp_path_factory):
+    factors = {"roller_material": {"values": ["EN AW-7075", "1.7225-quenched-tempered"]}}
+    results = solved(
+        tmp_path_factory, "two", factors=factors, base={k: v for k, v in BASE.items() if k != "roller_material"}
+    )
+    lines = results.answer.table.set_index("roller_material")["line"]
+    assert lines["EN AW-7075"] == "bending line alone"
+    assert lines["1.7225-quenched-tempered"] == "bending line to rolling-contact line"
 
 
 def test_states_follow_the_ends_and_the_error(grooves):
@@ -186,8 +248,8 @@ def test_one_roller_under_drawn_conditions_has_a_share(tmp_path_factory):
         analysis={"target": {LIFE: {"min": 20000}}},
     )
     answer = results.answer
-    lives = results.data[LIFE].to_numpy()
-    share = float((lives >= 20000).mean())
+    lives = [results.data[f"{LIFE}_{end}"].to_numpy() for end in ("low", "high")]
+    share = float((np.sqrt(lives[0] * lives[1]) >= 20000).mean())
     n, z = 64, 1.959964
     middle = (share + z**2 / (2 * n)) / (1 + z**2 / n)
     half = z * np.sqrt(share * (1 - share) / n + z**2 / (4 * n**2)) / (1 + z**2 / n)
@@ -195,6 +257,9 @@ def test_one_roller_under_drawn_conditions_has_a_share(tmp_path_factory):
     assert answer.headline["share"] == pytest.approx(share)
     assert answer.headline["share_low"] == pytest.approx(max(0.0, middle - half), abs=1e-6)
     assert answer.headline["share_high"] == pytest.approx(min(1.0, middle + half), abs=1e-6)
+    # one end of each life is by the bending line, the other by the rolling-contact line
+    assert answer.headline["share_short"] <= (lives[0] >= 20000).mean() < (lives[1] >= 20000).mean()
+    assert answer.headline["share_long"] >= (lives[1] >= 20000).mean()
 
 
 @pytest.mark.parametrize(

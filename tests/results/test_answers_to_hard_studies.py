@@ -59,6 +59,7 @@ def without_scatter(request, tmp_path_factory):
         keys = {}
     wanted = {"pair_life_hours": {"min": 100}}
     place = tmp_path_factory.mktemp(f"chance-{request.param}")
+    keys |= {"not_checked": ["pressure_line"]}  # the range is that of the scatter alone
     return solve(place, factors=factors, failure_probability=0.1, requirement=wanted, **keys)
 
 
@@ -190,7 +191,8 @@ def test_the_worst_of_a_nearest_design_is_not_said_where_it_lifts_off(tmp_path):
         "radial_force": {"values": [-60, -150]},
         "axial_force": {"values": [8, 50]},
     }
-    results = solve(tmp_path, factors=factors, requirement={"pair_life_hours": {"min": 1e6}})
+    wanted = {"pair_life_hours": {"min": 1e6}}
+    results = solve(tmp_path, factors=factors, requirement=wanted, not_checked=["pressure_line"])
     frame = rows_of(results)
     held = frame[frame["roller_profile_radius"] == -6.3]["regime"] == 0
     answer = results.answer
@@ -269,7 +271,9 @@ def test_a_required_travel_is_a_required_life(tmp_path):
         assert row["state"] == "open"
     assert answer.kind == "measure"
     asked = answer.headline["measure"]
-    assert asked["what"].startswith("wear_coefficient") and asked["low"] < asked["turn"] < asked["high"]
+    assert asked["what"].startswith("wear_coefficient") and asked["low"] < asked["high"]
+    shorter = ends[0].max() * asked["high"] / asked["low"]  # by the smallest coefficient in one form of the groove
+    assert shorter < hours and np.isnan(asked["turn"]), "the longer one of two forms alone lasts"
 
 
 def test_a_response_surface_takes_a_requirement(tmp_path):

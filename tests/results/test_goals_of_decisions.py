@@ -26,6 +26,7 @@ def solved(place, base=None, **keys):
     given = {**BASE, **(base or {})}
     own = {key: value for key, value in given.items() if key not in keys["factors"]}
     study = {"name": place.name, "base": own, "contact_model": "sliding", "accuracy": "preview", "outputs": GROUPS}
+    study["not_checked"] = ["pressure_line"]  # the life has one line, so that value and ends agree
     return tr.run(study | keys, results=place, progress=False)
 
 
@@ -185,6 +186,7 @@ def named_loads(place, heavy):
         "contact_model": "sliding",
         "accuracy": "preview",
         "requirement": {LIFE: {"min": 20}},
+        "not_checked": ["pressure_line"],
     }
     (place / "study.yaml").write_text(yaml.safe_dump(study))
     return tr.run(place / "study.yaml", results=place, progress=False)
@@ -212,4 +214,4 @@ def test_loads_of_one_name_are_paired(tmp_path):
 def test_unequal_loads_of_one_name_are_not_paired(tmp_path):
     answer = named_loads(tmp_path, -260).answer
     assert answer.table["ratio_low"].iloc[1:].isna().all()
-    assert "candidates have other conditions" in {one.where for one in answer.warnings}
+    assert any(one.where.startswith("candidates have other conditions: ") for one in answer.warnings)

@@ -30,24 +30,27 @@ def headline(ds):
 
 def test_each_requirement_has_a_state_of_its_own():
     ds = solved()
-    hours, stress = float(ds.pair_life_to_first_limit_hours), float(ds.peak_stress.sel(body="roller").max())
+    low, high = (float(ds[f"pair_life_to_first_limit_hours_{end}"]) for end in ("low", "high"))
+    stress = float(ds.peak_stress.sel(body="roller").max())
     for life, most, states in (
-        (0.9 * hours, 1.1 * stress, ["met", "met"]),
-        (0.9 * hours, 0.9 * stress, ["met", "missed"]),
-        (1.1 * hours, 1.1 * stress, ["missed", "met"]),
+        (0.9 * low, 1.1 * stress, ["met", "met"]),
+        (0.9 * low, 0.9 * stress, ["met", "missed"]),
+        (1.1 * low, 1.1 * stress, ["open", "met"]),
+        (1.1 * high, 1.1 * stress, ["missed", "met"]),
     ):
         wanted = {"pair_life_to_first_limit_hours": {"min": life}, "peak_stress_roller": {"max": most}}
         own = solved(requirement=wanted)
         head = answer_of_roller(own).headline
         assert head["states"] == states
-        assert head["state"] == ("missed" if "missed" in states else "met")
+        assert head["state"] == next(state for state in ("missed", "open", "met") if state in states)
         ends = {words.rpartition(": ")[2].rstrip(".") for words in headline(own).split("; ") if "required" in words}
         assert ends == set(states)
 
 
 def test_a_largest_life_counts_as_well():
-    hours = float(solved().pair_life_to_first_limit_hours)
-    for most, state in ((1.1 * hours, "met"), (0.9 * hours, "missed")):
+    ds = solved()
+    low, high = (float(ds[f"pair_life_to_first_limit_hours_{end}"]) for end in ("low", "high"))
+    for most, state in ((1.1 * high, "met"), (1.1 * low, "open"), (0.9 * low, "missed")):
         ds = solved(requirement={"pair_life_to_first_limit_hours": {"min": 1, "max": most}})
         assert answer_of_roller(ds).headline["state"] == state
 
@@ -149,9 +152,8 @@ def test_a_life_without_scatter_stands_among_the_limits_as_a_range():
         friction_coefficient=0.2,
     )
     groups = ("forces", "contact", "peak_stress", "life", "limits")
-    answer = answer_of_roller(
-        tr.solve(case, groups, contact_model="sliding", accuracy="preview", failure_probability=0.05)
-    )
+    options = {"contact_model": "sliding", "accuracy": "preview", "not_checked": ("pressure_line",)}
+    answer = answer_of_roller(tr.solve(case, groups, failure_probability=0.05, **options))
     fatigue = answer.table[answer.table["limit"] == "fatigue"].set_index("body")
     assert 0 < fatigue.loc["roller", "low"] < fatigue.loc["roller", "high"]
     assert 0 < fatigue.loc["guide", "low"] == fatigue.loc["guide", "high"]

@@ -59,7 +59,7 @@ def test_the_lives_of_a_carriage_are_those_of_its_worst_roller(shelf):
     found = tr.size(cart(), shelf, life="1 years", safety=1.2, least="price")  # 16 h on 250 days
     table = found.table.set_index("roller")
     for name in ROWS:
-        life = solve_carriage(cart(name))["life_hours"].min().item()
+        life = solve_carriage(cart(name))["life_hours_low"].min().item()
         assert table.loc[name, "life_hours"] == pytest.approx(life, rel=1e-7)  # forces of 8 digits
         assert table.loc[name, "life_ratio"] == pytest.approx(life / 4000, rel=1e-7)
     assert found.least == "mid" and found.unranked == ("no price",)

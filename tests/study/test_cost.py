@@ -7,11 +7,12 @@ import pytest
 from trackroller.numerics.numbers import rounded_up
 from trackroller.parameters.contact_models import DECLARED, LEVELS, measured_costs
 from trackroller.roller.measured_errors import errors_of_rung
-from trackroller.study.cost import SHARED, START, duration, rate, seconds_on, study_rate
+from trackroller.study.cost import SHARED, START, duration, megabytes_of_report, rate, seconds_on, study_rate
 from trackroller.study.file.load import parse_study
 from trackroller.study.status import plan_rows, status_of
 from trackroller.study.store.ledger import study_folder
 
+MEASURED_PEAKS = {9_600: 435, 96_000: 895, 998_400: 4040}
 FALLING = {"kind": "exponential", "speed": 200.0, "lowest": 0.4}
 
 
@@ -115,3 +116,10 @@ def test_a_plan_says_which_designs_miss_a_tolerance(tmp_path):
     missed = measured_costs()["missed"]["0.01"]
     assert f"at 0.01, {missed:.0%} of designs" in text and missed > 0.1
     assert text.startswith(f"takes {study_rate(study, 'standard') / study_rate(study):.2g} times standard")
+
+
+def test_the_memory_of_a_report_covers_the_measured_peaks():
+    """Peaks [MB] of a grid with every limit; the docs show them, and a cluster ends a job above its memory."""
+    outputs = ("forces", "contact", "peak_stress", "life", "limits")
+    for cases, peak in MEASURED_PEAKS.items():
+        assert peak < megabytes_of_report(outputs, cases) < 3 * peak

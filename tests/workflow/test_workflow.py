@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -241,3 +242,14 @@ def test_a_users_run_holds_no_rule_of_the_validation(place):
     rules = set(snakemake(place, "--list-rules").split())
     assert not rules & {"extremes", "tradeoff", "paper", "contact_models", "benchmark"}
     assert {"design", "solve", "gather", "sensitivity", "report"} <= rules
+
+
+def test_gathering_and_the_report_ask_a_cluster_for_the_memory_that_the_study_takes(tmp_path):
+    """4,000 cases of forces, 520 bytes each, 2.5 times: 5 MB above the program. Chunks take what the profile gives."""
+    lay_study(tmp_path, levels=2000, size=2000)
+    told = snakemake(tmp_path, "-n")
+    asked = {
+        rule: re.findall(r"mem_mb=(\d+)", text)
+        for rule, text in re.findall(r"rule (\w+):(.*?resources:[^\n]*)", told, re.S)
+    }
+    assert asked["gather"] == asked["sensitivity"] == asked["report"] == ["1005"] and asked["solve"] == []

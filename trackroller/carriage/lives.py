@@ -93,6 +93,7 @@ class Lives:
         """Return the cases with the flag `worn` of each roller over all its load cases."""
         if "life_to_first_limit_hours" not in self.summed:
             return self.solved
+        # the number of the roller of each case: `order` sorts the cases by roller
         roller = np.empty(len(self.order), dtype=int)
         roller[self.order] = np.repeat(np.arange(len(self.first)), self.counts)
         km = self.summed["life_to_first_limit_hours"] / self.hours[:, None]
@@ -187,7 +188,7 @@ class Lives:
                 if limit.name == "fatigue" and "life_hours" in solved
             ):
                 lives[:, i] = self._fatigue(solved[f"life_hours_by_limit{end}"].values[:, i])
-            first, which = first_limit.first_of(lives, used, timed, limits, broken, state == 0)
+            first, which = first_limit.first_of(lives, used, timed, limits, broken, state == 0, end)
             new |= {f"life_hours_by_limit{end}": lives, f"life_to_first_limit_hours{end}": first}
             new[f"pair_life_to_first_limit_hours{end}"] = first_failure(*first.T)[0]
             if not end:

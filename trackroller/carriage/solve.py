@@ -829,7 +829,7 @@ class _Checks:
         shape = (number, len(LIMITS), len(BODIES))
         self.names = list(LIMITS)
         self.used = np.full(shape, np.nan)
-        self.hours = np.full(shape, np.nan)
+        self.hours = {end: np.full(shape, np.nan) for end in first_limit.ENDS}
         self.state = np.zeros(shape, dtype=np.int8)
         self.requested: list[str] = []
         self.notes: list[str] = []
@@ -838,28 +838,28 @@ class _Checks:
         """Take the limits of rollers that were solved together; one that is unknown in a load case
         is not known.
         """
-        places = [self.names.index(name) for name in solved["limit"].values.tolist()]
-        state = lives.summed["limit_state"].copy()
-        shares = (lives.share == 0)[:, None, None]
-        least = lives.of(
-            np.where(shares, len(first_limit.STATES), solved["limit_state"].values), np.minimum
-        )
-        exceeded = first_limit.STATES.index("exceeded")
-        state[(least == first_limit.STATES.index("unknown")) & (state != exceeded)] = (
-            first_limit.STATES.index("unknown")
-        )
-        into = np.ix_(rollers, np.array(places))
-        self.state[into] = state
+        limits = solved["limit"].values.tolist()
+        into = np.ix_(rollers, np.array([self.names.index(name) for name in limits]))
+        self.state[into] = self._states(lives, solved)
         self.used[into] = lives.summed["utilisation"]
-        self.hours[into] = lives.summed["life_hours_by_limit"]
-        self.requested += [
-            name for name in solved["limit"].values.tolist() if name not in self.requested
-        ]
-        self.notes += [
-            line
-            for line in str(solved.attrs.get(NOTES, "")).split("\n")
-            if line and line not in self.notes
-        ]
+        for end, hours in self.hours.items():
+            hours[into] = lives.summed[f"life_hours_by_limit{end}"]
+        self.requested += [name for name in limits if name not in self.requested]
+        notes = str(solved.attrs.get(NOTES, "")).split("\n")
+        self.notes += [line for line in notes if line and line not in self.notes]
+
+    @staticmethod
+    def _states(lives: Lives, solved: xr.Dataset) -> np.ndarray:
+        """Return the state of each limit over all load cases, (roller, limit, body): unknown if it
+        is unknown in a load case that counts, unless another one exceeds it.
+        """
+        unknown = first_limit.STATES.index("unknown")
+        exceeded = first_limit.STATES.index("exceeded")
+        state = lives.summed["limit_state"].copy()
+        counts = (lives.share != 0)[:, None, None]
+        is_unknown = lives.of(counts & (solved["limit_state"].values == unknown), np.logical_or)
+        state[is_unknown & (state != exceeded)] = unknown
+        return state
 
     def variables(self) -> dict[str, Any]:
         """Return utilisation, hours and state of each limit as variables, with their labels."""
@@ -869,7 +869,12 @@ class _Checks:
             "flag_meanings": " ".join(first_limit.STATES),
             "long_name": "whether the limit is kept over the load cases",
         }
-        alone = _attrs("h", "hours of travel to the limit, with the damage of all load cases")
+        meaning = "hours of travel to the limit, with the damage of all load cases"
+        heads = {"": "", "_low": "low end of the ", "_high": "high end of the "}
+        hours = {
+            f"life_hours_by_limit{end}": (dims, values, _attrs("h", heads[end] + meaning))
+            for end, values in self.hours.items()
+        }
         return {
             "limit": ("limit", self.names, {"long_name": "limit"}),
             "body": ("body", list(BODIES), {"long_name": "body"}),
@@ -878,7 +883,7 @@ class _Checks:
                 self.used,
                 _attrs("1", "largest utilisation over the load cases"),
             ),
-            "life_hours_by_limit": (dims, self.hours, alone),
+            **hours,
             "limit_state": (dims, self.state, flags),
         }
 

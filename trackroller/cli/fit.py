@@ -113,7 +113,8 @@ def fit_bench(  # noqa: PLR0913 - one argument for each option of the command
 ) -> None:
     """Fit values of a material to rollers on a bench, and write the material and a page.
 
-    The values are fatigue_strength, slope, scatter, wear_coefficient and friction_coefficient.
+    The values are fatigue_strength, slope, scatter, wear_coefficient and friction_coefficient;
+    rolling_pressure, rolling_exponent and scatter are those of a line of pressure.
     """
     from trackroller.fit import bench
 

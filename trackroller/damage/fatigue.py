@@ -241,6 +241,7 @@ LIMIT = Limit(
         "life_criterion": dict.fromkeys(("findley", "dang_van"), ("fatigue_limit_torsion",))
     },
     bounded=False,
+    line="bending line",
     distribution=SN_SCATTER,
     compares=("fatigue_stress peak_stress", "fatigue limit sigma_D; above it the life is finite"),
     standard="DIN 50100:2016 for the form of the S-N curve",

@@ -111,6 +111,47 @@ def breaking(breaks: np.ndarray, limits: Sequence[Limit]) -> np.ndarray:
     return np.asarray(breaks[..., None, :] & np.array([name == own for name in names])[:, None])
 
 
+def with_evidence(life: np.ndarray, limits: Sequence[Limit], end: str) -> np.ndarray:
+    """Return lives whose range reaches to the lives by other tests of the same end.
+
+    Parameters
+    ----------
+    life : numpy.ndarray
+        When each limit is reached at one of `ENDS`, (..., limit, body); NaN where it is not known.
+    limits : sequence of Limit
+        The limits; `Limit.evidence_of` names the one that a limit has other tests of.
+    end : str
+        One of `ENDS`. The value itself stays that of the limit.
+
+    Returns
+    -------
+    numpy.ndarray
+        At the low end the shorter, at the high end the longer one of both lives, of the same
+        shape. A life that is not known stays so.
+
+    Examples
+    --------
+    >>> from trackroller.damage import LIMITS
+    >>> both = [LIMITS["fatigue"], LIMITS["pressure_line"]]
+    >>> hours = np.array([[100.0, 100.0], [7e3, np.nan]])
+    >>> [with_evidence(hours, both, end)[0].tolist() for end in ENDS]
+    [[100.0, 100.0], [100.0, 100.0], [7000.0, 100.0]]
+    """
+    names = [limit.name for limit in limits]
+    out = np.array(life, dtype=float)
+    for place, limit in enumerate(limits):
+        if not end or limit.evidence_of not in names:
+            continue
+        ended = names.index(limit.evidence_of)
+        own = out[..., ended, :]
+        if end == "_low":
+            reached = np.fmin(own, life[..., place, :])
+        else:
+            reached = np.fmax(own, life[..., place, :])
+        out[..., ended, :] = np.where(np.isnan(own), np.nan, reached)
+    return out
+
+
 def first_of(
     life: np.ndarray,
     used: np.ndarray,
@@ -118,6 +159,7 @@ def first_of(
     limits: Sequence[Limit],
     broken: np.ndarray,
     lacking: np.ndarray | None = None,
+    end: str = "",
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return when the first limit is reached, and which one it is.
 
@@ -136,6 +178,8 @@ def first_of(
         Limits that a body reaches at once because it breaks, (n, limit, body), see `breaking`.
     lacking : numpy.ndarray of bool, optional
         Where a limit is not checked because a value is not given, (n, limit, body).
+    end : str
+        The one of `ENDS` to which the lives belong, see `with_evidence`.
 
     Returns
     -------
@@ -146,6 +190,7 @@ def first_of(
     """
     counted = (ends & ~np.array([limit.beside for limit in limits], dtype=bool))[:, None]
     concerned = counted & [[body in limit.bodies for body in BODIES] for limit in limits]
+    life = with_evidence(life, limits, end)
     life, known = np.where(broken, 0.0, life), (counted & ~np.isnan(life)) | broken
     first = np.min(np.where(known, life, np.inf), axis=1)
     rank = np.where(known & (life == first[:, None, :]), np.nan_to_num(used, nan=0.0), -1.0)
@@ -261,7 +306,8 @@ def limit_uses(
     Notes
     -----
     A limit without hours ends no life; `limit_state` says whether it is exceeded. A body that is
-    loaded above its tensile strength breaks at once.
+    loaded above its tensile strength breaks at once. The ends of the life to the first limit count
+    other tests of the same end, see `with_evidence`.
     """
     shape = len(places), len(places[0].rolling_radius), len(limits), len(BODIES)
     used = np.full(shape, np.nan)
@@ -300,7 +346,7 @@ def limit_uses(
     at = (0, min(1, len(places) - 1), len(places) - 1)
     for place_of_end, (end, place) in enumerate(zip(ENDS, at, strict=True)):
         life = lives[place_of_end, place]
-        first, which = first_of(life, used[0], timed, limits, at_once, lacking)
+        first, which = first_of(life, used[0], timed, limits, at_once, lacking, end)
         out |= {f"life_hours_by_limit{end}": life, f"life_to_first_limit_hours{end}": first}
         out[f"pair_life_to_first_limit_hours{end}"] = first_failure(*first.T)[0]
         if not end:

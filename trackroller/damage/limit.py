@@ -226,6 +226,12 @@ class Limit:
     beside : bool
         Whether the limit is a second model of an end that another limit has. It does not enter the
         first limit.
+    evidence_of : str
+        Name of the limit of whose end this one knows other tests, or an empty text. The range of
+        the life to that end reaches to the life by this limit, see
+        `trackroller.damage.first_limit.with_evidence`.
+    line : str
+        What the tests are that a life by fatigue follows from, or an empty text.
     distribution : str
         What the failure probability of the life rests on: "S-N scatter", "Weibull 10/9", "none".
     compares : tuple of str
@@ -261,11 +267,20 @@ class Limit:
     bodies: tuple[str, ...] = BODIES
     bounded: bool = True
     beside: bool = False
+    evidence_of: str = ""
+    line: str = ""
     distribution: str = "none"
     compares: tuple[str, str] = ("", "")
     standard: str = ""
     assumes: tuple[str, ...] = ()
     short: str = ""
+
+    @property
+    def rivals(self) -> bool:
+        """Return whether the limit is a second model that may turn a verdict: other tests of an end
+        turn none, because the range of its life counts them.
+        """
+        return self.beside and not self.evidence_of
 
     @property
     def word(self) -> str:
@@ -304,7 +319,7 @@ class Limit:
         return out
 
     def served(self, solved: SolvedRollers) -> np.ndarray:
-        """Return which cases have all that its use by a body requires, or give a field that
+        """Return which cases have all that the limit of a body requires, or give a field that
         serves this limit alone, (n,) bool.
         """
         own = [
@@ -329,8 +344,8 @@ class Limit:
         return np.asarray(self.bound(solved.at_end(0)) < 1.0)
 
     def moves(self, solved: SolvedRollers) -> np.ndarray:
-        """Return which cases use the limit by a value of a material that is known within a range
-        only, (n,) bool.
+        """Return whose use of the limit rests on a value of a material that is known within a
+        range only, (n,) bool.
         """
         out = np.zeros(len(solved.rolling_radius), dtype=bool)
         for name, _ in self.required_of(solved):

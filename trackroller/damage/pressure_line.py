@@ -4,9 +4,9 @@ The line runs through (N_R, p_R) with the exponent k_R on the largest Hertzian p
 
     N = N_R (p_0 / p_R)**-k_R
 
-It is a second model of the end that the S-N curve has, from tests of rollers and gears in place of
-bending. For steel that is hardened through or not at all, p_R follows from the hardness
-(`pressure_of_hardness`).
+It knows the end that the S-N curve has by tests of rollers and gears in place of bending. The life
+to the first limit is then a range: each line gives one end. For steel that is hardened through or
+not at all, p_R follows from the hardness (`pressure_of_hardness`).
 
 ASSUME: a line of p_0 holds for elliptical contacts as for the line contacts of its tests. ASSUME:
 those tests were lubricated, so that the line knows little traction. The traction of a dry contact
@@ -149,6 +149,8 @@ LIMIT = Limit(
     requires=("rolling_pressure", "guide_overrollings_per_hour"),
     bounded=False,
     beside=True,
+    evidence_of="fatigue",
+    line="rolling-contact line",
     distribution="log-normal with the scatter of the material, or a typical one",
     compares=("max_pressure", "pressure p_R at N_R overrollings; above it the life is shorter"),
     assumes=(

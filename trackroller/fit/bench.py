@@ -17,12 +17,13 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from trackroller.damage.pressure_line import CYCLES, EXPONENT
 from trackroller.damage.wear import KM_PER_HOUR
 from trackroller.errors import Collector, InputError, check_names, listing
 from trackroller.files import files_beside, find_beside
@@ -45,7 +46,15 @@ from trackroller.roller.settings import BESIDE, checked_case
 from trackroller.roller.solver import solve
 from trackroller.yaml_file import read_mapping
 
-FITTED = ("fatigue_strength", "slope", "scatter", "wear_coefficient", "friction_coefficient")
+# values of the line of each kind, of stress and of pressure; both have the scatter of the material
+OF_LINE = {
+    "fatigue": ("fatigue_strength", "slope"),
+    "rolling": ("rolling_pressure", "rolling_exponent"),
+}
+FITTED = (
+    *("fatigue_strength", "slope", "scatter", "rolling_pressure", "rolling_exponent"),
+    *("wear_coefficient", "friction_coefficient"),
+)
 OWN = ("test", "base", "travel_from", "travel_to", "end", "contact", "drive_force", "note")
 COLUMNS = (*OWN, *PARAMETERS, *MATERIAL_FIELDS, *ALIASES)
 MODES = ("fatigue", *(name for name in LIMITS if name != "fatigue"), "other")
@@ -90,13 +99,15 @@ def fit_bench(  # noqa: PLR0913 - one argument for each choice of a fit
         `drive_force` [N] the force that moved a roller without motor.
     fit : sequence of str or str
         What is fitted: "fatigue_strength", "slope", "scatter", "wear_coefficient",
-        "friction_coefficient". Slope and scatter that are not named are those of the material.
+        "friction_coefficient". "rolling_pressure" and "rolling_exponent" in place of the first two
+        fit the line of pressure p_R at N_R overrollings, the limit `pressure_line`. Slope and
+        scatter that are not named are those of the material.
     name : str
         Name of the material that is made; by default that of the tested body with "fitted".
     body : str, optional
         Body whose values are fitted, "roller" or "guide"; by default the one that failed.
     slope, scatter_in_cycles : float, optional
-        Slope k and scatter T_N that are held instead of fitted [1].
+        Slope of the line, k or k_R, and scatter T_N that are held instead of fitted [1].
     like : str, optional
         Material whose other values the fitted one takes; by default the tested one.
     base : mapping, optional
@@ -132,11 +143,13 @@ def fit_bench(  # noqa: PLR0913 - one argument for each choice of a fit
     check_texts(name=name, like=like)
     check_base(base)
     slope, scatter_in_cycles = check_held(slope, scatter_in_cycles)
-    fixed = {"slope": slope, "scatter": scatter_in_cycles}
+    kind = _kind_of_line(values)
+    fixed: dict[str, float | None] = {"scatter": scatter_in_cycles}
+    fixed |= dict.fromkeys(("slope", "rolling_exponent"), slope)
     values = [value for value in values if fixed.get(value) is None]
     if not values:
         raise InputError(
-            "fit", fit, "at least one value that is not held", "Name fatigue_strength as well."
+            "fit", fit, "at least one value that is not held", f"Name {OF_LINE[kind][0]} as well."
         )
     if body is not None:
         check_names("body", [body], BODIES)
@@ -155,9 +168,10 @@ def fit_bench(  # noqa: PLR0913 - one argument for each choice of a fit
     material = _material_of(rows, cases, tested)
     solved = _solved(rows, cases, options, tested)
     groups = []
-    if {"fatigue_strength", "slope", "scatter"} & set(values):
-        constants = _constants(values, material, slope, scatter_in_cycles)
-        groups.append(_fatigue(rows, ends, travels, solved, tested, material, constants, prior))
+    if {*OF_LINE[kind], "scatter"} & set(values):
+        constants = _constants(values, kind, material, slope, scatter_in_cycles)
+        line = _line_group(rows, ends, travels, solved, tested, kind, material, constants)
+        groups.append(replace(line, priors=priors_of(prior)))
     if "wear_coefficient" in values:
         groups.append(_wear(rows, ends, travels, cases, options, tested))
     if "friction_coefficient" in values:
@@ -176,14 +190,18 @@ def fit_bench(  # noqa: PLR0913 - one argument for each choice of a fit
 
 
 def _constants(
-    values: Sequence[str], material: Material, slope: float | None, scatter: float | None
+    values: Sequence[str],
+    kind: str,
+    material: Material,
+    slope: float | None,
+    scatter: float | None,
 ) -> dict[str, float | None]:
-    """Return the slope k and the deviation of ln N that are not fitted: those that are held, or
-    those of the material. `scatter` is T_N.
+    """Return the slope of the line and the deviation of ln N that are not fitted: those that are
+    held, or those of the material. `scatter` is T_N.
     """
     constants: dict[str, float | None] = dict.fromkeys(("slope", "scatter"))
-    if "slope" not in values:
-        constants["slope"] = slope or material.woehler_exponent
+    if OF_LINE[kind][1] not in values:
+        constants["slope"] = _slope_of(material, kind, slope)
     if "scatter" not in values:
         constants["scatter"] = _scatter_of(material, scatter)
     return constants
@@ -227,6 +245,17 @@ def _values_to_fit(fit: Sequence[str] | str) -> list[str]:
         raise InputError("fit", fit, f"a list of {', '.join(FITTED)}")
     check_names("fit", values, FITTED)
     return values
+
+
+def _kind_of_line(values: Sequence[str]) -> str:
+    """Return the kind of the line that is fitted; refuse both kinds from the same tests."""
+    kinds = [kind for kind, names in OF_LINE.items() if set(names) & set(values)]
+    if len(kinds) > 1:
+        allowed = "values of one line, of stress or of pressure: a material has one scatter"
+        first, second = (listing(list(names)) for names in OF_LINE.values())
+        remedy = f"Fit {first}, or {second}; a second fit with another name gives the other line."
+        raise InputError("fit", ", ".join(values), allowed, remedy)
+    return next(iter(kinds), "fatigue")
 
 
 def _check_names_once(rows: TestTable) -> None:
@@ -483,25 +512,33 @@ def _outside(rows: TestTable, solved: Solved, body: str) -> list[str]:
     return notes
 
 
-def _fatigue(
+def _line_group(
     rows: TestTable,
     ends: Sequence[End],
     travels: Sequence[tuple[float, float]],
     solved: Solved,
     body: str,
+    kind: str,
     material: Material,
     constants: Mapping[str, float | None],
-    prior: Mapping[str, Sequence[float]] | None,
 ) -> Group:
-    """Return the line of fatigue of a body."""
+    """Return the line of fatigue of a body: over the stress, or of `rolling` over the pressure."""
+    if kind == "rolling":
+        load = solved.pressure
+        k = material.rolling_exponent or EXPONENT
+        at = material.rolling_cycles or CYCLES
+    else:
+        load = solved.stress
+        k = material.woehler_exponent
+        at = material.cycles_at_fatigue_limit
     b = BODIES.index(body)
-    stress = []
+    loads = []
     low = []
     high = []
     origin = []
     for row in rows:
         ended = ends[row].mode == "fatigue" and ends[row].body == body
-        contacts, failed = _contacts_of_row(rows, row, solved, body, material.woehler_exponent)
+        contacts, failed = _contacts_of_row(rows, row, load, solved, body, k)
         if not ended:
             contacts = {failed}
         for contact in contacts:
@@ -509,28 +546,28 @@ def _fatigue(
             if not ended or contact != failed:
                 stop = math.inf
             per_km = solved.per_km[row, contact, b]
-            stress.append(math.log(solved.stress[row, contact, b]))
+            loads.append(math.log(load[row, contact, b]))
             low.append(log_or_end(start * per_km))
             high.append(log_or_end(stop * per_km))
             origin.append(row)
     known = np.isfinite(np.array(low)) | np.isfinite(np.array(high))
-    tests = Tests(np.array(stress)[known], np.array(low)[known], np.array(high)[known])
-    return _fatigue_group(
-        rows, tests, tuple(np.array(origin)[known].tolist()), material, constants, prior
-    )
+    tests = Tests(np.array(loads)[known], np.array(low)[known], np.array(high)[known])
+    rows_of_tests = tuple(np.array(origin)[known].tolist())
+    line = _checked_line(rows, tests, rows_of_tests, constants)
+    return Group(kind, line, at=at, rows=rows_of_tests)
 
 
 def _contacts_of_row(
-    rows: TestTable, row: int, solved: Solved, body: str, slope: float
+    rows: TestTable, row: int, load: np.ndarray, solved: Solved, body: str, slope: float
 ) -> tuple[set[int], int]:
     """Return the contacts of a roller that a test tells of, and the one that failed, or would fail
-    first by the slope k.
+    first by the slope of the line over the `load`.
 
     A row that states the failed contact tells of the other one too: it ran as long without a
     failure.
     """
     b = BODIES.index(body)
-    life = solved.stress[row, :, b] ** -slope / solved.per_km[row, :, b]  # up to a factor [km]
+    life = load[row, :, b] ** -slope / solved.per_km[row, :, b]  # up to a factor [km]
     if np.isnan(life).any():
         remedy = "Give guide_overrollings_per_hour, or fit the roller."
         raise rows.error(row, "base", f"a known number of overrollings of the {body}", remedy)
@@ -543,14 +580,10 @@ def _contacts_of_row(
     return {0, 1}, int(stated) - 1
 
 
-def _fatigue_group(
-    rows: TestTable,
-    tests: Tests,
-    origin: tuple[int, ...],
-    material: Material,
-    constants: Mapping[str, float | None],
-    prior: Mapping[str, Sequence[float]] | None,
-) -> Group:
+def _checked_line(
+    rows: TestTable, tests: Tests, origin: tuple[int, ...], constants: Mapping[str, float | None]
+) -> Line:
+    """Return the line of some tests; refuse tests that cannot tell the values that are fitted."""
     slope = constants["slope"]
     scatter = constants["scatter"]
     last = len(rows) - 1
@@ -581,9 +614,20 @@ def _fatigue_group(
         remedy = "Test more rollers, or fit fewer values."
         allowed = f"more rows than the {len(line.free)} fitted values"
         raise rows.placed(InputError("tests", len(rows), allowed, remedy))
-    return Group(
-        "fatigue", line, priors_of(prior), at=material.cycles_at_fatigue_limit, rows=origin
-    )
+    return line
+
+
+def _slope_of(material: Material, kind: str, constant: float | None) -> float:
+    """Return the slope of a line that is held, or that of a material."""
+    own = material.woehler_exponent
+    if kind == "rolling":
+        own = material.rolling_exponent
+    slope = constant or own
+    if slope is None:
+        remedy = "Hold it with --slope 18 (slope=18), or fit rolling_exponent as well."
+        field = f"material '{material.name}'.rolling_exponent"
+        raise InputError(field, None, "the exponent of its line of pressure, which is held", remedy)
+    return float(slope)
 
 
 def _scatter_of(material: Material, constant: float | None) -> float:

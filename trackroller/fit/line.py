@@ -115,8 +115,10 @@ class Tests:
         """Return ln N of each test: the life, the middle of its interval, or the end of a
         suspension, (n,).
         """
+        # an end that came before the first look has no lower bound: half its life stands for it
         low = np.where(np.isfinite(self.low), self.low, self.high - math.log(2.0))
-        return np.where(self.failed, 0.5 * (low + np.where(self.failed, self.high, 0.0)), low)
+        high = np.where(self.failed, self.high, low)
+        return 0.5 * (low + high)
 
 
 @dataclass(frozen=True)

@@ -19,7 +19,7 @@ from trackroller.files import all_or_none, write_whole
 from trackroller.fit import SHOWN
 from trackroller.fit.line import Interval, Line
 from trackroller.fit.posterior import Normal, Posterior, ln_range, log_strength, posterior
-from trackroller.fit.solved_rollers import worst_stress
+from trackroller.fit.solved_rollers import worst_load
 from trackroller.fit.table import LEAST_STRESS, MOST_CYCLES, MOST_STRESS, TestTable
 from trackroller.materials import Material, add_material
 from trackroller.materials.file import own_file, posterior_path
@@ -33,6 +33,8 @@ WORDS = {
     "woehler_exponent": ("1", "slope k of the S-N line"),
     "scatter_in_cycles": ("1", "scatter of the life T_N"),
     "scatter_in_stress": ("1", "scatter of the fatigue limit T_S"),
+    "rolling_pressure": ("MPa", "pressure borne in rolling contact, failure probability 50 %"),
+    "rolling_exponent": ("1", "exponent of the line of pressure"),
     "wear_coefficient": ("mm3/(N m)", "wear coefficient"),
     "wear_scatter": ("1", "scatter of the travel to a depth, 90 over 10 %"),
     "friction_coefficient": ("1", "friction coefficient"),
@@ -50,9 +52,12 @@ OF_GROUP = {
         "log_limit": "fatigue_limit",
         "log_limit_scatter": "scatter_in_stress",
     },
+    "rolling": {"slope": "rolling_exponent", "log_scatter": "scatter_in_cycles"},
     "wear": {"level": "wear_coefficient", "log_scatter": "wear_scatter"},
     "friction": {"level": "friction_coefficient", "log_scatter": "friction_scatter"},
 }
+# load that a straight line bears for the cycles at which it is stated, by the kind of the line
+STRENGTHS = {"fatigue": "fatigue_limit", "rolling": "rolling_pressure"}
 
 
 @dataclass(frozen=True)
@@ -62,7 +67,7 @@ class Group:
     Parameters
     ----------
     kind : str
-        "fatigue", "wear" or "friction".
+        "fatigue" (stress), "rolling" (pressure), "wear" or "friction".
     line : Line
         The line. That of wear is ln of the travel over the travel that the unit coefficient `scale`
         gives, and that of friction ln of the coefficient.
@@ -93,8 +98,8 @@ class Group:
         """Return the names of the values that the tests were to tell."""
         names_by_value = OF_GROUP[self.kind]
         names = [names_by_value[name] for name in self.line.free if name in names_by_value]
-        if self.kind == "fatigue" and not self.line.knee:
-            names.insert(0, "fatigue_limit")
+        if self.kind in STRENGTHS and not self.line.knee:
+            names.insert(0, STRENGTHS[self.kind])
         return tuple(names)
 
     @property
@@ -104,8 +109,8 @@ class Group:
         if not self.line.tests.failed.any():
             return self.names
         at_bound = {names_by_value[name] for name in self.line.at_bound if name in names_by_value}
-        if "woehler_exponent" in at_bound and not self.line.knee:
-            at_bound.add("fatigue_limit")  # it lies on the line far from the tests
+        if names_by_value.get("slope") in at_bound and not self.line.knee:
+            at_bound.add(STRENGTHS[self.kind])  # it lies on the line far from the tests
         return tuple(name for name in self.names if name in at_bound)
 
     def estimate(self, name: str) -> float:
@@ -120,9 +125,9 @@ class Group:
 
     def _of(self, name: str, values: Any) -> np.ndarray:
         """Return a value by its name, in its unit, from the values of the line."""
-        if name == "fatigue_limit":
+        if name in STRENGTHS.values():
             return np.exp(log_strength(self.line, values, self.at))
-        if name == "woehler_exponent":
+        if name in ("woehler_exponent", "rolling_exponent"):
             return np.asarray(values.slope)
         if name == "wear_coefficient":  # a longer travel is a smaller coefficient
             return self.scale * np.exp(-values.level)
@@ -138,7 +143,7 @@ class Group:
         """Return the profile interval of a value by its name, in its unit; an open end is inf
         or 0.
         """
-        if name == "fatigue_limit" and not self.line.knee:
+        if name in STRENGTHS.values() and not self.line.knee:
             return Interval(
                 *np.exp(self.line.interval_of_strength(math.log(self.at), 0.5, confidence)).tolist()
             )
@@ -171,8 +176,8 @@ class Group:
 
     @property
     def tested(self) -> tuple[float, float, float]:
-        """Return the least and the largest stress tested [MPa], and the cycles of the longest test
-        [1].
+        """Return the least and the largest stress or pressure tested [MPa], and the cycles of the
+        longest test [1].
         """
         tests = self.line.tests
         low = float(np.exp(tests.stress.min())), float(np.exp(tests.stress.max()))
@@ -252,14 +257,39 @@ class MaterialFit:
                 name for name in group.names if name in ENTRY and name not in group.unidentified
             ]
             entry |= {name: group.estimate(name) for name in known}
-            if group.kind == "fatigue" and "fatigue_limit" in entry:
+            if STRENGTHS.get(group.kind) not in entry:
+                continue
+            best = group.line.best
+            if group.kind == "fatigue":
                 entry["cycles_at_fatigue_limit"] = self.knee
-                best = group.line.best
-                if "slope" not in group.line.free:
-                    entry["woehler_exponent"] = float(best.slope)
-                if "log_scatter" not in group.line.free:
-                    entry["scatter_in_cycles"] = float(ln_range(math.exp(best.log_scatter)))
+                if self.in_rolling:
+                    entry["sn_in_rolling"] = 1.0
+            else:
+                entry["rolling_cycles"] = group.at
+            if "slope" not in group.line.free:
+                entry[OF_GROUP[group.kind]["slope"]] = float(best.slope)
+            if "log_scatter" not in group.line.free:
+                entry["scatter_in_cycles"] = float(ln_range(math.exp(best.log_scatter)))
         return entry
+
+    @property
+    def in_rolling(self) -> bool:
+        """Return whether the tests were in rolling contact, and not in bending or tension."""
+        return self.kind == "bench" or self.given.get("load type") == "rolling contact"
+
+    @property
+    def of_life(self) -> Group | None:
+        """Return the line that a life by fatigue follows from, of stress or of pressure; None
+        without one.
+        """
+        return next((own for own in self.groups if own.kind in STRENGTHS), None)
+
+    def _line_of_life(self) -> Line:
+        """Return the line of stress or of pressure; refuse a fit without both."""
+        own = self.of_life
+        if own is None:
+            own = self.group("fatigue")
+        return own.line
 
     @property
     def knee(self) -> float:
@@ -277,8 +307,8 @@ class MaterialFit:
         """Return estimates, intervals and posterior as a labelled data set.
 
         `estimate`, `low` and `high` (of 90 %) stand along `value`, `posterior_low` and so on beside
-        them; the points of each posterior stand along `fatigue_point`, `wear_point` or
-        `friction_point`.
+        them; the points of each posterior stand along `fatigue_point`, `rolling_point`,
+        `wear_point` or `friction_point`.
         """
         rows = [(own, name) for own in self.groups for name in own.names]
         columns: dict[str, list[float]] = {"estimate": [own.estimate(name) for own, name in rows]}
@@ -377,7 +407,7 @@ class MaterialFit:
             "cycles" to failure under an `amplitude`, "amplitude" at so many `cycles`, or a fitted
             value: "slope", "scatter", "fatigue_strength" or a name of `.data`.
         amplitude : float or str, optional
-            Stress amplitude [MPa], as the material takes it.
+            Stress amplitude [MPa], as the material takes it; of a line of pressure the pressure.
         cycles : float, optional
             Number of cycles [1].
         failure_probability : float
@@ -402,11 +432,11 @@ class MaterialFit:
         purpose = f"the interval of {quantity}"
         if quantity == "cycles":
             stress = math.log(_positive("amplitude", amplitude, purpose))
-            line = self.group("fatigue").line
+            line = self._line_of_life()
             return _unlogged(line.interval_of_life(stress, failure_probability, confidence))
         if quantity == "amplitude":
             life = math.log(_positive("cycles", cycles, purpose))
-            line = self.group("fatigue").line
+            line = self._line_of_life()
             return _unlogged(line.interval_of_strength(life, failure_probability, confidence))
         name = SPOKEN.get(quantity, quantity)
         known = {n: own for own in self.groups for n in own.names}
@@ -440,12 +470,10 @@ class MaterialFit:
         """
         failure_probability = share("failure_probability", failure_probability)
         confidence = share("confidence", confidence)
-        stress, per_hour = worst_stress(design, self.given, self.name)
-        cycles = _unlogged(
-            self.group("fatigue").line.interval_of_life(
-                math.log(stress), failure_probability, confidence
-            )
-        )
+        line = self._line_of_life()
+        by_pressure = not self.has("fatigue")
+        load, per_hour = worst_load(design, self.given, self.name, by_pressure)
+        cycles = _unlogged(line.interval_of_life(math.log(load), failure_probability, confidence))
         return Interval(cycles.low / per_hour, cycles.high / per_hour)
 
     def estimate(
@@ -454,7 +482,7 @@ class MaterialFit:
         """Return the most likely value of a quantity, as `interval` names them."""
         quantity = str(quantity)
         if quantity == "cycles":
-            line = self.group("fatigue").line
+            line = self._line_of_life()
             log_stress = math.log(_positive("amplitude", amplitude, "the estimate of cycles"))
             probability = share("failure_probability", failure_probability)
             return float(np.exp(line.log_life(line.best, log_stress, probability)))
@@ -488,11 +516,13 @@ class MaterialFit:
             written.
         """
         entry = {key: value for key, value in self.material.items() if key != "name"}
-        lacking = [
+        needed = [
             name
-            for name in ("fatigue_limit", "woehler_exponent")
-            if self.has("fatigue") and name not in entry
+            for own in self.groups
+            if own.kind in STRENGTHS
+            for name in (STRENGTHS[own.kind], OF_GROUP[own.kind]["slope"])
         ]
+        lacking = [name for name in needed if name not in entry]
         if lacking:
             remedy = "Hold the slope, or test more specimens at other stresses."
             raise InputError(
@@ -597,5 +627,7 @@ ENTRY = (
     "woehler_exponent",
     "scatter_in_cycles",
     "scatter_in_stress",
+    "rolling_pressure",
+    "rolling_exponent",
     "wear_coefficient",
 )

@@ -160,6 +160,8 @@ def posterior(
             inside, line.log_likelihood(clipped) + log_prior(line, clipped, priors, at), -np.inf
         )
 
+    # importance sampling: the points of each round lie about the mean of the round before, spread
+    # by the root of its covariance
     middle = line.estimate
     factor = _factor(line)
     for count in (COARSE,) * ROUNDS + (FINE,):

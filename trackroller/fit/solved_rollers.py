@@ -31,6 +31,8 @@ class Solved:
     ----------
     stress : numpy.ndarray
         Stress that enters the S-N line [MPa].
+    pressure : numpy.ndarray
+        Largest contact pressure, which enters the line of pressure [MPa].
     per_km : numpy.ndarray
         Overrollings of a travel of 1 km [1/km].
     per_hour : numpy.ndarray
@@ -42,6 +44,7 @@ class Solved:
     """
 
     stress: np.ndarray
+    pressure: np.ndarray
     per_km: np.ndarray
     per_hour: np.ndarray
     regime: list[str]
@@ -83,7 +86,7 @@ def solved_rollers(cases: Sequence[Case], options: Mapping[str, Any]) -> Solved:
     options : mapping
         Options of `trackroller.solve` beside the outputs.
     """
-    groups = ["forces", "peak_stress", "life"]
+    groups = ["forces", "contact", "peak_stress", "life"]
     if options.get("life_criterion", "von_mises_peak") != "von_mises_peak":
         groups.append("multiaxial")
     ds = solve(list(cases), **{**options, "outputs": groups})
@@ -100,8 +103,14 @@ def solved_rollers(cases: Sequence[Case], options: Mapping[str, Any]) -> Solved:
     shape = (len(cases), 2, 2)
     stresses = stress.transpose("case", "contact", "body").values
     flags = ds["validity_body"].transpose("case", "body").values.astype(int)
+    pressure = ds["max_pressure"].transpose("case", "contact").values[:, :, None]
     return Solved(
-        stresses, np.broadcast_to(per_km, shape), np.broadcast_to(per_hour, shape), regime, flags
+        stresses,
+        np.broadcast_to(pressure, shape),
+        np.broadcast_to(per_km, shape),
+        np.broadcast_to(per_hour, shape),
+        regime,
+        flags,
     )
 
 
@@ -117,9 +126,11 @@ def fields_of(design: Any, field: str = "design") -> dict[str, Any]:
     return dict(design)
 
 
-def worst_stress(design: Any, given: Mapping[str, str], name: str) -> tuple[float, float]:
-    """Return the stress of a design that decides its life [MPa], and its overrollings per hour
-    [1/h].
+def worst_load(
+    design: Any, given: Mapping[str, str], name: str, by_pressure: bool = False
+) -> tuple[float, float]:
+    """Return the stress or the pressure of a design that decides its life [MPa], and its
+    overrollings per hour [1/h].
 
     Parameters
     ----------
@@ -129,6 +140,8 @@ def worst_stress(design: Any, given: Mapping[str, str], name: str) -> tuple[floa
         Under what a fit holds, see `check_same`.
     name : str
         Name of the fit, for messages.
+    by_pressure : bool
+        Whether the life follows from the largest pressure; otherwise from the stress.
     """
     case, options, _ = checked_case(fields_of(design))
     check_same(given, options, name)
@@ -142,7 +155,11 @@ def worst_stress(design: Any, given: Mapping[str, str], name: str) -> tuple[floa
         raise InputError(
             "guide_overrollings_per_hour", None, "a number, for the life of the guide in hours"
         )
-    return float(solved.stress[0, :, body].max()), float(solved.per_hour[0, 0, body])
+    if by_pressure:
+        load = solved.pressure
+    else:
+        load = solved.stress
+    return float(load[0, :, body].max()), float(solved.per_hour[0, 0, body])
 
 
 def _rolling_radius(case: Case) -> float:

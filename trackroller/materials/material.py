@@ -42,8 +42,9 @@ def contradictions(values: Mapping[str, Any]) -> dict[str, str]:
     out = {}
     if (values.get("yield_strength") or 0.0) > strength:
         out["yield_strength"] = f"it must not exceed R_m = {strength:g} MPa"
-    if (values.get("surface_hardened") or 0.0) not in (0.0, 1.0):
-        out["surface_hardened"] = "it must be 0 or 1"
+    for mark in ("surface_hardened", "sn_in_rolling"):
+        if (values.get(mark) or 0.0) not in (0.0, 1.0):
+            out[mark] = "it must be 0 or 1"
     torsion = values.get("fatigue_limit_torsion")
     if torsion is not None and not 0.5 < torsion / limit < 1.0:
         out["fatigue_limit_torsion"] = (
@@ -80,6 +81,8 @@ class Material(_OfLimits):  # type: ignore[misc, valid-type]
         T_N = N_90/N_10 [1]; the index is the failure probability in percent. None: not known.
     scatter_in_stress : float, optional
         T_S = S_90/S_10 [1]. None: not known.
+    sn_in_rolling : float, optional
+        1 if the S-N curve is of tests in rolling contact; otherwise it counts as one of bending.
     description : str
         A short description.
     sn_points : sequence of pairs
@@ -116,6 +119,7 @@ class Material(_OfLimits):  # type: ignore[misc, valid-type]
     second_exponent: float | None = None
     scatter_in_cycles: float | None = None
     scatter_in_stress: float | None = None
+    sn_in_rolling: float | None = None
     description: str = ""
     sn_points: tuple[tuple[float, float], ...] = ()
     temperature_dependence: Any = None

@@ -38,7 +38,8 @@ def with_line_of_hardness(records: Mapping[str, Value], where: str) -> dict[str,
     -------
     dict of str to Value
         With `rolling_pressure`, `rolling_cycles` and `rolling_exponent` for steel that is not
-        surface hardened and has a hardness of `HARDNESS`. The pressure lies between those of
+        surface hardened, whose S-N curve is not of rolling contact, and that has a hardness of
+        `HARDNESS`. The pressure lies between those of
         rollers and of gear flanks; its value is their geometric mean.
 
     Raises
@@ -73,11 +74,15 @@ def _is_by_hardness(record: Value | None) -> bool:
 
 
 def _has_hardness(records: Mapping[str, Value]) -> bool:
-    """Return whether the hardness tells the line: steel, hardened through or not at all."""
+    """Return whether the hardness tells the line: steel, hardened through or not at all, that has
+    no tests of its own in rolling contact.
+    """
     modulus = records.get("youngs_modulus")
     hardness = records.get("hardness")
-    hardened = records.get("surface_hardened")
-    if modulus is None or hardness is None or (hardened is not None and hardened.value):
+    if modulus is None or hardness is None:
         return False
+    for mark in ("surface_hardened", "sn_in_rolling"):
+        if mark in records and records[mark].value:
+            return False
     is_steel = STEEL[0] <= modulus.value <= STEEL[1]
     return is_steel and HARDNESS[0] <= hardness.value <= HARDNESS[1]

@@ -81,6 +81,16 @@ _PROPERTIES = (
         True,
         True,
     ),
+    _number(
+        "sn_in_rolling",
+        "-",
+        "-",
+        "1 if the S-N curve is of tests in rolling contact, 0 if it is of bending",
+        0.0,
+        1.0,
+        True,
+        True,
+    ),
 )
 OF_LIMITS: dict[str, Parameter] = {
     own.name: own for limit in LIMITS.values() for own in limit.materials

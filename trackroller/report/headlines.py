@@ -19,6 +19,8 @@ Keys of `Answer.headline`; a key that is missing, None, NaN or empty is left out
 `worst`            levels of that condition in words (stands in the table)
 `ends`, `ends_high`  limit that ends it, in words that follow "then": "fatigue", "wear"
 `body`             `roller`, `guide` or ''
+`line_low`, `line_high`  tests that both ends of its life by fatigue follow from: "bending line",
+                   "rolling-contact line"; '' where its material has no others
 `error`            told error of the leader's output [1]
 `extrapolated`     whether the leader's life lies beyond its data
 `not_held`         {count, of, where}: conditions in which the model judges all candidates and none
@@ -46,14 +48,15 @@ Keys of `Answer.headline`; a key that is missing, None, NaN or empty is left out
                    requirement
 `share`, `share_low`, `share_high`  share of the drawn conditions that meets it, Wilson's interval
                    [1]
+`share_short`, `share_long`  the same share by both ends of each life, with its error [1]; said
+                   where the ends follow from different tests
 `wanted`, `n`, `judged`  share that is wanted [1]; drawn conditions; those that the model judges
 =================  =================================================================================
 
 `how sure`, by `Answer.kind` (`share`, `count`, `cannot_tell` with `why`): `share`, `share_low`,
 `share_high`, `wanted`, `n` of drawn conditions, or `meets`, `of` of listed loads, and `judged` of
-both; and `low`,
-`high`, `ends`, `ends_high`, `body`, `error`, `extrapolated`, `exceeded`, `second`, `not_held` as
-above.
+both; and `low`, `high`, `ends`, `ends_high`, `body`, `line_low`, `line_high`, `error`,
+`extrapolated`, `exceeded`, `second`, `not_held` as above.
 
 `what matters`: `factors`, a list of at most two dicts, the largest first: `title`, `units`,
 `index`, `index_low`, `index_high` [1] (NaN without indices), `height` (as a factor), `from`, `to`
@@ -158,7 +161,8 @@ def decide(answer: Answer) -> Headline:
     lost = _lost(head)
     if lost and head.get("elsewhere") and answer.kind in ELSEWHERE:
         lead = capital(f"{listing(lost)}; elsewhere {ELSEWHERE[answer.kind](answer)}")
-        clauses = [_value_said(answer), *_goals_said(head), *_other_rules(head)]
+        value = f"{_value_said(answer)}{_lines(head)}"
+        clauses = [value, *_goal_clauses(head), *_other_rules(head)]
         return Headline(lead, f": {'; '.join(clauses)}.")
     shares = _known(head, "share") and bool(answer.required)
     if shares and answer.kind != "none":
@@ -318,7 +322,7 @@ def _lasts(answer: Answer) -> list[str]:
             place = ""
         clauses.append(f"{whose}{_at_worst(answer)}{place}{_then(head)}")
         if answer.kind in ELSEWHERE:
-            clauses += _goals_said(head)
+            clauses += _goal_clauses(head)
     clauses += _turn(head)
     if answer.kind == "cannot_tell":
         others = []
@@ -342,10 +346,12 @@ def _one_condition(answer: Answer) -> bool:
     return conditions in (1, [1, 1], (1, 1))
 
 
-def _goals_said(head: Mapping[str, Any]) -> list[str]:
+def _goal_clauses(head: Mapping[str, Any]) -> list[str]:
     """Return the goals that the leader follows beside the requirement."""
-    goals = head.get("goals") or ()
-    return [listing([_goal(one) for one in goals])] if goals else []
+    goals = head.get("goals")
+    if not goals:
+        return []
+    return [listing([_goal(one) for one in goals])]
 
 
 def _tenth(answer: Answer) -> str:
@@ -740,7 +746,24 @@ def _first_limits(head: Mapping[str, Any]) -> str:
         body = ""
     else:
         body = f" of the {head['body']}"
-    return f", then {' or '.join(head['ends'])}{body}"
+    return f", then {' or '.join(head['ends'])}{body}{_lines(head)}"
+
+
+def _lines(head: Mapping[str, Any]) -> str:
+    """Return the tests that both ends of a life by fatigue follow from, in brackets; '' where these
+    are the only ones.
+    """
+    low = head.get("line_low")
+    high = head.get("line_high")
+    if low and high and low != high:
+        return f" ({low} to {high})"
+    if low and high:
+        return f" (by the {low})"
+    if low:
+        return f" (low end by the {low})"
+    if high:
+        return f" (high end by the {high})"
+    return ""
 
 
 def _limit_of(one: Mapping[str, Any]) -> str:
@@ -851,9 +874,8 @@ def spectrum(answer: Answer) -> Headline:
     if answer.kind == "unknown":
         return _joined("The life is not known", [*head["why"][:2], *clauses])
     unsure = _if_model_holds(head)
-    if head["state"]:
-        required = answer.required[0]
-        clauses.append(f"required {_amount(required, required.least)}: {head['state']}")
+    for required, state in zip(answer.required, head["states"], strict=True):
+        clauses.append(f"required {_amount(required, required.least)}: {state}")
     if answer.kind == "unlimited":
         return _joined(capital(f"{unsure}no limit ends this spectrum"), clauses)
     if head["block"]:
@@ -934,14 +956,10 @@ def _carriage_lasts(answer: Answer, margins: Sequence[str]) -> Headline:
         lasts = f"roller {head['roller']} ends first: {life}, {grouped(head['km'], 3)} km"
     lasts = f"{_if_model_holds(head)}{lasts}"
     if head["limit"]:
-        clauses.append(f"then {head['limit']} of the {head['body']}")
+        clauses.append(f"then {head['limit']} of the {head['body']}{_lines(head)}")
     if _known(head, "part"):
         clauses.append(f"{percent(head['part'])} of it by {head['case']}")
-    if head["unknown"]:
-        why = ""
-        if head["unknown_in"] and not _known(head, "at_most"):
-            why = f" (not on both contacts in {head['unknown_in']})"
-        clauses.append(f"the life of {listing(head['unknown'])} is not known{why}")
+    clauses += _unknown_lives(head)
     if head["state"]:
         of = ""
         if head["of"]:
@@ -960,6 +978,16 @@ def _carriage_lasts(answer: Answer, margins: Sequence[str]) -> Headline:
         after = f", after {amount} by its rule"
     lead = f"{capital(_limit_of(worst))} {worst['roller']} exceeded ({percent(worst['use'])})"
     return Headline(lead, f"{after}. {'; '.join([capital('otherwise ' + lasts), *clauses])}.")
+
+
+def _unknown_lives(head: Mapping[str, Any]) -> list[str]:
+    """Return the rollers of a carriage whose life is not known, and why, as at most one clause."""
+    if not head["unknown"]:
+        return []
+    why = ""
+    if head["unknown_in"] and not _known(head, "at_most"):
+        why = f" (not on both contacts in {head['unknown_in']})"
+    return [f"the life of {listing(head['unknown'])} is not known{why}"]
 
 
 def end_of_carriage(answer: Answer) -> str:
@@ -1241,7 +1269,7 @@ def _then(head: Mapping[str, Any]) -> str:
     if not head.get("ends") or not head.get("body"):
         return ""
     limits = dict.fromkeys([head["ends"], head.get("ends_high") or head["ends"]])
-    return f", then {' or '.join(limits)} of the {head['body']}"
+    return f", then {' or '.join(limits)} of the {head['body']}{_lines(head)}"
 
 
 def _other_rules(head: Mapping[str, Any]) -> list[str]:
@@ -1331,6 +1359,8 @@ def _verb_of_requirement(required: Sequence[Required]) -> str:
 
 
 def _share(head: Mapping[str, Any]) -> str:
+    if head.get("line_low") != head.get("line_high"):  # the ends of each life decide
+        return f"{100 * head['share_short']:.0f} to {percent(head['share_long'])}"
     text = percent(head["share"])
     if not _known(head, "share_low"):
         return text

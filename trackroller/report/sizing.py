@@ -21,13 +21,19 @@ RATIOS = {
     "temperature_ratio": "times its temperature rise is permitted",
     "wear_ratio": "times the required life to the wear depth",
 }
+# how near the best roller comes where none is enough
+NEAREST = {
+    "life_ratio": "{} lasts {:.3g} times the required life",
+    "temperature_ratio": "{} warms by {:.3g} times the permitted rise",
+    "wear_ratio": "{} wears off the depth after {:.3g} times the required life",
+}
 OWN_UNITS = {"life_hours": "h"}  # of columns that a sizing adds
 
 
 def lead_of(sizing: Sizing) -> str:
     """Return which roller to take, in one sentence."""
     if not sizing.least:
-        return "No roller of the shelf is surely enough."
+        return _none_is_enough(sizing)
     row = sizing.table.set_index(ROLLER).loc[sizing.least].to_dict()
     parts = _reached(sizing, row)
     number = int((sizing.table["verdict"] == "enough").sum())
@@ -41,6 +47,27 @@ def lead_of(sizing: Sizing) -> str:
         leads = "alone is enough"
         of = ""
     return f"{sizing.least} {leads} {of}".rstrip() + f": {', '.join(parts)}."
+
+
+def _none_is_enough(sizing: Sizing) -> str:
+    """Return that no roller is enough, with the nearest one to each requirement that none meets."""
+    table = sizing.table.set_index(ROLLER)
+    parts = []
+    for column, words in NEAREST.items():
+        if column in table and (table[column] < 1.0).all() and table[column].max() > 0.0:
+            ratio = float(table[column].max())
+            if column == "temperature_ratio":
+                ratio = 1.0 / ratio
+            parts.append(words.format(table[column].idxmax(), ratio))
+    if "overload" in table and (table["overload"] != "held").all():
+        ratios = table["load_ratio"].fillna(0.0)
+        best = str(ratios.idxmax())
+        ends = dict(zip(map(str, table.index), table["load_ends"], strict=True))[best]
+        if ends:
+            parts.append(f"{best} reaches {ends} at {ratios.max():.3g} times the forces")
+    if not parts:
+        return "No roller of the shelf is surely enough."
+    return f"No roller of the shelf is surely enough; the nearest: {'; '.join(parts)}."
 
 
 def _reached(sizing: Sizing, row: Mapping[Any, Any]) -> list[str]:

@@ -117,7 +117,7 @@ class _Outcome:
         return required(self.results)
 
     @cached_property
-    def verdict(self) -> np.ndarray:
+    def states(self) -> np.ndarray:
         """Return whether each candidate meets the requirement, shape (candidates,): `met`, `open`,
         `missed`, or `none`.
 
@@ -252,7 +252,7 @@ def _kind(outcome: _Outcome) -> str:
     """Return the kind of the answer, see `answer_of_search`."""
     if not outcome.usable:
         return "none"
-    state = outcome.verdict[outcome.chosen]
+    state = outcome.states[outcome.chosen]
     if outcome.is_required and state == "open":
         exact = shortfall(outcome.results, exact=True)[outcome.chosen]
         if 1 <= exact < 2:
@@ -352,7 +352,7 @@ def _nearest(outcome: _Outcome, number: int) -> dict[str, Any]:
         "perhaps": round(float(perhaps) * of),
         "of": of,
         "low": low,
-        "verdict": str(outcome.verdict[number]),
+        "verdict": str(outcome.states[number]),
     }
 
 
@@ -578,7 +578,7 @@ def _requirement(outcome: _Outcome, number: int) -> dict[str, Any]:
         count = np.array([outcome.results.design.meta["inner_samples"]])
         low, high = (float(end[0]) for end in wilson(share * count, count))
     return {
-        "verdict": str(outcome.verdict[number]),
+        "verdict": str(outcome.states[number]),
         "share": share,
         "share_low": low,
         "share_high": high,
@@ -688,8 +688,8 @@ def _required_life(outcome: _Outcome) -> tuple[float, float]:
 
 
 def _second_life(outcome: _Outcome, number: int) -> tuple[str, float, str] | None:
-    """Return the second model with the shortest life of a candidate, this life [h], and its verdict
-    on the requirement.
+    """Return the second model with the shortest life of a candidate, this life [h], and its state
+    by the requirement.
 
     None where no second model knows its life in every condition that is judged.
     """
@@ -705,7 +705,7 @@ def _second_life(outcome: _Outcome, number: int) -> tuple[str, float, str] | Non
     for place, limit in enumerate(limits):
         if (
             limit not in LIMITS
-            or not LIMITS[limit].beside
+            or not LIMITS[limit].rivals
             or lacks_a_body(hours[valid], limits, limit).any()
         ):
             continue
@@ -723,9 +723,9 @@ def _second_life(outcome: _Outcome, number: int) -> tuple[str, float, str] | Non
 
 
 def _second(outcome: _Outcome, number: int) -> dict[str, str] | None:
-    """Return the second model that turns the verdict of a candidate; None if none does."""
+    """Return the second model that turns the state of a candidate; None if none does."""
     second = _second_life(outcome, number)
-    if second is None or second[2] in ("", outcome.verdict[number]):
+    if second is None or second[2] in ("", outcome.states[number]):
         return None
     return {"limit": second[0], "verdict": second[2]}
 

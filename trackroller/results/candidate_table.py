@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
+import json
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 import pandas as pd
 
-from trackroller.damage import limit_word
+from trackroller.damage import LIMITS, limit_word
 from trackroller.parameters import BODIES
 from trackroller.parameters.carriage_fields import long_name_of, parameter_of
 from trackroller.results.answer import STATES, Column
 from trackroller.results.case_ranges import CaseRanges
 from trackroller.results.comparison import Comparison, wilson
-from trackroller.results.life_columns import BESIDE, OF_PAIR, lacks_a_body
+from trackroller.results.fatigue_lines import line_of, lines_text
+from trackroller.results.life_columns import BESIDE, EVIDENCE, OF_PAIR, RIVALS, lacks_a_body
 from trackroller.results.subgroups import (
     case_text,
     labels_in_place,
@@ -134,6 +137,14 @@ WHERE_WORST = (
         "text",
     ),
 )
+LINE = Column(
+    "line",
+    "Tests",
+    "",
+    "tests that the life by fatigue follows from, at the low and at the high end; alone: the "
+    "material has no others that count",
+    "text",
+)
 SECOND_MODEL = (
     Column(
         "second",
@@ -201,6 +212,8 @@ def candidate_columns(own: Comparison, table: pd.DataFrame) -> tuple[Column, ...
     columns += _output_columns(own)
     columns += _columns_of_others(own)
     columns += [*WHERE_WORST, *_ends_apart(table)]
+    if (table["line"] != "").any():
+        columns.append(LINE)
     columns += _count_columns(own)
     columns += _drawn_columns(own, own.ranges.output[2])
     if (table["second"] != "").any():
@@ -352,6 +365,9 @@ def _ends(own: Comparison) -> dict[str, Any]:
         at_worse = ("_high", "_low")
     ends, body = _end_words(own, case, at_worse[0])
     ends_high, body_high = _end_words(own, case_better, at_worse[1])
+    lines, alone = _lines_of(own, case, at_worse[0], body)
+    lines_high, alone_high = _lines_of(own, case_better, at_worse[1], body_high)
+    alone &= alone_high
     return {
         "case": case,
         "low": low,
@@ -364,6 +380,10 @@ def _ends(own: Comparison) -> dict[str, Any]:
         "body": body,
         "ends_high": ends_high,
         "body_high": body_high,
+        "line_low": lines,
+        "line_high": lines_high,
+        "line": [lines_text(*at) for at in zip(lines, lines_high, alone.tolist(), strict=True)],
+        "line_alone": alone,
         "error": np.where(case < 0, np.nan, ranges.told_error[case]),
         "extrapolated": _conditions_with(own, ranges.beyond & rows),
     }
@@ -422,12 +442,52 @@ def _end_words(own: Comparison, case: np.ndarray, end: str) -> tuple[list[str], 
         ended = row >= 0 and not word and np.isfinite(value[row])
         if ended:
             word = str(names[row])
-        words.append(limit_word(word.removeprefix("limit ")))
+        words.append(limit_word(_end_of(word.removeprefix("limit "))))
         first_body = ""
         if ended and word:
             first_body = BODIES[int(guide[row])]
         bodies.append(first_body)
     return words, bodies
+
+
+def _end_of(limit: str) -> str:
+    """Return the limit whose end another one has tests of; the limit itself where it has its own
+    end.
+    """
+    if limit in LIMITS:
+        return LIMITS[limit].evidence_of or limit
+    return limit
+
+
+def _lines_of(
+    own: Comparison, case: np.ndarray, end: str, bodies: Sequence[str]
+) -> tuple[list[str], np.ndarray]:
+    """Return the tests that the life by fatigue of each candidate follows from in a case, and
+    whether its material has no others, (candidates,); '' where another limit gives the end.
+    """
+    names = own.ranges.first_at(end)[0]
+    stored = json.loads(str(own.results.data.attrs.get("materials", "{}")))
+    lines = []
+    alone = np.ones(len(case), dtype=bool)
+    for number, (row, body) in enumerate(zip(case, bodies, strict=True)):
+        line = ""
+        if body:
+            material = str(own.results.material(body)[row])
+            line = line_of(str(names[row]), stored.get(material, {}))
+        if line:
+            alone[number] = not _has_evidence(own, row, body)
+        lines.append(line)
+    return lines, alone
+
+
+def _has_evidence(own: Comparison, row: int, body: str) -> bool:
+    """Return whether a case knows a life of a body by other tests than those of the S-N curve."""
+    hours = own.hours_by_limit("")
+    if hours is None:
+        return False
+    listed = own.results.data["limit"].values.tolist()
+    places = [place for place, name in enumerate(listed) if name in EVIDENCE]
+    return bool(np.isfinite(hours[row, places, BODIES.index(body)]).any())
 
 
 def _conditions_with(own: Comparison, rows: np.ndarray) -> np.ndarray:
@@ -580,7 +640,7 @@ MOST_FACTORS = 2  # whose levels describe where a candidate fails
 
 def _second_models(own: Comparison) -> dict[str, Any]:
     """Return the life of each candidate by the second model that is shortest, with its name and its
-    verdict.
+    state.
 
     A second model that knows no life of a body whose fatigue is known says nothing of this
     candidate.
@@ -597,7 +657,7 @@ def _second_models(own: Comparison) -> dict[str, Any]:
     longest = np.full(own.count, np.inf)
     which = np.full(own.count, "", dtype=object)
     lives = np.full((2, len(value)), np.nan)  # of the second model that counts for each case
-    for name in BESIDE:
+    for name in RIVALS:
         ends = _ends_by(own, names, name)
         if ends is None:
             continue

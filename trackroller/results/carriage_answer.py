@@ -3,8 +3,9 @@ margins of the load cases.
 
 Keys of `Answer.headline`: `roller` (the worst one, or the one with the largest radial force),
 `case` (that does most of its damage, or has that force), `part` (of the damage by that case [1]),
-`low`, `high` [h], `km` [km], `at_most` (bound of its life where the damage of some cases is not
-known [h]), `not_on_both` (cases in which it does not roll on both contacts, with the regime),
+`low`, `high` [h], `line_low` and `line_high` (tests that both ends of a life by fatigue follow
+from), `km` [km], `at_most` (bound of its life where the damage of some cases is not known [h]),
+`not_on_both` (cases in which it does not roll on both contacts, with the regime),
 `body` (`roller` or `guide`) and `limit` (in words) that end it,
 `force` (largest radial force [N]), `unknown` (rollers whose life is not known), `unknown_in` (load
 cases in which these do not roll on both contacts), `unsettled` (load cases without forces),
@@ -19,7 +20,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -32,8 +33,9 @@ from trackroller.parameters import BODIES, MATERIAL_FIELDS, REGIME_LABELS, REGIM
 from trackroller.parameters.carriage_fields import long_name_of
 from trackroller.parameters.validity import VALIDITY
 from trackroller.results.answer import Answer, Caution, Column, FurtherTable, Required
+from trackroller.results.fatigue_lines import line_of
 from trackroller.results.friction import friction_cautions
-from trackroller.results.life_columns import FIRST_LIMIT
+from trackroller.results.life_columns import EVIDENCE, FIRST_LIMIT
 from trackroller.results.placeholders import guess_cautions, placeholders_part
 from trackroller.results.roller_answer import (
     CODES,
@@ -277,6 +279,8 @@ def _headline(ds: xr.Dataset, table: pd.DataFrame) -> dict[str, Any]:
         "km": math.nan,
         "body": "",
         "limit": "",
+        "line_low": "",
+        "line_high": "",
         "force": force,
         "unknown": unknown,
         "unknown_in": _lost_in(ds, unknown),
@@ -300,6 +304,7 @@ def _headline(ds: xr.Dataset, table: pd.DataFrame) -> dict[str, Any]:
     head["limit"] = limit_word(str(own["first_limit"].item()))
     flags = int(np.bitwise_or.reduce(own["roller_validity"].values.astype(int)))
     head["not_judged"] = [words for name, words in OUTSIDE.items() if flags & validity_bit(name)]
+    head |= dict(zip(("line_low", "line_high"), _lines_of(ds, own), strict=True))
     return head | {"low": float(own["life_hours_low"]), "high": float(own["life_hours_high"])}
 
 
@@ -316,6 +321,28 @@ def _bound(own: xr.Dataset) -> float:
     if "life_hours_at_most" not in own or math.isinf(own["life_hours_at_most"]):
         return math.nan
     return float(own["life_hours_at_most"])
+
+
+def _lines_of(ds: xr.Dataset, own: xr.Dataset) -> tuple[str, str]:
+    """Return the tests that both ends of the life of a roller follow from; '' where its first limit
+    is not fatigue, or no other tests of the material bound it.
+    """
+    body = str(own["first_body"].item())
+    name = str(own["first_limit"].item())
+    others = [limit for limit in EVIDENCE if LIMITS[limit].evidence_of == name]
+    if "life_hours_by_limit_low" not in own or not others or not body:
+        return "", ""
+    hours = own.sel(body=body)
+    if np.isnan(hours["life_hours_by_limit"].sel(limit=others).values).all():
+        return "", ""
+    stored = json.loads(str(ds.attrs.get(MATERIALS, "{}"))).values()
+    label = str(own[f"{body}_material"].item())
+    material: dict[str, Any] = next((one for one in stored if one.get("name") == label), {})
+    lines = []
+    for end, nearest in (("low", np.nanargmin), ("high", np.nanargmax)):
+        lives = hours[f"life_hours_by_limit_{end}"].sel(limit=[name, *others]).values
+        lines.append(line_of([name, *others][int(nearest(lives))], material))
+    return lines[0], lines[1]
 
 
 def _first_margins(ds: xr.Dataset) -> Iterator[dict[str, Any]]:
@@ -348,7 +375,7 @@ def _first_margins(ds: xr.Dataset) -> Iterator[dict[str, Any]]:
 
 
 def _required(table: pd.DataFrame) -> tuple[Required, ...]:
-    """Return the life that is required of the rollers with the worst verdict; () without a
+    """Return the life that is required of the rollers with the worst state; () without a
     requirement.
     """
     required = table["required"][table["state"] == _judged(table)["state"]]
@@ -358,7 +385,7 @@ def _required(table: pd.DataFrame) -> tuple[Required, ...]:
 
 
 def _judged(table: pd.DataFrame) -> dict[str, Any]:
-    """Return the worst verdict of the rollers, and which rollers have it where others have another
+    """Return the worst state of the rollers, and which rollers have it where others have another
     one.
     """
     states = table["state"]
@@ -458,13 +485,21 @@ def _not_given(ds: xr.Dataset) -> Iterator[Caution]:
 
 
 def _table(ds: xr.Dataset) -> pd.DataFrame:
-    """Return one row a roller, the worst one first."""
+    """Return one row a roller in the order in which they fail, those of unknown life last."""
     rows = [_row(ds, str(name)) for name in ds["roller"].values]
     worst = worst_place(ds)[0]
-    rows.sort(key=lambda row: row["roller"] != worst)
+    rows.sort(key=lambda row: (row["roller"] != worst, _life_or_never(row)))
     return pd.DataFrame(
         rows, columns=[name for one in COLUMNS for name in (one.name, one.until) if name]
     )
+
+
+def _life_or_never(row: Mapping[str, Any]) -> float:
+    """Return the low end of the life of a roller [h]; infinity where it is not known."""
+    low = float(row["low"])
+    if math.isnan(low):
+        return math.inf
+    return low
 
 
 def _row(ds: xr.Dataset, roller: str) -> dict[str, Any]:
@@ -752,7 +787,7 @@ def _second_models(ds: xr.Dataset) -> Iterator[Caution]:
         }
         for name, body, used, hours in _limits_of(own):
             if (
-                LIMITS[name].beside
+                LIMITS[name].rivals
                 and (used > 1 or not hours >= life["life_hours"])
                 and not math.isnan(hours)
             ):

@@ -12,7 +12,7 @@ import numpy as np
 from trackroller.parameters import BODIES, FIRST_TO_FAIL, REGIMES
 from trackroller.results.answer import Required
 from trackroller.results.first_limits import first_at, first_limit
-from trackroller.results.life_columns import FIRST_LIMIT, OF_PAIR
+from trackroller.results.life_columns import EVIDENCE, FIRST_LIMIT, OF_PAIR
 from trackroller.results.lives_by_tests import beyond_sn_data, by_tests_of
 from trackroller.results.solved_cases import SolvedCases
 from trackroller.roller.output_names import body_of, is_life
@@ -245,14 +245,14 @@ class CaseRanges:
         return np.where(known, names, self.first[0]), np.where(known, guide, self.first[1])
 
     def hours_at(self, end: str) -> np.ndarray | None:
-        """Return the hours until each limit at an end, with the lives by fatigue moved by the
-        tests; None without.
+        """Return the hours by each limit at an end, with the lives by fatigue moved by the tests;
+        None without.
         """
         tests = by_tests_of(self.results)
         if tests is None:
             return None
         side = ("_low", "_high").index(end)
-        return tests.reached(lambda body: self._shifts[body][side], end)
+        return tests.hours(lambda body: self._shifts[body][side], end)
 
     @cached_property
     def tested(self) -> dict[str, np.ndarray]:
@@ -269,6 +269,19 @@ class CaseRanges:
             for name in ended:
                 ended[name] |= (names == "fatigue") & (material == name) & self.holds
         return ended
+
+    @cached_property
+    def between_lines(self) -> list[str]:
+        """Return the materials whose life by fatigue ends a held case and reaches to that by other
+        tests, which give one of its ends.
+        """
+        materials: set[str] = set()
+        for end in ("_low", "_high"):
+            names, guide = self.first_at(end)
+            of_line = self.holds & np.isin(names.astype(str), EVIDENCE)
+            for body, rows in (("guide", of_line & guide), ("roller", of_line & ~guide)):
+                materials |= set(self.results.material(body)[rows].astype(str).tolist())
+        return sorted(materials)
 
     @cached_property
     def beyond(self) -> np.ndarray:

@@ -457,6 +457,8 @@ def leading(own: Comparison, one: pd.Series) -> dict[str, Any]:
         key: plain(one[key])
         for key in ("low", "high", "worst", "ends", "ends_high", "body", "body_high", "error")
     }
+    if not one["line_alone"]:
+        head |= {key: plain(one[key]) for key in ("line_low", "line_high")}
     head["extrapolated"] = bool(one["extrapolated"])
     head["elsewhere"] = bool(one["holds"] < one["of"])
     if one["exceeded_by"]:
@@ -477,7 +479,8 @@ def leading(own: Comparison, one: pd.Series) -> dict[str, Any]:
             "high": plain(one["second_high"]),
         }
     if own.drawn:
-        head |= {key: float(one[key]) for key in ("share", "share_low", "share_high")}
+        shares = ("share", "share_low", "share_high", "share_short", "share_long")
+        head |= {key: float(one[key]) for key in shares}
         head |= {"wanted": own.wanted_share, "n": int(one["n"]), "judged": int(one["judged"])}
     return head
 

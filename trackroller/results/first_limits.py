@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 
 from trackroller.damage import LIMITS
-from trackroller.damage.first_limit import breaking
+from trackroller.damage.first_limit import breaking, with_evidence
 from trackroller.parameters import BODIES, FIRST_TO_FAIL
 from trackroller.results.factor_levels import MOST_LEVELS
 from trackroller.results.life_columns import FIRST_LIMIT
@@ -61,9 +61,9 @@ def deciding(results: SolvedCases, names: np.ndarray, most: int = 2) -> list[str
     ]
 
 
-def reached_by_body(results: SolvedCases, end: str = "") -> np.ndarray:
-    """Return the hours until each limit of each body is reached, shape (n, limit, 2) [h]; infinity
-    if never known.
+def hours_by_body(results: SolvedCases, end: str = "") -> np.ndarray:
+    """Return the hours by each limit of each body, shape (n, limit, 2) [h]; NaN if they are not
+    known.
 
     Parameters
     ----------
@@ -74,31 +74,56 @@ def reached_by_body(results: SolvedCases, end: str = "") -> np.ndarray:
     if end and f"life_hours_by_limit{end}" in results.data:
         ranged = flat(results.data, f"life_hours_by_limit{end}", results.dims)
         hours = np.where(np.isnan(ranged), hours, ranged)
+    return np.asarray(hours, dtype=float)
+
+
+def reached_by_body(
+    results: SolvedCases, end: str = "", hours: np.ndarray | None = None
+) -> np.ndarray:
+    """Return the hours until each limit of each body is reached, shape (n, limit, 2) [h]; infinity
+    if never known.
+
+    The range of an end reaches to the life by other tests of it.
+
+    Parameters
+    ----------
+    results : the solved study
+    end : `_low` or `_high` for the ends of the ranges of the placeholders
+    hours : other hours than those of `hours_by_body`
+    """
+    if hours is None:
+        hours = hours_by_body(results, end)
     limits = [LIMITS[name] for name in results.data["limit"].values.tolist()]
     breaks = np.stack([results.flagged("static", body) for body in BODIES], axis=1)
     counted = np.array([not limit.beside for limit in limits])[:, None]
-    reached = np.where(breaking(breaks, limits), 0.0, np.where(counted, hours, np.nan))
+    joined = with_evidence(hours, limits, end)
+    reached = np.where(breaking(breaks, limits), 0.0, np.where(counted, joined, np.nan))
     return np.asarray(np.nan_to_num(reached, nan=np.inf, posinf=np.inf))
 
 
 def first_at(
-    results: SolvedCases, end: str, reached: np.ndarray | None = None
+    results: SolvedCases, end: str, hours: np.ndarray | None = None
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return which limit ends each case at an end of the ranges, and whether it ends the guide,
     shape (n,) each.
 
-    A limit has the name '' where none is reached. `reached` holds other hours than those of
-    `reached_by_body`.
+    A limit has the name '' where none is reached, and that of its other tests where these give the
+    end. `hours` holds other ones than those of `hours_by_body`.
     """
-    if reached is None:
-        reached = reached_by_body(results, end)
+    if hours is None:
+        hours = hours_by_body(results, end)
+    reached = reached_by_body(results, end, hours)
     flattened = reached.reshape(len(reached), -1)
     place = flattened.argmin(axis=1)
-    names = np.array(results.data["limit"].values.tolist(), dtype=object)[place // reached.shape[2]]
-    known = np.isfinite(flattened[np.arange(len(place)), place])
-    return np.where(known, names, ""), np.asarray(
-        known & (place % reached.shape[2] == BODIES.index("guide"))
-    )
+    rows = np.arange(len(place))
+    listed = results.data["limit"].values.tolist()
+    names = np.array(listed, dtype=object)[place // reached.shape[2]]
+    body = place % reached.shape[2]
+    for number, name in enumerate(listed):
+        of_line = names == LIMITS[name].evidence_of
+        names[of_line & (hours[rows, number, body] == flattened[rows, place])] = name
+    known = np.isfinite(flattened[rows, place])
+    return np.where(known, names, ""), np.asarray(known & (body == BODIES.index("guide")))
 
 
 # values that are known within a range only

@@ -9,9 +9,13 @@ from trackroller.damage import LIMITS
 from trackroller.parameters import BODIES
 from trackroller.roller.requirement import LIVES_OF_PAIR
 
-# limits that stand beside the verdict: second models of an end that another limit has, and those
-# without a verdict
+# limits that end nothing: second models of an end that another limit has, and those that are not
+# checked
 BESIDE = tuple(name for name, limit in LIMITS.items() if limit.beside or limit.use is None)
+# second models that may turn a verdict
+RIVALS = tuple(name for name, limit in LIMITS.items() if limit.rivals or limit.use is None)
+# limits that know the end of another one by other tests
+EVIDENCE = tuple(name for name, limit in LIMITS.items() if limit.evidence_of)
 
 LIVES = (
     ("pair_life_hours", "life of the pair", "h"),

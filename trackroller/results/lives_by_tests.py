@@ -29,7 +29,7 @@ from trackroller.fit.solved_rollers import DEFAULTS, check_same
 from trackroller.fit.stored import StoredFit, stored_fit
 from trackroller.methods.b10 import b10
 from trackroller.parameters import BODIES, FIRST_TO_FAIL
-from trackroller.results.first_limits import reached_by_body
+from trackroller.results.first_limits import hours_by_body, reached_by_body
 from trackroller.results.life_columns import body_lives, past_data
 from trackroller.results.solved_cases import SAME_ENDS, SolvedCases, made_once
 from trackroller.results.targets import hits_of, scattering_body
@@ -238,11 +238,11 @@ class ByTests:
         }
 
     @cached_property
-    def _reached(self) -> dict[str, np.ndarray]:
-        """Return hours until each limit at each end of the ranges of placeholders, (n, limit,
+    def _hours(self) -> dict[str, np.ndarray]:
+        """Return hours by each limit at each end of the ranges of placeholders, (n, limit,
         body).
         """
-        return {end: reached_by_body(self.results, end) for end in ("", "_low", "_high")}
+        return {end: hours_by_body(self.results, end) for end in ("", "_low", "_high")}
 
     def beyond(self, body: str) -> np.ndarray:
         """Return the cases whose stress or life of a body lies beyond the tests of its material,
@@ -309,11 +309,11 @@ class ByTests:
             )
         return out
 
-    def reached(self, shift: Shift, end: str = "") -> np.ndarray:
-        """Return the hours until each limit when those by fatigue are moved, see `lives`, (n,
-        limit, body) [h].
+    def hours(self, shift: Shift, end: str = "") -> np.ndarray:
+        """Return the hours by each limit when those by fatigue are moved, see `lives`, (n, limit,
+        body) [h].
         """
-        out = self._reached[end].copy()
+        out = self._hours[end].copy()
         limits = self.results.data["limit"].values.tolist()
         for i, body in enumerate(BODIES):
             if "fatigue" in limits:
@@ -351,8 +351,10 @@ class ByTests:
                 places = [BODIES.index(body)]
             else:
                 places = list(range(len(BODIES)))
-            before = self._reached[end][:, :, places].min(axis=(1, 2))
-            after = self.reached(shift, end)[:, :, places].min(axis=(1, 2))
+            before, after = (
+                reached_by_body(self.results, end, hours)[:, :, places].min(axis=(1, 2))
+                for hours in (self._hours[end], self.hours(shift, end))
+            )
         else:
             return values
         known = np.isfinite(before) & (before > 0) & np.isfinite(values)

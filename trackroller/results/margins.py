@@ -8,7 +8,7 @@ contact off, makes the roller skid or locks it.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -21,6 +21,7 @@ from trackroller.damage.limit import SN_SCATTER, Limit, roller_overrollings
 from trackroller.fit.stored import StoredFit, fits_of_case
 from trackroller.materials import Material
 from trackroller.parameters import BODIES, PARAMETERS, REGIMES
+from trackroller.results.fatigue_lines import line_of
 from trackroller.results.life_columns import past_data
 from trackroller.roller.dataset import validity_bit
 from trackroller.roller.geometry import rolling_radius
@@ -65,6 +66,11 @@ class Margin:
     beyond, guessed : bool
         Whether the life lies beyond the S-N data, and whether the limit rests on placeholders of a
         material.
+    lines : tuple of str
+        Tests that the low and the high end of a life by fatigue follow from, see `line_of`.
+    alone : bool
+        Whether the life by fatigue follows from one kind of tests, because the material has no
+        others.
     lifeless : bool
         Whether the body has no fatigue life, because it breaks at once or the roller skids.
     """
@@ -90,6 +96,8 @@ class Margin:
     beside: bool = False
     beyond: bool = False
     guessed: bool = False
+    lines: tuple[str, str] = ("", "")
+    alone: bool = False
     lifeless: bool = False
 
     @property
@@ -276,7 +284,54 @@ def _of_limits(
                     guessed=is_guessed(ds, name, materials[body].name),
                 )
             )
+    return with_lines(out, {body: material.as_dict() for body, material in materials.items()})
+
+
+def with_lines(
+    listed: Sequence[Margin], materials: Mapping[str, Mapping[str, Any]]
+) -> list[Margin]:
+    """Return limits of single bodies with the tests that their lives follow from; a range reaches
+    to the life by other tests of the same end.
+
+    Parameters
+    ----------
+    listed : sequence of Margin
+        The limits of each body.
+    materials : mapping
+        Values of the material of each body by name.
+    """
+    out = []
+    for margin in listed:
+        line = line_of(margin.name, materials[margin.body])
+        margin = replace(margin, lines=(line, line), alone=bool(line) and not margin.beside)
+        for other in listed:
+            if other.body == margin.body and _is_evidence(other, margin):
+                margin = _reaching_to(margin, other, line_of(other.name, materials[other.body]))
+        out.append(margin)
     return out
+
+
+def _is_evidence(other: Margin, margin: Margin) -> bool:
+    """Return whether a limit knows the life to the end of another one by other tests."""
+    known = not math.isnan(margin.hours) and not math.isnan(other.hours)
+    return known and LIMITS[other.name].evidence_of == margin.name
+
+
+def _reaching_to(margin: Margin, other: Margin, line: str) -> Margin:
+    """Return a limit whose range reaches to the life by other tests of the same end."""
+    low, high = margin.lines
+    if other.low < margin.low:
+        low = line
+    if other.high > margin.high:
+        high = line
+    return replace(
+        margin,
+        low=min(margin.low, other.low),
+        high=max(margin.high, other.high),
+        lines=(low, high),
+        alone=False,
+        guessed=margin.guessed or (other.guessed and line in (low, high)),
+    )
 
 
 def _of_fatigue_alone(
@@ -322,7 +377,7 @@ def _of_fatigue_alone(
                 margin, beyond=bool(past_data(cycles, material.cycles_at_fatigue_limit))
             )
         out.append(margin)
-    return out
+    return with_lines(out, {body: material.as_dict() for body, material in materials.items()})
 
 
 def _of_body(
@@ -531,11 +586,15 @@ class First:
         The limits that may come first, the one that does with the values themselves at the head.
     low, high : float
         Ends of the life [h].
+    lines : tuple of str
+        Tests that both ends follow from where the life is a range between different tests; '' where
+        another limit than fatigue gives the end.
     """
 
     margins: tuple[Margin, ...]
     low: float
     high: float
+    lines: tuple[str, str] = ("", "")
 
     @classmethod
     def of(cls, listed: Iterable[Margin]) -> First | None:
@@ -545,11 +604,14 @@ class First:
         )
         if not ending:
             return None
-        low = min(margin.soonest for margin in ending)
-        high = min(margin.latest for margin in ending)
-        return cls(
-            tuple(m for m in ending if m is ending[0] or m.low <= high * (1.0 + TIED)), low, high
-        )
+        at_low = min(ending, key=lambda margin: margin.soonest)
+        at_high = min(ending, key=lambda margin: margin.latest)
+        high = at_high.latest
+        first = tuple(m for m in ending if m is ending[0] or m.low <= high * (1.0 + TIED))
+        lines = ("", "")
+        if not (at_low.alone and at_high.alone):
+            lines = (at_low.lines[0], at_high.lines[1])
+        return cls(first, at_low.soonest, high, lines)
 
     @property
     def breaks(self) -> bool:

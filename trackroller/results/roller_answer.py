@@ -2,11 +2,12 @@
 what was not checked.
 
 Keys of `Answer.headline`: `low`, `high` (life to the first limit [h]), `ends` (words of the limits
-that may come first), `body`, `extrapolated`, `guessed`, `unknown` (body whose hours are not known),
-`exceeded` and `broken` (lists of {limit, body, use [1], hours}, the worst one first), `open` (list
-of {limit, body}), `axial_low`, `axial_high`, `motor_low`, `motor_high` (forces between which the
-roller rolls [N]), `not_judged` (reasons), `states` (of each requirement: `met`, `open` or
-`missed`), `state` (of all of them; '' without a requirement).
+that may come first), `body`, `line_low` and `line_high` (tests that both ends of a life by fatigue
+follow from, '' where no other tests of the material bound it), `extrapolated`, `guessed`, `unknown`
+(body whose hours are not known), `exceeded` and `broken` (lists of {limit, body, use [1], hours},
+the worst one first), `open` (list of {limit, body}), `axial_low`, `axial_high`, `motor_low`,
+`motor_high` (forces between which the roller rolls [N]), `not_judged` (reasons), `states` (of each
+requirement: `met`, `open` or `missed`), `state` (of all of them; '' without a requirement).
 """
 
 from __future__ import annotations
@@ -31,6 +32,7 @@ from trackroller.parameters.carriage_fields import long_name_of
 from trackroller.parameters.example import drive_question
 from trackroller.results.answer import Answer, Caution, Column, FurtherTable, Required, yes_or_blank
 from trackroller.results.case_columns import at_surface
+from trackroller.results.fatigue_lines import lines_text
 from trackroller.results.friction import friction_cautions
 from trackroller.results.life_columns import FIRST_LIMIT, OF_PAIR
 from trackroller.results.margins import First, Margin, lifeless_bodies, margins, worst_contact
@@ -79,6 +81,14 @@ OF_ANY_LIMIT = (
         "text",
     ),
     Column("model", "Model", "", "second model of an end that another limit has", "text"),
+    Column(
+        "line",
+        "Tests",
+        "",
+        "tests that a life by fatigue follows from, at the low and at the high end; alone: the "
+        "material has no others that count",
+        "text",
+    ),
 )
 COLUMNS = (
     Column(
@@ -280,6 +290,8 @@ def _headline(
         "high": math.nan,
         "ends": [],
         "body": "",
+        "line_low": "",
+        "line_high": "",
         "extrapolated": False,
         "guessed": False,
         "unknown": unknown_body,
@@ -299,6 +311,7 @@ def _headline(
     if first is None:
         return head
     head |= {"low": first.low, "high": first.high, "ends": list(first.words), "body": first.body}
+    head |= dict(zip(("line_low", "line_high"), first.lines, strict=True))
     return head | {
         "extrapolated": first.beyond,
         "guessed": any(margin.guessed for margin in first.margins),
@@ -415,9 +428,9 @@ def _row(margin: Margin, least: float) -> dict[str, Any]:
         model = "no fatigue life"
     state = margin.state
     if margin.ends and state != "exceeded" and math.isfinite(least):
-        verdict = state_of_life(margin.soonest, margin.latest, least)
-        if verdict != "met":
-            state = verdict
+        state_by_life = state_of_life(margin.soonest, margin.latest, least)
+        if state_by_life != "met":
+            state = state_by_life
     if margin.lifeless:
         state = "none"
     elif state == "kept" and margin.used > 1.0:
@@ -436,6 +449,7 @@ def _row(margin: Margin, least: float) -> dict[str, Any]:
         "extrapolated": yes_or_blank(margin.beyond and not math.isnan(margin.hours)),
         "guessed": yes_or_blank(margin.guessed),
         "model": model,
+        "line": lines_text(*margin.lines, margin.alone),
         "bound": margin.bound,
         "units": margin.units,
         "least": margin.least,

@@ -200,7 +200,8 @@ def _values(results: SolvedCases) -> tuple[np.ndarray, np.ndarray]:
             continue
         raw = results.quantity(output)[0].astype(float).reshape(shape)
         good = valid & ~np.isnan(raw)
-        known &= good | (kind == "b10")
+        if kind != "b10":  # which counts a condition without a life as life 0
+            known &= good
         values.append(_over_conditions(raw, good, kind, goals[goal]))
     return np.stack(values, axis=1), known
 
@@ -382,10 +383,11 @@ def recommended(best: Judged) -> int:
     Only the candidates that miss least count. Lives count by their logarithm, because they span
     decades. Of equal candidates, the first goal decides, then the longer life.
     """
-    shares = normalised(best.costs)
-    return int(
-        np.lexsort((-best.life, shares[:, 0], np.round((shares**2).sum(axis=1), 9), best.missed))[0]
-    )
+    costs = normalised(best.costs)
+    # rounded, so that candidates that differ by rounding alone tie
+    distance = np.round((costs**2).sum(axis=1), 9)
+    order = np.lexsort((-best.life, costs[:, 0], distance, best.missed))  # the last key leads
+    return int(order[0])
 
 
 def best_in(best: Judged, goal: int) -> int:

@@ -279,32 +279,23 @@ def _quality(
         )
     times = [convergence.take_times(*both, design.method.half_width) for both in bounds]
     half = [convergence.half_width(*both) for both in bounds]
+    reliable = (share >= RELIABLE).astype(np.int8)
+    of_rows = f"1 where at least {RELIABLE:g} of the rows are used"
+    of_width = "half width of the widest interval (of mu*: over the largest mu*)"
+    of_times = "factor on the samples after which the intervals are narrow enough"
+    texts = {"long_name": "rows left out, and why"}
     return {
-        name: (
-            "output",
-            values,
-            {"long_name": words} | ({} if values.dtype == object else {"units": "1"}),
-        )
-        for name, values, words in (
-            ("used_share", share, "share of the rows that the indices use"),
-            (
-                "reliable",
-                (share >= RELIABLE).astype(np.int8),
-                f"1 where at least {RELIABLE:g} of the rows are used",
-            ),
-            ("note", np.array(notes, dtype=object), "rows left out, and why"),
-            (
-                "half_width",
-                np.array(half),
-                "half width of the widest interval (of mu*: over the largest mu*)",
-            ),
-            (
-                "take_times",
-                np.array(times),
-                "factor on the samples after which the intervals are narrow enough",
-            ),
-        )
+        "used_share": _of_outputs(share, "share of the rows that the indices use"),
+        "reliable": _of_outputs(reliable, of_rows),
+        "note": ("output", np.array(notes, dtype=object), texts),
+        "half_width": _of_outputs(np.array(half), of_width),
+        "take_times": _of_outputs(np.array(times), of_times),
     }
+
+
+def _of_outputs(values: np.ndarray, words: str) -> tuple[str, np.ndarray, dict[str, str]]:
+    """Return plain numbers, one for each output, as a variable."""
+    return "output", values, {"long_name": words, "units": "1"}
 
 
 def _bounds(out: Estimates, method: Method) -> tuple[np.ndarray, np.ndarray]:

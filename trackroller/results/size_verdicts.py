@@ -246,9 +246,12 @@ class RollerVerdicts:
         values = permitted_ratios(self.results.data, quantity, self._least_life, self.results.dims)
         ratios = []
         for name in self.rows.index:
+            known = values[self._cases(name)]
             ratio = float("nan")
-            if not self._lacking(name, quantity):
-                ratio = float(np.nanmin(values[self._cases(name)]))
+            if np.isfinite(known).any():
+                ratio = float(np.nanmin(known))
+            if ratio >= 1.0 and self._lacking(name, quantity):
+                ratio = float("nan")  # what is not known may be less
             ratios.append(ratio)
         return ratios
 

@@ -458,7 +458,7 @@ class SolvedCases:
         return np.asarray(self.inside & self.counted & ~self.without_fatigue)
 
     def limits_in(self, state: str) -> dict[str, np.ndarray]:
-        """Return the cases in which each limit of the verdict is `exceeded` or `open`, shape (n,)
+        """Return the cases in which each checked limit is `exceeded` or `open`, shape (n,)
         by limit.
 
         Limits that are second models of an end which another limit has are left out.
@@ -502,7 +502,7 @@ class SolvedCases:
     def judged_targets(self) -> dict[str, np.ndarray]:
         """Return the life that judges a target on the life of a pair, shape (n,) each [h].
 
-        It is the low end of the life to the first limit, as in the verdict: a longer life by one
+        It is the low end of the life to the first limit, as in the answer: a longer life by one
         limit is of no use if another limit comes first. Other targets are judged by the result that
         they name, and so are all of a study without the life to the first limit.
         """

@@ -2,11 +2,12 @@
 blocks.
 
 Keys of `Answer.headline`: `low`, `high` [h], `km_low`, `km_high` [km], `ends` (words of the limits
-that may come first), `body`, `extrapolated`, `guessed`, `block` (with the largest part of the
+that may come first), `body`, `line_low` and `line_high` (tests that both ends of a life by fatigue
+follow from), `extrapolated`, `guessed`, `block` (with the largest part of the
 damage of the first limit), `share` (this part [1]), `unknown` (bodies whose life is not known),
 `broken` and `exceeded` (lists of {limit, body, use [1], hours, blocks}), `open` (list of {limit,
-body}), `not_judged` and `why` (reasons), `state` (of the required travel: `met`, `open` or
-`missed`; '' without one).
+body}), `not_judged` and `why` (reasons), `states` (of each requirement, the travel first: `met`,
+`open` or `missed`).
 """
 
 from __future__ import annotations
@@ -28,9 +29,10 @@ from trackroller.parameters import BODIES, PARAMETERS, REGIME_LABELS, REGIMES
 from trackroller.parameters.carriage_fields import long_name_of
 from trackroller.parameters.example import drive_question, is_absent
 from trackroller.results.answer import Answer, Caution, Column, FurtherTable, Required, yes_or_blank
+from trackroller.results.fatigue_lines import lines_text
 from trackroller.results.friction import friction_cautions
 from trackroller.results.life_columns import FIRST_LIMIT, past_data
-from trackroller.results.margins import First, Margin, is_guessed
+from trackroller.results.margins import First, Margin, is_guessed, with_lines
 from trackroller.results.placeholders import guess_cautions, placeholders_part
 from trackroller.results.roller_answer import (
     CODES,
@@ -45,6 +47,7 @@ from trackroller.results.validity_flags import flags_of, not_judged
 from trackroller.roller.dataset import validity_bit
 from trackroller.roller.duty import strokes_words
 from trackroller.roller.limit_notes import notes_of
+from trackroller.roller.requirement import requirement_of
 from trackroller.roller.stored_inputs import NOT_GIVEN, doubts_of
 from trackroller.roller.temperature import HEAD as OF_TEMPERATURE
 from trackroller.study.spectrum.file import LOAD_FIELDS
@@ -141,13 +144,18 @@ def answer_of_spectrum(ds: xr.Dataset) -> Answer:
 
 
 def _required(ds: xr.Dataset) -> tuple[Required, ...]:
-    """Return the travel that the roller of a spectrum has to last."""
+    """Return the travel and the lives that the roller of a spectrum has to last."""
     travel = number_or_nan(json.loads(str(ds.attrs["roller"])).get("required_travel"))
-    return (Required("travel", "travel", "km", least=travel),) if travel > 0 else ()
+    required = []
+    if travel > 0:
+        required.append(Required("travel", "travel", "km", least=travel))
+    for name, own in requirement_of(ds).items():
+        required.append(Required(name, FIRST_LIMIT[1], "h", least=own.least))
+    return tuple(required)
 
 
-def _state(first: First | None, rate: float, required: tuple[Required, ...]) -> str:
-    """Return whether the required travel is reached before the first limit; '' without one.
+def _states(first: First | None, rate: float, required: tuple[Required, ...]) -> list[str]:
+    """Return whether each required travel or life is reached before the first limit.
 
     Parameters
     ----------
@@ -155,11 +163,16 @@ def _state(first: First | None, rate: float, required: tuple[Required, ...]) -> 
     rate : travel in an hour [km]
     required : what is required
     """
-    if not required:
-        return ""
-    if first is None:
-        return "open"
-    return state_of_life(first.low * rate, first.high * rate, required[0].least)
+    states = []
+    for one in required:
+        pace = 1.0
+        if one.units == "km":
+            pace = rate
+        state = "open"
+        if first is not None:
+            state = state_of_life(first.low * pace, first.high * pace, one.least)
+        states.append(state)
+    return states
 
 
 def known_damage(ds: xr.Dataset, body: str) -> tuple[int, np.ndarray]:
@@ -182,7 +195,9 @@ def _margins(ds: xr.Dataset) -> list[Margin]:
     """Return the limits of both bodies in the order in which they are reached; without limits
     fatigue alone.
     """
-    listed = [*_of_limits(ds), *_of_pressure(ds)]
+    stored = json.loads(str(ds.attrs.get("materials", "{}")))
+    materials = {body: stored.get(f"{body}_material", {}) for body in BODIES}
+    listed = [*with_lines(list(_of_limits(ds)), materials), *_of_pressure(ds)]
     return sorted(
         listed,
         key=lambda one: (
@@ -299,6 +314,8 @@ def _headline(
         "km_high": math.nan,
         "ends": [],
         "body": "",
+        "line_low": "",
+        "line_high": "",
         "extrapolated": False,
         "guessed": False,
         "block": "",
@@ -315,7 +332,7 @@ def _headline(
         ],
         "not_judged": list(reasons),
         "why": [f"{row['body']}: {row['why']}" for row in lives.to_dict("records") if row["why"]],
-        "state": _state(first, _km_an_hour(ds), _required(ds)),
+        "states": _states(first, _km_an_hour(ds), _required(ds)),
     }
     if first is None:
         return head
@@ -327,6 +344,7 @@ def _headline(
         "km_high": first.high * rate,
     }
     head |= {"ends": list(first.words), "body": first.body, "extrapolated": first.beyond}
+    head |= dict(zip(("line_low", "line_high"), first.lines, strict=True))
     head["guessed"] = any(margin.guessed for margin in first.margins) and first.low < first.high
     block, share = _worst_block(ds, first.margins[0])
     return head | {"block": block, "share": share}
@@ -413,6 +431,7 @@ def _row(ds: xr.Dataset, margin: Margin) -> dict[str, Any]:
         "extrapolated": yes_or_blank(margin.beyond),
         "guessed": yes_or_blank(margin.guessed),
         "model": model,
+        "line": lines_text(*margin.lines, margin.alone),
         "blocks": ", ".join(_blocks_of(ds, margin)),
         "name": margin.name,
     }

@@ -237,6 +237,14 @@ def _edge_text(own: Comparison, candidate: pd.Series) -> str:
     return "; ".join(parts)
 
 
+def _reasons_of(ranges: CaseRanges, rows: np.ndarray) -> str:
+    """Return why cases are not held or not judged, each reason with its number of cases."""
+    reasons = pd.Series(ranges.reason[rows]).map(
+        lambda word: limit_word(str(word).removeprefix("limit "))
+    )
+    return ", ".join(f"{word} {count:,}" for word, count in reasons.value_counts().items())
+
+
 def case_cautions(results: SolvedCases, ranges: CaseRanges, rows: np.ndarray) -> list[Caution]:
     """Return the warnings that count cases.
 
@@ -252,12 +260,7 @@ def case_cautions(results: SolvedCases, ranges: CaseRanges, rows: np.ndarray) ->
     unknown = rows & ~ranges.judged
     for code, hit in (("not_held", lost), ("not_judged", unknown)):
         if hit.any():
-            reasons = pd.Series(ranges.reason[hit]).map(
-                lambda word: limit_word(str(word).removeprefix("limit "))
-            )
-            counts = ", ".join(
-                f"{word} {count:,}" for word, count in reasons.value_counts().items()
-            )
+            counts = _reasons_of(ranges, hit)
             where = where_text(results, hit, rows)
             if where:
                 counts = f"{counts}: {where}"

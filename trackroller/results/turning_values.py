@@ -22,6 +22,9 @@ from trackroller.roller.limit_notes import Placeholder, placeholders_of
 from trackroller.study.outputs import flat
 
 STEPS = np.linspace(0.0, 1.0, 201)  # places of a placeholder in its range, on a logarithmic scale
+LINE = (
+    "fatigue in rolling contact"  # what a life between a bending and a rolling-contact line lacks
+)
 # of the leader's range over which a rival must lead before the placeholder is worth a measurement
 LEAST = 0.1
 
@@ -49,13 +52,11 @@ class Turning:
         ends = []
         for end in ("_low", "_high"):
             moved = self.own.ranges.hours_at(end)
-            if moved is None:
-                moved = reached_by_body(self.own.results, end)
-            ends.append(moved)
+            ends.append(reached_by_body(self.own.results, end, moved))
         return ends[0], ends[1]
 
     @cached_property
-    def _worst(self) -> dict[tuple[int, int], np.ndarray]:
+    def _worst(self) -> dict[tuple[int, int, bool], np.ndarray]:
         return {}
 
     @cached_property
@@ -65,7 +66,8 @@ class Turning:
             one for one in placeholders_of(self.own.results.data) if one.limit not in BESIDE
         ]
         tests = [Placeholder("fatigue", name, "tests") for name in self.own.ranges.tested]
-        return placeholders + tests
+        lines = [Placeholder("fatigue", name, LINE) for name in self.own.ranges.between_lines]
+        return placeholders + tests + lines
 
     def moves(self, one: Placeholder, rows: np.ndarray) -> np.ndarray:
         """Return which limits and bodies of some cases rest on a placeholder, (rows, limit, 2)
@@ -86,16 +88,20 @@ class Turning:
         """Return the names of the materials of each body, (n,)."""
         return {body: self.own.results.material(body) for body in BODIES}
 
-    def worst(self, number: int, one: Placeholder) -> np.ndarray:
+    def worst(self, number: int, one: Placeholder, one_form: bool = False) -> np.ndarray:
         """Return the life of a candidate at its worst condition at each of `STEPS` of a
         placeholder, (steps,) [h].
+
+        A life by wear is a range by its coefficient and by the form in which the groove wears: at
+        one place, or over the run-in width. With `one_form` the coefficient moves alone, to which
+        the life is inversely proportional, and the groove wears in the form with the shorter life.
         """
-        key = number, self.placeholders.index(one)
+        key = number, self.placeholders.index(one), one_form
         if key not in self._worst:
-            self._worst[key] = self._worst_of(number, one)
+            self._worst[key] = self._worst_of(number, one, one_form)
         return self._worst[key]
 
-    def _worst_of(self, number: int, one: Placeholder) -> np.ndarray:
+    def _worst_of(self, number: int, one: Placeholder, one_form: bool) -> np.ndarray:
         assert self.hours is not None
         rows = self.own.rows[number]
         rows = rows[self.own.reachable[rows] & self.own.ranges.holds[rows]]
@@ -114,7 +120,10 @@ class Turning:
         with np.errstate(invalid="ignore"):
             for limit, body in np.argwhere(moved.any(axis=0)):
                 here = moved[:, limit, body]
-                lines = start[here, limit, body, None] + width[here, limit, body, None] * STEPS
+                moving = width[here, limit, body]
+                if one_form:
+                    moving = np.minimum(moving, np.log(one.high / one.low))
+                lines = start[here, limit, body, None] + moving[:, None] * STEPS
                 least = np.minimum(least, lines.min(axis=0))
             return np.asarray(np.exp(least))
 
@@ -141,12 +150,21 @@ class Turning:
                 )
                 if ahead.mean() >= best:
                     best = float(ahead.mean())
-                    if ahead[0]:
-                        first_met = int(np.argmin(ahead))
-                    else:
-                        first_met = int(np.argmax(ahead))
-                    placeholder = record_of(one, first_met)
+                    placeholder = record_of(one, self._overtaken(leader, rival, one))
         return placeholder
+
+    def _overtaken(self, leader: int, rival: int, one: Placeholder) -> int:
+        """Return the step at which a rival overtakes the leader, or falls behind it, while a wear
+        coefficient moves and the groove wears in one form; -1 where it does neither.
+        """
+        if not has_turn(one):
+            return -1
+        margin = 1.0 + self.own.error_of_ratio(leader, rival)
+        ahead = self.worst(rival, one, True) > margin * self.worst(leader, one, True)
+        changes = np.flatnonzero(ahead != ahead[0])
+        if not len(changes):
+            return -1
+        return int(changes[0])
 
     def decides(self, number: int, least: float) -> dict[str, Any] | None:
         """Return the placeholder whose place decides whether a candidate reaches a life; None
@@ -165,13 +183,20 @@ class Turning:
                 width = mine[-1] / mine[0]
             if width <= widest * (1 + 1e-9):
                 continue
-            enough = mine >= least
-            step = -1
-            if enough[-1] and not enough[0]:
-                step = int(np.argmax(enough))
             widest = width
-            placeholder = record_of(one, step)
+            placeholder = record_of(one, self._reached(number, one, least))
         return placeholder
+
+    def _reached(self, number: int, one: Placeholder, least: float) -> int:
+        """Return the step from which on a candidate reaches a life while a wear coefficient moves
+        and the groove wears in the form with the shorter life; -1 without one.
+        """
+        if not has_turn(one):
+            return -1
+        enough = self.worst(number, one, True) >= least
+        if not enough[-1] or enough[0]:
+            return -1
+        return int(np.argmax(enough))
 
     def of_open_limit(self, number: int) -> dict[str, Any] | None:
         """Return the placeholder that leaves a limit without hours open for a candidate; None if
@@ -265,12 +290,19 @@ class Turning:
         return np.array(at_level)
 
 
+def has_turn(one: Placeholder) -> bool:
+    """Return whether the value at which an answer turns can be said of a placeholder: of a wear
+    coefficient, to which the life by wear is inversely proportional.
+    """
+    return one.name.startswith("wear_coefficient") and one.low > 0
+
+
 def record_of(one: Placeholder, step: int = -1) -> dict[str, Any]:
     """Return a placeholder with the value at one of `STEPS`, -1 for none; only a wear coefficient
     has one.
     """
     turn = np.nan
-    if step >= 0 and one.name.startswith("wear_coefficient") and one.low > 0:
+    if step >= 0 and has_turn(one):
         turn = float(one.high * (one.low / one.high) ** STEPS[step])
     return {
         "what": one.name,

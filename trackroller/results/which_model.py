@@ -125,9 +125,9 @@ def _headline(rows: list[dict[str, Any]], table: pd.DataFrame, base: str) -> dic
         "smallest": float(table["ratio_low"].min()),
         "largest": float(table["ratio_high"].max()),
     }
-    solvers = str(table["solved_by"].iloc[0])
-    if solvers not in ("", base):
-        head["base_by"] = solvers
+    solved_by = rows[0]["solved_by"]
+    if solved_by not in ("", base):
+        head["base_by"] = solved_by
     return head
 
 

@@ -28,6 +28,10 @@ START = 3.0  # seconds of one core: to import, plan and load the compiled solver
 PAGES_OF_ARRAY = 3.0  # seconds: figures and page
 PAGES_OF_SAMPLE = 5.0  # a random sample has given-data measures
 PAGES_A_CASE = 3.5e-4  # seconds: gathering, analysis, figures and page of a large study
+# MB of a process that gathers or reports: what it imports, and the figures of a small study
+MEGABYTES_OF_PROGRAM = 1000
+# memory of a large study over its place on the disk
+COPIES = 2.5
 _BYTES = {
     "forces": 200,
     "contact": 120,
@@ -141,6 +145,24 @@ def seconds_of_report(design: str, cases: int) -> float:
 def bytes_a_case(outputs: tuple[str, ...]) -> int:
     """Return the expected size of a case on the disk, chunk and gathered set together."""
     return 2 * (60 + sum(_BYTES.get(group, _BYTES_OF_A_LIMIT) for group in set(outputs)))
+
+
+def megabytes_of_report(outputs: tuple[str, ...], cases: int) -> int:
+    """Return the memory [MB] in which a study is gathered, analysed, drawn and shown.
+
+    Parameters
+    ----------
+    outputs : tuple of str
+        Groups of outputs of the study.
+    cases : int
+        Number of its cases.
+
+    Notes
+    -----
+    The values of a study are in memory twice, in their data set and in the table of cases, and
+    parts of them a third time. See "Plan ten million cases" in the docs for measured peaks.
+    """
+    return MEGABYTES_OF_PROGRAM + round(COPIES * cases * bytes_a_case(outputs) / 1e6)
 
 
 def duration(seconds: float) -> str:

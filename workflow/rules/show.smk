@@ -11,6 +11,8 @@ rule sensitivity:
         f"{RESULTS}/logs/sensitivity.log",
     conda:
         "../envs/trackroller.yaml"
+    resources:
+        mem_mb=megabytes_of_report(LEDGER.study.config.outputs, LEDGER.size),
     script:
         "../scripts/sensitivity.py"
 
@@ -42,6 +44,8 @@ rule report:
         f"{RESULTS}/logs/report.log",
     conda:
         "../envs/trackroller.yaml"
+    resources:
+        mem_mb=megabytes_of_report(LEDGER.study.config.outputs, LEDGER.size),
     params:
         config=CONFIG,
     script:

@@ -48,6 +48,8 @@ rule gather:
         f"{RESULTS}/logs/gather.log",
     conda:
         "../envs/trackroller.yaml"
+    resources:
+        mem_mb=megabytes_of_report(LEDGER.study.config.outputs, LEDGER.size),
     params:
         config=CONFIG,
     script:

@@ -24,12 +24,18 @@ def sn_line(fit: MaterialFit) -> style.Drawn:
     """Draw stress over life: failures, run-outs as arrows, the line, and its 90 % band for 50 and
     10 % failures.
     """
-    if not fit.has("fatigue"):
+    own = fit.of_life
+    if own is None:
         return None
-    line = fit.group("fatigue").line
+    line = own.line
     tests = line.tests
     failed = line.tests.failed
-    figure, (axes,) = style.panels(f"S-N line of {fit.name}", 95)
+    title, load = ("S-N line", "Stress amplitude [MPa]")
+    name = "line"
+    if own.kind == "rolling":
+        title, load = ("Line of pressure", "Largest Hertzian pressure [MPa]")
+        name = "line of pressure"
+    figure, (axes,) = style.panels(f"{title} of {fit.name}", 95)
     reach = max(np.ptp(tests.stress), 0.1)
     low, high = tests.stress.min() - 0.6 * reach, tests.stress.max() + 0.2 * reach
     stresses = np.linspace(low, high, ACROSS)
@@ -62,11 +68,11 @@ def sn_line(fit: MaterialFit) -> style.Drawn:
         )
     lives = np.exp(tests.middle)
     axes.set(xscale="log", yscale="log", xlim=(lives.min() / 5.0, lives.max() * 10.0))
-    axes.set(xlabel="Cycles to failure $N$ [–]", ylabel="Stress amplitude [MPa]")
+    axes.set(xlabel="Cycles to failure $N$ [–]", ylabel=load)
     style.log_ticks(axes.yaxis, *axes.get_ylim())
     legend(figure, entries)
     caption = (
-        "Tests, fitted line, and the interval that holds the true life in nine of ten fits, at "
+        f"Tests, fitted {name}, and the interval that holds the true life in nine of ten fits, at "
         "each stress. Arrows: tests that ended without a failure of this kind. Beyond the tests "
         "the line is extrapolated."
     )
@@ -117,6 +123,7 @@ def _against(axes: Axes, own: Group) -> None:
         )
     words = {
         "fatigue": "cycles [–]",
+        "rolling": "overrollings [–]",
         "wear": "travel over that of 1e-6 mm³/(N m) [–]",
         "friction": "friction coefficient [–]",
     }[own.kind]
@@ -126,9 +133,9 @@ def _against(axes: Axes, own: Group) -> None:
 
 def pairs(fit: MaterialFit) -> style.Drawn:
     """Draw pairs of fitted values by points of the posterior."""
-    if not fit.has("fatigue") or not fit.group("fatigue").line.tests.failed.any():
+    own = fit.of_life
+    if own is None or not own.line.tests.failed.any():
         return None
-    own = fit.group("fatigue")
     names = [name for name in own.names if name not in own.unidentified]
     couples = [(a, b) for i, a in enumerate(names) for b in names[i + 1 :]][:3]
     if not couples:
@@ -141,6 +148,8 @@ def pairs(fit: MaterialFit) -> style.Drawn:
         "woehler_exponent": "Slope $k$ [–]",
         "scatter_in_cycles": "$T_N$ [–]",
         "scatter_in_stress": "$T_S$ [–]",
+        "rolling_pressure": "Pressure $p_R$ [MPa]",
+        "rolling_exponent": "Exponent $k_R$ [–]",
     }
     for axes, (first, second) in zip(panels, couples, strict=True):
         x, y = (

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -71,21 +72,25 @@ def stress_against_fit(results: Results) -> style.Drawn:
     for axes, body in zip(panels, bodies, strict=True):
         axes.set(title=body.capitalize(), ylim=(0, None), xlabel=label)
     panels[0].set_ylabel(with_unit(r"Peak von Mises stress $\sigma_\mathrm{DEH}$", "MPa"))
-    if single:
-        dot = {"color": "0.3", "marker": "o", "linestyle": "none"}
-        entries += [
-            ("filled: at the surface", dot),
-            ("hollow: below it", {**dot, "markerfacecolor": "white"}),
-        ]
-    legend(figure, entries, 2)
     marks = MEDIANS
     if single:
         marks = "Filled marks: the peak lies at the surface; hollow marks: below it."
+        entries += _entries_of_places()
+    legend(figure, entries, 2)
     caption = (
         "Peak von Mises stress (MPa) of roller and guide, the worse of the two contacts, over the "
         f"fit of groove and guide; rolling cases. {marks} {held_words(levels_held)}"
     )
     return figure, style.FigureInfo("stress_against_fit", caption.strip())
+
+
+def _entries_of_places() -> Entries:
+    """Return what the legend says of marks by the place of the peak."""
+    dot = {"color": "0.3", "marker": "o", "linestyle": "none"}
+    return [
+        ("filled: at the surface", dot),
+        ("hollow: below it", {**dot, "markerfacecolor": "white"}),
+    ]
 
 
 def _levels(results: Results, hue: str, rows: pd.DataFrame) -> list[tuple[str, np.ndarray]]:
@@ -171,7 +176,7 @@ def forces_against_axial(results: Results) -> style.Drawn:
     if not kinds:
         return None
     drives: list[Any] = [None]  # one line for all drives
-    shown = tuple(results.behind(x))
+    shown = results.behind(x)
     if "motor_force" in results.factors and len(results.levels("motor_force")) <= 5:
         drives = results.levels("motor_force")
         shown = (*shown, "motor_force")
@@ -181,24 +186,17 @@ def forces_against_axial(results: Results) -> style.Drawn:
     )
     looks = _looks_of_contacts(results.grid)
     for axes, (name, words, letter) in zip(panels, kinds, strict=True):
-        for contact, (j, level) in ((c, d) for c in (1, 2) for d in enumerate(drives)):
-            part = rows
-            if level is not None:
-                part = rows[rows["motor_force"] == level]
-            part = part.sort_values(x)
-            look = looks[contact - 1] | {"linestyle": style.LINES[j % 6]}
-            _force_series(axes, part[x], part[f"{name}_{contact}"], look, results.grid)
+        for contact, look in enumerate(looks, 1):
+            _force_lines(axes, rows, f"{name}_{contact}", drives, look, results.grid)
         axes.set(xlabel=factor_label(x), ylabel=with_unit(f"{words} {letter}", "N"))
         axes.margins(y=0.1)
     if results.grid:
         _shade_lift_off(panels, rows, x)
     entries: Entries = [(f"contact {c + 1}", looks[c] | {"linestyle": "none"}) for c in (0, 1)]
-    dashes = [{"color": "0.2", "linestyle": style.LINES[j % 6]} for j in range(len(drives))]
-    entries += [
-        (level_text("motor_force", d), look)
-        for d, look in zip(drives, dashes, strict=True)
-        if d is not None
-    ]
+    for level, dashes in zip(drives, style.LINES, strict=False):
+        if level is not None:
+            look = {"color": "0.2", "linestyle": dashes}
+            entries.append((level_text("motor_force", level), look))
     legend(figure, entries, 5)
     caption = _caption_of_forces(len(drives), levels_held, results.grid)
     return figure, style.FigureInfo("forces_against_axial_force", caption)
@@ -229,6 +227,24 @@ def _looks_of_contacts(solved: bool) -> list[dict[str, Any]]:
             {"marker": "s", "markersize": 4.5, "markerfacecolor": "white"},
         ]
     return [{"color": colour} | mark for colour, mark in zip(style.PAIR, marks, strict=True)]
+
+
+def _force_lines(
+    axes: Any,
+    rows: pd.DataFrame,
+    name: str,
+    drives: Sequence[Any],
+    look: dict[str, Any],
+    solved: bool,
+) -> None:
+    """Draw a force over the axial force, one line for each drive; None stands for all drives."""
+    for drive, dashes in zip(drives, style.LINES, strict=False):
+        part = rows
+        if drive is not None:
+            part = rows[rows["motor_force"] == drive]
+        part = part.sort_values("axial_force")
+        own_look = look | {"linestyle": dashes}
+        _force_series(axes, part["axial_force"], part[name], own_look, solved)
 
 
 def _force_series(

@@ -86,15 +86,19 @@ def _life_pair(results: Results) -> Pair | None:
         column = results.life[0]
     size = ranked_factors(results.analysis, column, results.factors)
 
-    def worth(pair: Pair) -> tuple[float, ...]:
+    def rank(pair: Pair) -> tuple[float, ...]:
+        """Return what ranks a pair, the first number first: whether it has a finite life, how many
+        of its factors have more than two levels, and its effect.
+        """
         rows, _ = results.hold(pair)
+        has_life = float(np.isfinite(rows[column]).any())
         several = float(sum(len(results.levels(f)) > 2 for f in pair))
-        return float(np.isfinite(rows[column]).any()), several, sum(size[f] for f in pair)
+        return has_life, several, sum(size[f] for f in pair)
 
     pairs = list(itertools.combinations(names, 2))
     if not pairs:
         return None
-    x, y = max(pairs, key=worth)
+    x, y = max(pairs, key=rank)
     if not results.grid and size[x] + size[y] < 0.5 * sum(size.values()):
         return None
     if len(results.levels(x)) >= len(results.levels(y)):

@@ -48,10 +48,9 @@ def damage_by_block(ds: xr.Dataset) -> style.Drawn:
     )
     worst_blocks = []
     for axes, colour, (body, part) in zip(panels, style.PAIR, shares.items(), strict=False):
+        values = part[shown]
         if len(further):
-            values = np.append(part[shown], part[further].sum())
-        else:
-            values = part[shown]
+            values = np.append(values, part[further].sum())
         bars = axes.barh(words, 100 * values, color=colour, height=0.62)
         axes.bar_label(bars, [chance(float(v)) for v in values], padding=2, fontsize=7)
         axes.set(xlim=(0, 125), xticks=range(0, 101, 25), xlabel=f"damage of the {body} [%]")
@@ -65,16 +64,20 @@ def damage_by_block(ds: xr.Dataset) -> style.Drawn:
         "Share of each block in the damage of all blocks, in the track of each body that "
         "fails first."
     )
-    missing = {
+    caption += _blocks_left_out(ds, unknown)
+    return figure, style.FigureInfo("damage_by_block", caption, f"{listing(worst_blocks)}.")
+
+
+def _blocks_left_out(ds: xr.Dataset, unknown: dict[str, np.ndarray]) -> str:
+    """Return sentences on the blocks without known damage of each body; '' without such blocks."""
+    blocks = {
         body: listing(ds["block"].values[rows].tolist())
         for body, rows in unknown.items()
         if rows.any()
     }
-    if len(set(missing.values())) == 1 and len(missing) == len(unknown):
-        caption += f" Blocks without known damage are not counted: {next(iter(missing.values()))}."
-    else:
-        caption += "".join(
-            f" Not counted for the {body}, without known damage: {m}."
-            for body, m in missing.items()
-        )
-    return figure, style.FigureInfo("damage_by_block", caption, f"{listing(worst_blocks)}.")
+    if len(set(blocks.values())) == 1 and len(blocks) == len(unknown):
+        return f" Blocks without known damage are not counted: {next(iter(blocks.values()))}."
+    sentences = ""
+    for body, names in blocks.items():
+        sentences += f" Not counted for the {body}, without known damage: {names}."
+    return sentences

@@ -24,6 +24,8 @@ SYMBOLS = {
     "woehler_exponent": "Slope k",
     "scatter_in_cycles": "Scatter of the life T_N",
     "scatter_in_stress": "Scatter of the fatigue limit T_S",
+    "rolling_pressure": "Pressure p_R in rolling contact",
+    "rolling_exponent": "Exponent k_R of the line of pressure",
     "wear_coefficient": "Wear coefficient",
     "wear_scatter": "Scatter of the travel to a depth",
     "friction_coefficient": "Friction coefficient",
@@ -67,9 +69,11 @@ def _prior(own: Group, name: str) -> str:
         "woehler_exponent": "slope",
         "scatter_in_cycles": "log_scatter",
         "fatigue_limit": "log_strength",
+        "rolling_pressure": "log_strength",
+        "rolling_exponent": "slope",
     }.get(name)
     if key is None or key not in own.priors:
-        if name in ("woehler_exponent",):
+        if name in ("woehler_exponent", "rolling_exponent"):
             return "flat"
         return "flat in its logarithm"
     prior = own.priors[key]
@@ -102,6 +106,7 @@ def sentences(fit: MaterialFit) -> list[str]:
         size = own.line.size
         ends = {
             "fatigue": "failed by fatigue",
+            "rolling": "failed by fatigue",
             "wear": "reached a depth",
             "friction": "gave a drive force",
         }[own.kind]
@@ -130,6 +135,8 @@ def _short(name: str) -> str:
         "woehler_exponent": "slope",
         "scatter_in_cycles": "T_N",
         "scatter_in_stress": "T_S",
+        "rolling_pressure": "p_R",
+        "rolling_exponent": "k_R",
     }.get(name, name.replace("_", " "))
 
 
@@ -145,16 +152,22 @@ def cannot_tell(fit: MaterialFit) -> list[str]:
         limit = math.nan
         if "fatigue_limit" in fit.material:
             limit = fit.knee
-        texts += _of_fatigue(fit.group("fatigue"), limit)
+        texts += _of_line(fit.group("fatigue"), limit)
+    elif fit.has("rolling"):
+        own = fit.group("rolling")
+        texts += _of_line(own, own.at)
     return [*texts, *fit.notes, *fit.not_given]
 
 
-def _of_fatigue(own: Group, knee: float) -> list[str]:
+def _of_line(own: Group, knee: float) -> list[str]:
     """Return sentences on the range of a line, and on how wide its lives are."""
     low, high, longest = own.tested
+    load, loads = ("stress", "Stresses")
+    if own.kind == "rolling":
+        load, loads = ("pressure", "Pressures")
     texts = [
-        f"Stresses of {rounded(low)} to {rounded(high)} MPa and up to {rounded(longest)} cycles "
-        "were tested. A life at another stress, or a longer one, is an extrapolation of the line."
+        f"{loads} of {rounded(low)} to {rounded(high)} MPa and up to {rounded(longest)} cycles "
+        f"were tested. A life at another {load}, or a longer one, is an extrapolation of the line."
     ]
     if not own.line.knee and knee > 1.05 * longest:
         texts.append(

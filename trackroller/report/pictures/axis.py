@@ -72,7 +72,7 @@ class Axis:
         this length [px].
         """
         best: list[tuple[float, str]] = []
-        for values in self._candidates():
+        for values in self._sets_of_values():
             ticks = [
                 (value, tick_text(value)) for value in values if self.low <= value <= self.high
             ]
@@ -84,7 +84,7 @@ class Axis:
         """Return values of ticks with their texts along a vertical axis of this height [px]."""
         best: list[tuple[float, str]] = []
         most = max(2, int(height / 22))
-        for values in self._candidates():
+        for values in self._sets_of_values():
             ticks = [
                 (value, tick_text(value)) for value in values if self.low <= value <= self.high
             ]
@@ -107,7 +107,7 @@ class Axis:
         gaps = zip(places, places[1:], widths, widths[1:], strict=False)
         return all(right - left > (one + other) / 2 + LETTER for left, right, one, other in gaps)
 
-    def _candidates(self) -> list[list[float]]:
+    def _sets_of_values(self) -> list[list[float]]:
         """Return sets of round values, from which `ticks` takes the largest that fits."""
         if not self.logarithmic:
             return _steps(self.low, self.high)

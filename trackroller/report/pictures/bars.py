@@ -37,7 +37,7 @@ LENGTH = 190.0  # smallest width of the bars of a table [px]
 SHORT = 115.0  # the same where a table has two columns of bars
 ROW = 24  # height of a bar [px]
 DIFFERENT = 0.6  # of the axis [%]: ends that differ by less are one dot
-COLOURS = {"met": "cm", "open": "co", "missed": "cx", "none": "cx"}  # classes by the verdict
+COLOURS = {"met": "cm", "open": "co", "missed": "cx", "none": "cx"}  # classes by the state
 COLOURS |= {"kept": "cm", "finite": "cm", "exceeded": "cx", "unknown": "cg"}
 
 
@@ -52,7 +52,7 @@ class Bars:
     columns : columns of role `bar` by their name
     shares : whether they are shares, which are drawn from 0 to 100 %
     bounds : required values with their words
-    state : column of the verdict, which colours the bars; '' without one
+    state : column of the state, which colours the bars; '' without one
     length : smallest width, into which the ticks of the head have to fit [px]
     loses : whether an infinite number is that of a condition that is not held
     """

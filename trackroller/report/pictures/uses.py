@@ -29,7 +29,7 @@ class UseBars:
     Attributes
     ----------
     column : the low end of the use [1]; `until` names the high end
-    state : column of the verdict, which colours the bars; '' without one
+    state : column of the state, which colours the bars; '' without one
     """
 
     column: Column

@@ -160,7 +160,7 @@ def classes_of(answer: Answer, column: Column) -> str:
 
 
 def _first_state(answer: Answer) -> Column | None:
-    """Return the column of the verdict: the first one of its kind."""
+    """Return the first column of states."""
     return next((column for column in answer.columns if column.kind == "state"), None)
 
 

@@ -51,8 +51,8 @@ def standards(ds: xr.Dataset) -> str:
 
 
 def _computed(ds: xr.Dataset) -> list[str]:
-    """Return the limits that have a utilisation or a life; those of the output `life` without the
-    verdict too.
+    """Return the limits that have a utilisation or a life; those of the output `life` without
+    the checked limits too.
     """
     if "utilisation" not in ds:
         if "life_cycles" in ds:

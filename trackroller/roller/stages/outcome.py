@@ -82,7 +82,7 @@ def limits(
 
 
 def _known_uses(limits: Sequence[Limit], solved: SolvedRollers, options: Options) -> np.ndarray:
-    """Return for which cases the checked limits were computed, (n, limit) bool."""
+    """Return for which cases checked limits were computed, (n, limit) bool."""
     own = [has_results(limit, solved, options) for limit in limits]
     return np.array(own, dtype=bool).reshape(len(limits), -1).T
 

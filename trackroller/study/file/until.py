@@ -85,18 +85,21 @@ def check_until(config: Any) -> None:
             "with until: indices of single factors",
             "Remove groups or until.",
         )
-    size, remainder = divmod(config.samples, until.replicates)
-    is_power_of_two = size > 0 and size & (size - 1) == 0
-    if remainder or not is_power_of_two:
-        near = until.replicates << max(0, round(config.samples / until.replicates) - 1).bit_length()
-        allowed = (
-            f"with until: the {until.replicates} replicates times a power of two, at the first look"
-        )
-        raise InputError(
-            "samples", config.samples, allowed, f"Write samples: {near}, or remove the key."
-        )
+    _check_samples(config.samples, until.replicates)
     for name in until.of:
         _check_of(config, name, names_of_outputs(config))
+
+
+def _check_samples(samples: int, replicates: int) -> None:
+    """Check that each replicate has a power of two of samples."""
+    size, remainder = divmod(samples, replicates)
+    is_power_of_two = size > 0 and size & (size - 1) == 0
+    if is_power_of_two and not remainder:
+        return
+    exponent = max(0, round(samples / replicates) - 1).bit_length()  # the next power of two
+    allowed = f"with until: the {replicates} replicates times a power of two, at the first look"
+    remedy = f"Write samples: {replicates * 2**exponent}, or remove the key."
+    raise InputError("samples", samples, allowed, remedy)
 
 
 def _check_of(config: Any, name: str, known: list[str]) -> None:

@@ -49,6 +49,7 @@ from trackroller.roller.duty import (
 )
 from trackroller.roller.geometry import rolling_radius
 from trackroller.roller.options import Options
+from trackroller.roller.requirement import KEY, LIVES_OF_PAIR, checked_requirement
 from trackroller.study.file.user_columns import read_table
 from trackroller.tables.user_table import UserTable
 from trackroller.yaml_file import errors_by_line, parse_mapping
@@ -71,6 +72,7 @@ FILE_FIELDS = (
     "critical_damage",
     "failure_probabilities",
     "duty",
+    "requirement",
     "limits",
     "log",
     *OPTIONS,
@@ -128,6 +130,8 @@ class Spectrum:
     groups : tuple of str
         Groups of outputs of the limits that the key `limits` names; without it, all whose inputs
         are given are checked.
+    required : mapping of str to float
+        Shortest life [h] by the name of each required life of the pair.
     by_share : bool
         Whether the blocks state shares of the time of travel. Their distances and overrollings are
         then those of an hour of travel, which takes the place of the shift.
@@ -142,6 +146,7 @@ class Spectrum:
     duty: Mapping[str, float] | None = None
     strokes: Mapping[str, float] | None = None
     groups: tuple[str, ...] = ()
+    required: Mapping[str, float] = field(default_factory=dict)
     by_share: bool = False
 
     @property
@@ -225,7 +230,28 @@ class Spectrum:
         wrong.check()
         if is_of_strokes(fields["duty"]):
             fields |= _by_strokes(fields["duty"], fields["blocks"])
+        fields["required"] = _required(values.get("requirement"), fields["duty"])
         return cls(**fields)
+
+
+def _required(given: Any, duty: Mapping[str, float] | None) -> dict[str, float]:
+    """Return the shortest life [h] of each requirement; a spectrum judges the life of the pair
+    alone.
+    """
+    requirement = checked_requirement(given, duty)
+    wrong = Collector()
+    for name, own in requirement.items():
+        with wrong.part():
+            if name not in LIVES_OF_PAIR or own.ends.keys() != {"min"} or own.in_shares:
+                raise InputError(
+                    f"{KEY}.{name}",
+                    dict(own.written),
+                    f"min alone, of {' or '.join(LIVES_OF_PAIR)}",
+                    f"Write {KEY}: {{{LIVES_OF_PAIR[0]}: {{min: 5000}}}}.",
+                    "is not judged for a spectrum",
+                )
+    wrong.check()
+    return {name: own.least for name, own in requirement.items()}
 
 
 def _checked_options(given: Mapping[str, Any]) -> dict[str, Any]:

@@ -25,6 +25,7 @@ from trackroller.parameters import BODIES, PARAMETERS
 from trackroller.roller.case import Case, to_table
 from trackroller.roller.doubts import doubts
 from trackroller.roller.duty import OVERROLLINGS, with_duty
+from trackroller.roller.requirement import KEY
 from trackroller.roller.run_in import groups_for_run_in, with_run_in
 from trackroller.roller.stored_inputs import DOUBTS, NOT_GIVEN, material_values, plain_inputs
 from trackroller.roller.temperature import temperatures_of
@@ -192,17 +193,7 @@ def _damage(
         "damage_sum": (_CB, total, _attrs("1", "damage per shift", "D")),
         "life_shifts": (_CB, shifts, _attrs("1", "shifts to failure of each track", "L_S")),
     }
-    distance, duration = (float(np.sum(variables[name][1])) for name in ("distance", "duration"))
-    for i, body in enumerate(BODIES):
-        index = ("TR", "G")[i]
-        to = f"to the first failure of the {body}"
-        for unit, name, words, letter, scale in (
-            ("1", "shifts", "shifts", "S", 1.0),
-            ("km", "km", "distance", "k", distance / 1e3),
-            ("h", "hours", "hours of travel", "h", duration),
-        ):
-            meta = _attrs(unit, f"{words} {to}", f"L_{letter},{index}")
-            variables[f"{body}_life_{name}"] = ((), first[i] * scale, meta)
+    variables |= _lives_of_bodies(spectrum, first)
     variables |= _loads(spectrum, database)
     if "limit" in solved.coords:
         chance = spectrum.options.get("failure_probability", 0.5)
@@ -218,18 +209,7 @@ def _damage(
     if any(curve.scatters.any() for curve in bodies):
         levels = spectrum.failure_probabilities
         sums = [damage_per_shift(stress, cycles, bodies, living, p)[1].sum(axis=0) for p in levels]
-        lives = miner.repetitions_to_failure(np.stack(sums), spectrum.critical_damage)
-        meta = _attrs("1", "shifts to failure at a failure probability", "L_S,p")
-        known = {
-            "probability": (
-                "probability",
-                list(levels),
-                {"units": "1", "long_name": "failure probability"},
-            )
-        }
-        variables["life_shifts_at_probability"] = xr.DataArray(
-            lives, known, ("probability", *_CB), attrs=meta
-        )
+        variables["life_shifts_at_probability"] = _at_probabilities(spectrum, np.stack(sums))
     if "life_to_first_limit_shifts" in variables:
         shifts_to_first = variables["life_to_first_limit_shifts"][1]
         travel = variables["distance"][1]
@@ -239,6 +219,39 @@ def _damage(
         _inputs(spectrum, database)
     )
     return with_duty(labelled, spectrum.duty, spectrum.strokes)
+
+
+def _lives_of_bodies(spectrum: Spectrum, shifts: np.ndarray) -> dict[str, Any]:
+    """Return the lives of roller and guide in shifts, (2,), as variables in shifts, km and hours of
+    travel.
+    """
+    distance = float(np.sum([block.distance for block in spectrum.blocks]))
+    duration = float(np.sum([block.hours for block in spectrum.blocks]))
+    variables = {}
+    for body, index, life in zip(BODIES, ("TR", "G"), shifts, strict=True):
+        to = f"to the first failure of the {body}"
+        for unit, name, words, letter, scale in (
+            ("1", "shifts", "shifts", "S", 1.0),
+            ("km", "km", "distance", "k", distance / 1e3),
+            ("h", "hours", "hours of travel", "h", duration),
+        ):
+            meta = _attrs(unit, f"{words} {to}", f"L_{letter},{index}")
+            variables[f"{body}_life_{name}"] = ((), life * scale, meta)
+    return variables
+
+
+def _at_probabilities(spectrum: Spectrum, damage: np.ndarray) -> xr.DataArray:
+    """Return the shifts to failure at each failure probability from the damage per shift,
+    (probability, contact, body).
+    """
+    meta = {"units": "1", "long_name": "failure probability"}
+    levels = ("probability", list(spectrum.failure_probabilities), meta)
+    return xr.DataArray(
+        miner.repetitions_to_failure(damage, spectrum.critical_damage),
+        {"probability": levels},
+        ("probability", *_CB),
+        attrs=_attrs("1", "shifts to failure at a failure probability", "L_S,p"),
+    )
 
 
 def _inputs(spectrum: Spectrum, database: MaterialDatabase) -> dict[str, str]:
@@ -306,6 +319,7 @@ def _labelled(
         f"D = {spectrum.critical_damage:g}",
         "critical_damage": spectrum.critical_damage,
         "period": spectrum.period,
+        KEY: json.dumps({name: {"min": hours} for name, hours in spectrum.required.items()}),
     }
     ds = xr.Dataset(variables, coords=coords, attrs=attrs)
     if spectrum.by_share:  # a shift of these blocks is an hour of travel
@@ -409,7 +423,9 @@ def by_limit(
         shifts = critical * miner.repetitions_to_failure(damage.sum(axis=0))
         first, which = (
             one[0]
-            for one in first_limit.first_of(shifts[None], most[None], timed, limits, broken[None])
+            for one in first_limit.first_of(
+                shifts[None], most[None], timed, limits, broken[None], end=end
+            )
         )
         head = {"": "", "_low": "low end of the ", "_high": "high end of the "}[end]
         for name, dims, values, meaning in (
