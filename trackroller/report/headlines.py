@@ -161,7 +161,8 @@ def decide(answer: Answer) -> Headline:
     lost = _lost(head)
     if lost and head.get("elsewhere") and answer.kind in ELSEWHERE:
         lead = capital(f"{listing(lost)}; elsewhere {ELSEWHERE[answer.kind](answer)}")
-        value = f"{_value_said(answer)}{_lines(head)}"
+        notes = [*_notes(head), *filter(None, [_line_words(head)])]
+        value = _output(answer, head["low"], head.get("high"), notes)
         clauses = [value, *_goal_clauses(head), *_other_rules(head)]
         return Headline(lead, f": {'; '.join(clauses)}.")
     shares = _known(head, "share") and bool(answer.required)
@@ -753,16 +754,26 @@ def _lines(head: Mapping[str, Any]) -> str:
     """Return the tests that both ends of a life by fatigue follow from, in brackets; '' where these
     are the only ones.
     """
+    words = _line_words(head)
+    if words:
+        return f" ({words})"
+    return ""
+
+
+def _line_words(head: Mapping[str, Any]) -> str:
+    """Return the tests that both ends of a life by fatigue follow from; '' where these are the only
+    ones.
+    """
     low = head.get("line_low")
     high = head.get("line_high")
     if low and high and low != high:
-        return f" ({low} to {high})"
+        return f"{low} to {high}"
     if low and high:
-        return f" (by the {low})"
+        return f"by the {low}"
     if low:
-        return f" (low end by the {low})"
+        return f"low end by the {low}"
     if high:
-        return f" (high end by the {high})"
+        return f"high end by the {high}"
     return ""
 
 
