@@ -118,7 +118,7 @@ def test_each_end_of_a_candidate_names_the_line_that_gives_it(grooves):
         assert row["line"] == f"{lines['low']} to {lines['high']}"
     leader = answer.table.iloc[0]
     assert (answer.headline["line_low"], answer.headline["line_high"]) == (leader["line_low"], leader["line_high"])
-    assert f"({leader['line_low']} to {leader['line_high']})" in headline_of(answer).text
+    assert f"{leader['line_low']} to {leader['line_high']})" in headline_of(answer).text
     assert answer.headline["ends"] == answer.headline["ends_high"] == "fatigue"
 
 
