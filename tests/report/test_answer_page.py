@@ -18,6 +18,7 @@ from trackroller.report.pages.blocks import empty_proof, screen_of
 from trackroller.report.pages.study import page_text
 from trackroller.report.pictures.axis import Axis, tick_text
 from trackroller.report.pictures.bars import Bars
+from trackroller.report.pictures.frame import cut_apart
 from trackroller.report.pictures.marks import spread_labels, width_of
 from trackroller.report.tables.rows import FIRST_ROWS, MOST_SHOWN, rows_of, text_of
 
@@ -182,3 +183,25 @@ def test_the_first_screen_holds_headline_table_picture_and_warnings(tmp_path, na
         page.close()
     finally:
         browser.close()
+
+
+@pytest.mark.parametrize(
+    ("names", "expected"),
+    [
+        (["quenched steel", "POM"], ["quench…", "POM"]),
+        (["1.7225-quenched", "1.7225-normalised", "POM"], ["…quenc…", "…norma…", "POM"]),
+        (["groove 6.41", "groove 6.48"], ["…6.41", "…6.48"]),
+        (["abcdefghijk1", "abcdefghijk2", "abcdefghixy1"], ["…jk1", "…jk2", "…xy1"]),
+        (["abcdefghijk", "abcdefghijkmn", "abcdefghijk"], ["…", "…mn", "…"]),
+    ],
+)
+def test_names_that_differ_are_cut_to_different_texts(names, expected):
+    width = width_of("1234567")
+    texts = cut_apart(names, width)
+    assert texts == expected
+    assert max(map(width_of, texts)) <= width
+    assert len(set(texts)) == len(set(names))
+
+
+def test_names_in_no_room_are_cut_all_the_same():
+    assert len(cut_apart(["alpha one", "alpha two"], 1.0)) == 2

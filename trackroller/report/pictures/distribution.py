@@ -15,7 +15,7 @@ from trackroller.report.pictures.curves import points
 from trackroller.report.pictures.frame import (
     WIDE,
     bounds_of,
-    cut,
+    cut_apart,
     framed,
     lower_axis,
     output_title,
@@ -114,7 +114,8 @@ def _names_of_lines(shown: Mapping[str, np.ndarray], across: Axis) -> list[Marku
         return []
     rows = np.linspace(0.2, 0.8, len(shown))
     parts = []
-    for place, (name, values) in enumerate(shown.items()):
+    names = cut_apart(list(shown), WIDE / 2)
+    for place, (name, values) in enumerate(zip(names, shown.values(), strict=True)):
         known = np.sort(values[~np.isnan(values)])
         if not known.size:
             continue
@@ -129,5 +130,5 @@ def _names_of_lines(shown: Mapping[str, np.ndarray], across: Axis) -> list[Marku
         if end:
             anchor = "end"
             shift = -10
-        parts.append(label(cut(name, WIDE / 2), x, y, anchor, kind, dx=shift, dy=-2))
+        parts.append(label(name, x, y, anchor, kind, dx=shift, dy=-2))
     return parts
