@@ -18,6 +18,7 @@ from trackroller.report.pages.blocks import empty_proof, screen_of
 from trackroller.report.pages.study import page_text
 from trackroller.report.pictures.axis import Axis, tick_text
 from trackroller.report.pictures.bars import Bars
+from trackroller.report.pictures.distribution import draw_distribution
 from trackroller.report.pictures.frame import cut_apart
 from trackroller.report.pictures.marks import spread_labels, width_of
 from trackroller.report.tables.rows import FIRST_ROWS, MOST_SHOWN, rows_of, text_of
@@ -205,3 +206,20 @@ def test_names_that_differ_are_cut_to_different_texts(names, expected):
 
 def test_names_in_no_room_are_cut_all_the_same():
     assert len(cut_apart(["alpha one", "alpha two"], 1.0)) == 2
+
+
+def test_a_distribution_shows_the_band_between_the_low_and_the_high_ends():
+    """At the required value the band spans the shares that the low and the high ends reach."""
+    low = np.array([1e3, 2e3, 4e3, 8e3])
+    high = 100 * low
+    answer = dataclasses.replace(made_answers.how_sure(), required=())
+    data = {"values": [np.sqrt(low * high)], "low": [low], "high": [high]}
+    picture = draw_distribution(answer, data)
+    axis = Axis.of([*low, *high])
+    corners = re.search(r'<polygon class="f cm" points="([^"]*)"', picture.drawn).group(1).split()
+    for ends in (low, high):
+        for place, value in enumerate(ends):
+            assert f"{axis.place(value):.1f},{100 * place / 4:.1f}" in corners
+    assert "band: its low to its high end" in picture.caption
+    alike = draw_distribution(answer, data | {"high": [low]})
+    assert "polygon" not in alike.drawn and "band" not in alike.caption
