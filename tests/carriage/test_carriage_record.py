@@ -159,3 +159,22 @@ def test_rollers_stand_in_the_order_in_which_they_fail():
     table = answer_of_carriage(ds).table
     lives = {str(one): float(ds["life_hours_low"].sel(roller=one)) for one in ds["roller"].values}
     assert sorted(lives, key=lives.get) == table["roller"].tolist() and len(set(lives.values())) > 1
+
+
+def test_travel_and_years_are_told_from_low_to_high_as_the_life_is():
+    """The travel of an hour follows from the speeds and the shares of the travel alone."""
+    ds = tr.carriage(shuttle(duty={"hours_per_day": 8, "days_per_year": 250}))
+    given = ds["speed"].fillna(tr.Case().velocity / 60)  # m/s
+    speed = 3.6 / float((ds["share"] / given).sum())  # km/h, of the whole travel
+    answer = answer_of_carriage(ds)
+    table = answer.table.set_index("roller")
+    assert (table["high"] > 1.5 * table["low"]).all(), "two lines have a range"
+    for roller, row in table.iterrows():
+        for end in ("low", "high"):
+            assert row[f"km_{end}"] == pytest.approx(speed * row[end], rel=1e-9)
+            assert row[f"years_{end}"] == pytest.approx(row[end] / 2000, rel=1e-9)
+        assert row["km"] == float(ds["life_km"].sel(roller=roller))
+    first = table.loc[answer.headline["roller"]]
+    assert (answer.headline["km_low"], answer.headline["km_high"]) == (first["km_low"], first["km_high"])
+    low, high = (f"{first[key]:.3g}" for key in ("km_low", "km_high"))
+    assert f"{low} to {high} km" in headline_of(answer).lead

@@ -18,6 +18,8 @@ from trackroller.report.pages.blocks import empty_proof, screen_of
 from trackroller.report.pages.study import page_text
 from trackroller.report.pictures.axis import Axis, tick_text
 from trackroller.report.pictures.bars import Bars
+from trackroller.report.pictures.distribution import draw_distribution
+from trackroller.report.pictures.frame import cut_apart
 from trackroller.report.pictures.marks import spread_labels, width_of
 from trackroller.report.tables.rows import FIRST_ROWS, MOST_SHOWN, rows_of, text_of
 
@@ -182,3 +184,42 @@ def test_the_first_screen_holds_headline_table_picture_and_warnings(tmp_path, na
         page.close()
     finally:
         browser.close()
+
+
+@pytest.mark.parametrize(
+    ("names", "expected"),
+    [
+        (["quenched steel", "POM"], ["quench…", "POM"]),
+        (["1.7225-quenched", "1.7225-normalised", "POM"], ["…quenc…", "…norma…", "POM"]),
+        (["groove 6.41", "groove 6.48"], ["…6.41", "…6.48"]),
+        (["abcdefghijk1", "abcdefghijk2", "abcdefghixy1"], ["…jk1", "…jk2", "…xy1"]),
+        (["abcdefghijk", "abcdefghijkmn", "abcdefghijk"], ["…", "…mn", "…"]),
+    ],
+)
+def test_names_that_differ_are_cut_to_different_texts(names, expected):
+    width = width_of("1234567")
+    texts = cut_apart(names, width)
+    assert texts == expected
+    assert max(map(width_of, texts)) <= width
+    assert len(set(texts)) == len(set(names))
+
+
+def test_names_in_no_room_are_cut_all_the_same():
+    assert len(cut_apart(["alpha one", "alpha two"], 1.0)) == 2
+
+
+def test_a_distribution_shows_the_band_between_the_low_and_the_high_ends():
+    """At the required value the band spans the shares that the low and the high ends reach."""
+    low = np.array([1e3, 2e3, 4e3, 8e3])
+    high = 100 * low
+    answer = dataclasses.replace(made_answers.how_sure(), required=())
+    data = {"values": [np.sqrt(low * high)], "low": [low], "high": [high]}
+    picture = draw_distribution(answer, data)
+    axis = Axis.of([*low, *high])
+    corners = re.search(r'<polygon class="f cm" points="([^"]*)"', picture.drawn).group(1).split()
+    for ends in (low, high):
+        for place, value in enumerate(ends):
+            assert f"{axis.place(value):.1f},{100 * place / 4:.1f}" in corners
+    assert "band: its low to its high end" in picture.caption
+    alike = draw_distribution(answer, data | {"high": [low]})
+    assert "polygon" not in alike.drawn and "band" not in alike.caption

@@ -964,7 +964,8 @@ def _carriage_lasts(answer: Answer, margins: Sequence[str]) -> Headline:
         clauses.append(f"not on both contacts in {head['not_on_both']}")
     else:
         life = _life_to_end(head)
-        lasts = f"roller {head['roller']} ends first: {life}, {grouped(head['km'], 3)} km"
+        km = carried_range(head["km_low"], head["km_high"])
+        lasts = f"roller {head['roller']} ends first: {life}, {km} km"
     lasts = f"{_if_model_holds(head)}{lasts}"
     if head["limit"]:
         clauses.append(f"then {head['limit']} of the {head['body']}{_lines(head)}")

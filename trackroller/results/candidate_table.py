@@ -159,7 +159,7 @@ SECOND_MODEL = (
 )
 SECOND_STATE = Column(
     "second_state",
-    "Its verdict",
+    "Verdict by second model",
     "",
     "the requirement by the second model in place of fatigue; wear and other limits with a life "
     "count as they are",

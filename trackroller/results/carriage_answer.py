@@ -93,8 +93,17 @@ COLUMNS = (
         "h",
         "bound by the load cases whose damage is known, where that of others is not",
     ),
-    Column("km", "Travel", "km", "the same life as travel of the carriage"),
-    Column("years", "Years", "", "the same life in years of the duty, from one year on", "years"),
+    Column("km_low", "Travel", "km", "the same life as travel of the carriage", until="km_high"),
+    Column(
+        "years_low",
+        "Years",
+        "",
+        "the same life in years of the duty, from one year on",
+        "years",
+        "years_high",
+    ),
+    Column("km", "Travel at the values", "km", "at the values of the placeholders", role="file"),
+    Column("years", "Years at the values", "", "of the same travel", "years", role="file"),
     Column(
         "ends",
         "Ended by",
@@ -277,6 +286,8 @@ def _headline(ds: xr.Dataset, table: pd.DataFrame) -> dict[str, Any]:
         "at_most": math.nan,
         "not_on_both": "",
         "km": math.nan,
+        "km_low": math.nan,
+        "km_high": math.nan,
         "body": "",
         "limit": "",
         "line_low": "",
@@ -299,7 +310,8 @@ def _headline(ds: xr.Dataset, table: pd.DataFrame) -> dict[str, Any]:
     head["not_on_both"] = _beside_rolling(own)
     if math.isnan(head["at_most"]):
         head["part"] = float(damage.sel(load_case=case) / damage.sum())
-    head["km"] = float(own["life_km"])
+    first = table[table["roller"] == roller].iloc[0]
+    head |= {key: float(first[key]) for key in ("km", "km_low", "km_high")}
     head["body"] = str(own["first_body"].item())
     head["limit"] = limit_word(str(own["first_limit"].item()))
     flags = int(np.bitwise_or.reduce(own["roller_validity"].values.astype(int)))
@@ -530,6 +542,7 @@ def _row(ds: xr.Dataset, roller: str) -> dict[str, Any]:
     }
     numbers |= {"years": "life_years", "catalogue_km": "catalogue_life_km"}
     row |= {key: float(own[name]) if name in own else math.nan for key, name in numbers.items()}
+    row |= _ends_of_travel(row)
     row["at_most"] = _bound(own)
     row["ends"] = _end_of(own)
     row["factor"] = _by_catalogue(own)[0]
@@ -548,6 +561,21 @@ def _row(ds: xr.Dataset, roller: str) -> dict[str, Any]:
     ]
     row["exceeded"] = ", ".join(over)
     return row
+
+
+def _ends_of_travel(life: Mapping[str, Any]) -> dict[str, float]:
+    """Return both ends of a life as travel [km] and in years of the duty.
+
+    Travel and years go with the hours. Where the hours at the values are not finite, neither of
+    their ratios is known, and an end is that of the values.
+    """
+    ends = {}
+    for key in ("km", "years"):
+        for end in ("low", "high"):
+            ends[f"{key}_{end}"] = life[key]
+            if math.isfinite(life["hours"]) and life["hours"] > 0:
+                ends[f"{key}_{end}"] = life[key] * (life[end] / life["hours"])
+    return ends
 
 
 def _end_of(own: xr.Dataset) -> str:

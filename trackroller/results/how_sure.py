@@ -65,7 +65,11 @@ def answer_how_sure(results: SolvedCases) -> Answer:
         required=own.required,
         curves=Effects.of(own.ranges).curves(),
         ends=ends_by_factor(results, own.ranges),
-        picture={"values": _values(own, order)},
+        picture={
+            "values": _values(own, order, own.ranges.middle),
+            "low": _values(own, order, own.ranges.low),
+            "high": _values(own, order, own.ranges.high),
+        },
         not_checked=checks_left_out(results),
         not_used=given_for_nothing(results) | own.idle,
         not_given=not_given_words(results),
@@ -86,9 +90,13 @@ def _order(own: Comparison, table: Any) -> list[int]:
     return [int(n) for n in np.lexsort((-decider.score, -share.to_numpy(dtype=float)))]
 
 
-def _values(own: Comparison, order: list[int]) -> list[np.ndarray]:
-    """Return the output of the conditions of each candidate, in rising order."""
-    return [
-        np.sort(np.where(own.ranges.holds, own.ranges.middle, own.ranges.worst_value)[own.rows[n]])
-        for n in order
-    ]
+def _values(own: Comparison, order: list[int], values: np.ndarray) -> list[np.ndarray]:
+    """Return some values of the conditions of each candidate, in rising order; a condition that is
+    not held has the worst value.
+
+    Parameters
+    ----------
+    values : of the cases, shape (n,)
+    """
+    counted = np.where(own.ranges.holds, values, own.ranges.worst_value)
+    return [np.sort(counted[own.rows[n]]) for n in order]

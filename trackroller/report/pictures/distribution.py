@@ -15,7 +15,7 @@ from trackroller.report.pictures.curves import points
 from trackroller.report.pictures.frame import (
     WIDE,
     bounds_of,
-    cut,
+    cut_apart,
     framed,
     lower_axis,
     output_title,
@@ -51,9 +51,15 @@ def draw_distribution(answer: Answer, data: Mapping[str, Any]) -> Picture:
         every = np.concatenate([one[np.isfinite(one)] for one in shown.values()])
     else:
         every = np.empty(0)
+    low, high = _first_ends(data)
+    ends = np.concatenate([low, high])
+    every = np.concatenate([every, ends[np.isfinite(ends)]])
     across = Axis.of([*every[every > 0], *(value for value, _ in bounds)])
     up = Axis(0.0, 100.0)
     lines = [_reached(one, across, place) for place, one in enumerate(shown.values())]
+    has_band = not np.array_equal(low, high)
+    if has_band:
+        lines.insert(0, _band(low, high, across))
     parts = [upright_axis(up, FLAT), lower_axis(across, output_title(answer), WIDE, lines=True)]
     parts.append(stretched(joined(lines), FLAT))
     for value, text in bounds:
@@ -71,9 +77,29 @@ def draw_distribution(answer: Answer, data: Mapping[str, Any]) -> Picture:
     further = ""
     if len(values) > len(shown):
         further = f" {len(values) - len(shown):,} more candidates are not drawn."
-    return Picture(
-        drawn, caption_of(data, f"Share of the conditions that reach a value [%].{further}")
-    )
+    band = ""
+    if has_band:
+        band = " Line: the middle of the range of each condition; band: its low to its high end."
+    if has_band and len(shown) > 1:
+        band = f"{band[:-1]}, of the first candidate."
+    caption = f"Share of the conditions that reach a value [%].{band}{further}"
+    return Picture(drawn, caption_of(data, caption))
+
+
+def _first_ends(data: Mapping[str, Any]) -> tuple[np.ndarray, np.ndarray]:
+    """Return the low and the high ends of the conditions of the first candidate, in rising order;
+    none of a record without them.
+    """
+    low, high = ([*data.get(end, [])][:1] for end in ("low", "high"))
+    if not low or not high:
+        return np.empty(0), np.empty(0)
+    return np.asarray(low[0], dtype=float), np.asarray(high[0], dtype=float)
+
+
+def _band(low: np.ndarray, high: np.ndarray, across: Axis) -> Markup:
+    """Return the area between the line of the low ends and that of the high ends."""
+    edges = [*_places_reached(low, across), *reversed(_places_reached(high, across))]
+    return element("polygon", class_="f cm", points=points(edges))
 
 
 def _near_left(bounds: Sequence[tuple[float, str]], across: Axis) -> bool:
@@ -84,9 +110,22 @@ def _reached(values: np.ndarray, across: Axis, place: int) -> Markup:
     """Return a falling line: the share of values that are at least as large as a place on the
     axis.
     """
+    line = _places_reached(values, across)
+    if not line:
+        return Markup()
+    kind = "cg"
+    if place == 0:
+        kind = "cm"
+    return element(
+        "polyline", class_=f"l {kind} {STROKES[place % len(STROKES)]}".rstrip(), points=points(line)
+    )
+
+
+def _places_reached(values: np.ndarray, across: Axis) -> list[tuple[float, float]]:
+    """Return the corners of the falling line of some values [%]; none without a value."""
     ordered = np.sort(np.where(np.isnan(values), -np.inf, values))
     if not ordered.size:
-        return Markup()
+        return []
     rows = np.unique(np.linspace(0, ordered.size - 1, min(MOST_STEPS, ordered.size)).astype(int))
     line = []
     if ordered[0] > 0:
@@ -100,12 +139,7 @@ def _reached(values: np.ndarray, across: Axis, place: int) -> Markup:
     last = float(ordered[-1])
     if math.isfinite(last):
         line.append((across.place(last), 100.0))
-    kind = "cg"
-    if place == 0:
-        kind = "cm"
-    return element(
-        "polyline", class_=f"l {kind} {STROKES[place % len(STROKES)]}".rstrip(), points=points(line)
-    )
+    return line
 
 
 def _names_of_lines(shown: Mapping[str, np.ndarray], across: Axis) -> list[Markup]:
@@ -114,7 +148,8 @@ def _names_of_lines(shown: Mapping[str, np.ndarray], across: Axis) -> list[Marku
         return []
     rows = np.linspace(0.2, 0.8, len(shown))
     parts = []
-    for place, (name, values) in enumerate(shown.items()):
+    names = cut_apart(list(shown), WIDE / 2)
+    for place, (name, values) in enumerate(zip(names, shown.values(), strict=True)):
         known = np.sort(values[~np.isnan(values)])
         if not known.size:
             continue
@@ -129,5 +164,5 @@ def _names_of_lines(shown: Mapping[str, np.ndarray], across: Axis) -> list[Marku
         if end:
             anchor = "end"
             shift = -10
-        parts.append(label(cut(name, WIDE / 2), x, y, anchor, kind, dx=shift, dy=-2))
+        parts.append(label(name, x, y, anchor, kind, dx=shift, dy=-2))
     return parts

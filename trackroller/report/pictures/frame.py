@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Mapping, Sequence
+from itertools import takewhile
 from typing import Any
 
 from markupsafe import Markup
 
 from trackroller.report.bounds import required_of_output
 from trackroller.report.numbers import as_required, unit_text
-from trackroller.report.pictures.axis import Axis
+from trackroller.report.pictures.axis import LETTER, Axis
 from trackroller.report.pictures.marks import (
     element,
     joined,
@@ -66,10 +68,9 @@ def lower_names(names: Sequence[str], places: Sequence[float], width: float) -> 
     """Return names below a picture, each in the middle of its share of the width; a name that is
     longer is cut, its title is whole.
     """
-    share = width / max(1, len(names))
+    share = width / max(1, len(names)) - LETTER  # a letter stays free between neighbours
     parts = []
-    for name, place in zip(names, places, strict=True):
-        text = cut(name, share)
+    for name, text, place in zip(names, cut_apart(names, share), places, strict=True):
         whole = ""
         if text != name:
             whole = element("title", name)
@@ -83,8 +84,39 @@ def cut(text: str, width: float) -> str:
     """Return a text that fits a width [px]: its beginning and an ellipsis where it is longer."""
     if width_of(text) <= width:
         return text
-    letters = max(1, int(len(text) * width / width_of(text)) - 1)
+    letters = max(1, int(width / LETTER + 1e-9) - 1)
     return f"{text[:letters]}…"
+
+
+def cut_apart(names: Sequence[str], width: float) -> list[str]:
+    """Return names that fit a width [px], so that names that differ look different.
+
+    Names whose beginnings are alike lose what they share, up to a whole word where that is enough.
+    """
+    texts = [cut(name, width) for name in names]
+    for text in dict.fromkeys(texts):
+        cut_names = [name for name, own in zip(names, texts, strict=True) if own == text]
+        alike = list(dict.fromkeys(cut_names))
+        if len(alike) > 1:
+            shorter = dict(zip(alike, _without_beginning(alike, width), strict=True))
+            texts = [shorter.get(name, own) for name, own in zip(names, texts, strict=True)]
+    return texts
+
+
+def _without_beginning(names: Sequence[str], width: float) -> list[str]:
+    """Return different names without the beginning that all of them share, cut to a width [px]."""
+    letters = takewhile(lambda column: len(set(column)) == 1, zip(*names, strict=False))
+    shared = "".join(column[0] for column in letters)
+    word = re.match(r".*[ /-]", shared)
+    texts: list[str] = []
+    if word:
+        texts = [cut(f"…{name[word.end() :]}", width) for name in names]
+    if len(set(texts)) == len(names):
+        return texts
+    texts = [f"…{name[len(shared) :]}" for name in names]
+    if len(shared) < 2:  # nothing is left to drop: the width holds no letter that differs
+        return [cut(text, width) for text in texts]
+    return cut_apart(texts, width)
 
 
 def framed(

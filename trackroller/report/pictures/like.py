@@ -9,7 +9,7 @@ import numpy as np
 
 from trackroller.report.numbers import grouped
 from trackroller.report.pictures.axis import Axis
-from trackroller.report.pictures.frame import WIDE, cut, framed, lower_axis
+from trackroller.report.pictures.frame import WIDE, cut_apart, framed, lower_axis
 from trackroller.report.pictures.marks import dot, joined, label, percent_place, upright, width_of
 from trackroller.report.pictures.picture import Picture, caption_of
 from trackroller.results.answer import Answer
@@ -34,14 +34,15 @@ def draw_like(answer: Answer, data: Mapping[str, Any]) -> Picture:
         every = np.empty(0)
     across = Axis.of([*every, 1.0])
     height = max(60.0, 44.0 * len(ratios))
-    left = max([width_of(cut(name, 150)) for name in ratios], default=40.0) + 16
+    names = cut_apart(list(ratios), 150)
+    left = max([width_of(name) for name in names], default=40.0) + 16
     parts = [
         lower_axis(across, f"÷ {data['base']}", WIDE, lines=True),
         upright("x", across.place(1.0)),
     ]
-    for place, (name, one) in enumerate(ratios.items()):
+    for place, (name, one) in enumerate(zip(names, ratios.values(), strict=True)):
         y = 100 * (place + 0.5) / len(ratios)
-        parts.append(label(cut(name, 150), 0, percent_place(y), "end", dx=-10, dy=4))
+        parts.append(label(name, 0, percent_place(y), "end", dx=-10, dy=4))
         known = one[np.isfinite(one)]
         if known.size <= MOST_DOTS:
             dots = known

@@ -218,11 +218,19 @@ def _range_text(
     if column.kind == "life" and ends[0] >= LONG_LIFE:
         return f"> {tick_text(LONG_LIFE)}"
     if column.kind == "years":
-        return year_text(ends[0])
+        return _years_range(*ends)
     lost = may_be_lost(answer.question, column.units)
     if lost and any(map(math.isinf, ends)):
         return " to ".join(dict.fromkeys(held_text(end) for end in ends))
     return carried_range(*ends, _error_of(row, column), _bounds(answer, column))
+
+
+def _years_range(low: float, high: float) -> str:
+    """Write years from low to high; a low end below a year has no number."""
+    ends = (year_text(low), year_text(high))
+    if ends[0] == "–" and ends[1] != "–":
+        return f"up to {ends[1]}"
+    return " to ".join(dict.fromkeys(ends))
 
 
 def _bounded_text(column: Column, row: Mapping[Any, Any]) -> str:
