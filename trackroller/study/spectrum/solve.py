@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -140,85 +140,137 @@ def damage_per_shift(
     return life, miner.block_damage(cycles, life)
 
 
+@dataclass(frozen=True)
+class _Fatigue:
+    """The stresses, cycles and S-N curves of roller and guide in the blocks of a spectrum.
+
+    Attributes
+    ----------
+    peak, stress : numpy.ndarray, shape (block, contact, body)
+        Peak stress, and the stress that counts for fatigue [MPa].
+    cycles : numpy.ndarray, shape (block, 1, body)
+        Overrollings per shift [1].
+    curves : list of SNCurve
+        S-N curves of roller and guide.
+    breaks : numpy.ndarray of bool, shape (block, body)
+        Where a body breaks at once.
+    living : numpy.ndarray of bool, shape (block, contact, body)
+        Where a body has a fatigue life.
+    """
+
+    peak: np.ndarray
+    stress: np.ndarray
+    cycles: np.ndarray
+    curves: list[SNCurve]
+    breaks: np.ndarray
+    living: np.ndarray
+
+    def damage(self, probability: float = 0.5) -> tuple[np.ndarray, np.ndarray]:
+        """Return cycles to failure and damage per shift; see `damage_per_shift`."""
+        return damage_per_shift(self.stress, self.cycles, self.curves, self.living, probability)
+
+    def assuming_scatter(self, scatter: np.ndarray) -> _Fatigue:
+        """Return the blocks with a scatter T_N [1] for the curves that state none."""
+        return replace(self, curves=[curve.assuming(scatter) for curve in self.curves])
+
+
 def _damage(
     spectrum: Spectrum, solved: xr.Dataset, database: MaterialDatabase, overrollings: np.ndarray
 ) -> xr.Dataset:
     """Return the damage of the solved blocks as a data set; see `solve_spectrum`."""
+    rule = spectrum.options.get("life_rule", "elementary")
+    fatigue_of_blocks = _fatigue_of_blocks(spectrum, solved, database, overrollings, rule)
+    variables = _travel_of_blocks(spectrum, overrollings)
+    variables |= _by_curve(spectrum, fatigue_of_blocks)
+    variables |= _loads(spectrum, database)
+    if "limit" in solved.coords:
+        by_curve = _damage_over_range(spectrum, fatigue_of_blocks)
+        variables |= by_limit(spectrum, solved, by_curve, fatigue_of_blocks.breaks)
+        solved = _with_run_in(spectrum, solved, variables["life_to_first_limit_shifts"][1])
+    if "fatigue_stress" in solved:
+        meta = dict(solved["fatigue_stress"].attrs)
+        variables["fatigue_stress"] = (_BCB, fatigue_of_blocks.stress, meta)
+    if any(curve.scatters.any() for curve in fatigue_of_blocks.curves):
+        variables["life_shifts_at_probability"] = _at_probabilities(spectrum, fatigue_of_blocks)
+    labelled = _labelled(spectrum, variables, solved, rule)
+    labelled = labelled.assign_attrs(_inputs(spectrum, database))
+    return with_duty(labelled, spectrum.duty, spectrum.strokes)
+
+
+def _fatigue_of_blocks(
+    spectrum: Spectrum,
+    solved: xr.Dataset,
+    database: MaterialDatabase,
+    overrollings: np.ndarray,
+    rule: str,
+) -> _Fatigue:
+    """Return the stresses, cycles and S-N curves of roller and guide in the solved blocks."""
     peak = solved["peak_stress"].transpose("case", "contact", "body").values
     stress = peak
     if "fatigue_stress" in solved:
         stress = solved["fatigue_stress"].transpose("case", "contact", "body").values
-    cycles = overrollings[:, None, :]
     case = spectrum.blocks[0].case
-    rule = spectrum.options.get("life_rule", "elementary")
     materials = [database.material(getattr(case, f"{body}_material")) for body in BODIES]
-    bodies = curves(spectrum, solved, materials, rule)
-    breaks = fatigue.overloaded(
-        peak, np.concatenate([curve.tensile_strength for curve in bodies], axis=1)
-    )
-    living = np.broadcast_to(
-        ~(breaks | skidding(solved["regime"].values))[:, None, :], stress.shape
-    )
-    life, damage = damage_per_shift(stress, cycles, bodies, living)
+    of_bodies = curves(spectrum, solved, materials, rule)
+    strength = np.concatenate([curve.tensile_strength for curve in of_bodies], axis=1)
+    breaks = fatigue.overloaded(peak, strength)
+    skids = skidding(solved["regime"].values)
+    living = np.broadcast_to(~(breaks | skids)[:, None, :], stress.shape)
+    return _Fatigue(peak, stress, overrollings[:, None, :], of_bodies, breaks, living)
+
+
+def _travel_of_blocks(spectrum: Spectrum, overrollings: np.ndarray) -> dict[str, Any]:
+    """Return distance, duration and overrollings of each block as variables."""
+    distances = [block.distance for block in spectrum.blocks]
+    hours = [block.hours for block in spectrum.blocks]
+    passes = _attrs("1", "overrollings per shift", "n")
+    return {
+        "distance": ("block", distances, _attrs("m", "distance per shift", "s")),
+        "duration": ("block", hours, _attrs("h", "hours of travel per shift", "t")),
+        "overrollings": (("block", "body"), overrollings, passes),
+    }
+
+
+def _by_curve(spectrum: Spectrum, of_blocks: _Fatigue) -> dict[str, Any]:
+    """Return stresses, damage and lives by the S-N curves at 50 % failures as variables."""
+    life, damage = of_blocks.damage()
     total = damage.sum(axis=0)
     shifts = miner.repetitions_to_failure(total, spectrum.critical_damage)
     first = shifts.min(axis=0)  # A track whose life is not known makes the result NaN.
-    variables: dict[str, Any] = {
-        "distance": (
-            "block",
-            [b.distance for b in spectrum.blocks],
-            _attrs("m", "distance per shift", "s"),
-        ),
-        "duration": (
-            "block",
-            [b.hours for b in spectrum.blocks],
-            _attrs("h", "hours of travel per shift", "t"),
-        ),
-        "overrollings": (
-            ("block", "body"),
-            overrollings,
-            _attrs("1", "overrollings per shift", "n"),
-        ),
-        "peak_stress": (
-            _BCB,
-            peak,
-            _attrs("MPa", "peak equivalent stress of the block", "sigma_DEH,max"),
-        ),
-        "life_cycles": (
-            _BCB,
-            life,
-            _attrs("1", "overrollings to failure at the stress of the block", "N"),
-        ),
+    peak_meta = _attrs("MPa", "peak equivalent stress of the block", "sigma_DEH,max")
+    life_meta = _attrs("1", "overrollings to failure at the stress of the block", "N")
+    return {
+        "peak_stress": (_BCB, of_blocks.peak, peak_meta),
+        "life_cycles": (_BCB, life, life_meta),
         "damage": (_BCB, damage, _attrs("1", "damage of the block per shift", "n/N")),
         "damage_sum": (_CB, total, _attrs("1", "damage per shift", "D")),
         "life_shifts": (_CB, shifts, _attrs("1", "shifts to failure of each track", "L_S")),
+        **_lives_of_bodies(spectrum, first),
     }
-    variables |= _lives_of_bodies(spectrum, first)
-    variables |= _loads(spectrum, database)
-    if "limit" in solved.coords:
-        chance = spectrum.options.get("failure_probability", 0.5)
-        by_curve = {}
-        for end, place in zip(first_limit.ENDS, (0.0, -1.0, 1.0), strict=True):
-            if case.placeholder_position is not None:
-                place = case.placeholder_position
-            scattering = [curve.assuming(typical_scatter(place, chance)) for curve in bodies]
-            by_curve[end] = damage_per_shift(stress, cycles, scattering, living, chance)[1]
-        variables |= by_limit(spectrum, solved, by_curve, breaks)
-    if "fatigue_stress" in solved:
-        variables["fatigue_stress"] = (_BCB, stress, dict(solved["fatigue_stress"].attrs))
-    if any(curve.scatters.any() for curve in bodies):
-        levels = spectrum.failure_probabilities
-        sums = [damage_per_shift(stress, cycles, bodies, living, p)[1].sum(axis=0) for p in levels]
-        variables["life_shifts_at_probability"] = _at_probabilities(spectrum, np.stack(sums))
-    if "life_to_first_limit_shifts" in variables:
-        shifts_to_first = variables["life_to_first_limit_shifts"][1]
-        travel = variables["distance"][1]
-        one_roller = np.zeros(len(travel), dtype=int)
-        solved = with_run_in(solved, one_roller, np.array(travel) / 1e3, shifts_to_first[None])
-    labelled = _labelled(spectrum, variables, solved, rule).assign_attrs(
-        _inputs(spectrum, database)
-    )
-    return with_duty(labelled, spectrum.duty, spectrum.strokes)
+
+
+def _damage_over_range(spectrum: Spectrum, of_blocks: _Fatigue) -> dict[str, np.ndarray]:
+    """Return the damage per shift at the failure probability of the spectrum, (block, contact,
+    body), by the ends of `first_limit.ENDS`: those of the scatter of curves that state none.
+    """
+    chance = spectrum.options.get("failure_probability", 0.5)
+    given = spectrum.blocks[0].case.placeholder_position
+    damage = {}
+    for end, place in zip(first_limit.ENDS, (0.0, -1.0, 1.0), strict=True):
+        if given is not None:
+            place = given
+        scattering = of_blocks.assuming_scatter(typical_scatter(place, chance))
+        damage[end] = scattering.damage(chance)[1]
+    return damage
+
+
+def _with_run_in(spectrum: Spectrum, solved: xr.Dataset, shifts: np.ndarray) -> xr.Dataset:
+    """Return the solved blocks with the flag `worn` for the lives of roller and guide in shifts,
+    (body,), over all blocks.
+    """
+    travel = np.array([block.distance for block in spectrum.blocks]) / 1e3
+    one_roller = np.zeros(len(travel), dtype=int)
+    return with_run_in(solved, one_roller, travel, shifts[None])
 
 
 def _lives_of_bodies(spectrum: Spectrum, shifts: np.ndarray) -> dict[str, Any]:
@@ -240,15 +292,14 @@ def _lives_of_bodies(spectrum: Spectrum, shifts: np.ndarray) -> dict[str, Any]:
     return variables
 
 
-def _at_probabilities(spectrum: Spectrum, damage: np.ndarray) -> xr.DataArray:
-    """Return the shifts to failure at each failure probability from the damage per shift,
-    (probability, contact, body).
-    """
+def _at_probabilities(spectrum: Spectrum, of_blocks: _Fatigue) -> xr.DataArray:
+    """Return the shifts to failure at each failure probability, (probability, contact, body)."""
+    levels = list(spectrum.failure_probabilities)
+    damage = np.stack([of_blocks.damage(level)[1].sum(axis=0) for level in levels])
     meta = {"units": "1", "long_name": "failure probability"}
-    levels = ("probability", list(spectrum.failure_probabilities), meta)
     return xr.DataArray(
         miner.repetitions_to_failure(damage, spectrum.critical_damage),
-        {"probability": levels},
+        {"probability": ("probability", levels, meta)},
         ("probability", *_CB),
         attrs=_attrs("1", "shifts to failure at a failure probability", "L_S,p"),
     )
