@@ -17,7 +17,7 @@ import numpy as np
 import xarray as xr
 
 from trackroller.damage import LIMITS, fatigue, first_limit, miner
-from trackroller.damage.limit import skidding
+from trackroller.damage.limit import Limit, skidding
 from trackroller.damage.pair import first_failure
 from trackroller.damage.sn_curve import CONVENTIONS, SNCurve, typical_scatter
 from trackroller.materials import load_database
@@ -434,87 +434,106 @@ def by_limit(
         track; of the other limits the worse contact of each block counts.
     """
     limits = [LIMITS[name] for name in solved["limit"].values.tolist()]
-    used, *lives_of_blocks = (
-        solved[name].transpose("case", "limit", "body").values
-        for name in ("utilisation", *(f"life_hours_by_limit{end}" for end in first_limit.ENDS))
-    )
     travel = np.array([block.hours for block in spectrum.blocks])[:, None, None]
-    most = np.max(np.where(travel > 0, used, 0.0), axis=0)
     # D_crit belongs to Miner's rule of the S-N curve; other limits are reached at a sum of 1
     is_fatigue = np.array([limit.name == "fatigue" for limit in limits])
     critical = np.where(is_fatigue, spectrum.critical_damage, 1.0)[:, None]
     timed = solved["life_hours_by_limit"].notnull().any(["case", "body"]).values
     broken = first_limit.breaking(np.any(breaks & (travel[:, 0] > 0), axis=0), limits)
+    out = _uses_of_limits(solved, travel)
+    most = out["utilisation"][1]
+    for end in first_limit.ENDS:
+        lives = solved[f"life_hours_by_limit{end}"].transpose("case", "limit", "body").values
+        damage = miner.block_damage(travel, lives)
+        damage[:, is_fatigue] = _of_worse_track(by_curve[end])[:, None]
+        total = damage.sum(axis=0)
+        shifts = critical * miner.repetitions_to_failure(total)
+        first, which = first_limit.first_of(
+            shifts[None], most[None], timed, limits, broken[None], end=end
+        )
+        out |= _lives_by_limit(shifts, first[0], float(travel.sum()), end)
+        if end == "":
+            out |= _damage_by_limit(damage, total)
+            out["limiting_mechanism"] = _limiting_mechanism(limits, which[0])
+    return out
+
+
+def _uses_of_limits(solved: xr.Dataset, travel: np.ndarray) -> dict[str, Any]:
+    """Return the largest use and the worst state of each limit over the blocks with travel
+    (block, 1, 1) [h], and its state in each block, as variables.
+    """
+    ordered = solved.transpose("case", "limit", "body", ...)
+    used = np.where(travel > 0, ordered["utilisation"].values, 0.0)
+    states = np.where(travel > 0, ordered["limit_state"].values, 0).astype(np.int8)
+    meaning = _attrs("1", "largest utilisation of a limit in a block")
+    meta = solved["limit_state"].attrs
+    return {
+        "utilisation": (("limit", "body"), np.max(used, axis=0), meaning),
+        "limit_state": (("limit", "body"), states.max(axis=0), dict(meta)),
+        "limit_state_of_block": (("block", "limit", "body"), states, dict(meta)),
+    }
+
+
+def _lives_by_limit(
+    shifts: np.ndarray, first: np.ndarray, hours: float, end: str
+) -> dict[str, Any]:
+    """Return the life by each limit and to the first one, of each body and of the pair, at an end
+    of its range, in shifts and in hours of travel as variables.
+
+    Parameters
+    ----------
+    shifts : numpy.ndarray, shape (limit, body)
+        Shifts to each limit [1].
+    first : numpy.ndarray, shape (body,)
+        Shifts to the first known limit [1].
+    hours : float
+        Hours of travel per shift [h].
+    end : str
+        One of `first_limit.ENDS`.
+    """
+    head = {"": "", "_low": "low end of the ", "_high": "high end of the "}[end]
+    pair = float(first_failure(*first)[0])
+    variables: dict[str, Any] = {}
+    for name, dims, life, meaning in (
+        ("life_{}_by_limit", ("limit", "body"), shifts, "until a limit with a life is reached"),
+        ("life_to_first_limit_{}", "body", first, "until the first known limit is reached"),
+        (
+            "pair_life_to_first_limit_{}",
+            (),
+            pair,
+            "until roller or guide reaches its first known limit",
+        ),
+    ):
+        in_shifts = _attrs("1", f"{head}shifts {meaning}")
+        in_hours = _attrs("h", f"{head}hours of travel {meaning}")
+        variables[name.format("shifts") + end] = (dims, life, in_shifts)
+        variables[name.format("hours") + end] = (dims, life * hours, in_hours)
+    return variables
+
+
+def _damage_by_limit(damage: np.ndarray, total: np.ndarray) -> dict[str, Any]:
+    """Return the damage per shift by each limit, (block, limit, body), and its sum over the
+    blocks, (limit, body), as variables.
+    """
+    of_block = _attrs("1", "damage of the block per shift by a limit")
+    of_shift = _attrs("1", "damage per shift by a limit")
+    return {
+        "damage_by_limit": (("block", "limit", "body"), damage, of_block),
+        "damage_sum_by_limit": (("limit", "body"), total, of_shift),
+    }
+
+
+def _limiting_mechanism(limits: list[Limit], which: np.ndarray) -> tuple[Any, ...]:
+    """Return the limit that each body reaches first as a variable.
+
+    `which` (body,) holds places in `limits`, -1 where no limit is known.
+    """
     words = (*LIMITS, "unknown")
-    flag: dict[str, Any] = {
+    flags: dict[str, Any] = {
         "long_name": "limit that the body reaches first",
         "flag_meanings": " ".join(words),
     }
-    flag["flag_values"] = np.arange(len(words), dtype=np.int8)
-    states = np.where(
-        travel > 0, solved["limit_state"].transpose("case", "limit", "body").values, 0
-    ).astype(np.int8)
-    out: dict[str, Any] = {
-        "utilisation": (
-            ("limit", "body"),
-            most,
-            _attrs("1", "largest utilisation of a limit in a block"),
-        ),
-        "limit_state": (("limit", "body"), states.max(axis=0), dict(solved["limit_state"].attrs)),
-        "limit_state_of_block": (
-            ("block", "limit", "body"),
-            states,
-            dict(solved["limit_state"].attrs),
-        ),
-    }
-    for end, lives in zip(first_limit.ENDS, lives_of_blocks, strict=True):
-        damage = miner.block_damage(travel, lives)
-        for i in (i for i, limit in enumerate(limits) if limit.name == "fatigue"):
-            damage[:, i] = _of_worse_track(by_curve[end])
-        shifts = critical * miner.repetitions_to_failure(damage.sum(axis=0))
-        first, which = (
-            one[0]
-            for one in first_limit.first_of(
-                shifts[None], most[None], timed, limits, broken[None], end=end
-            )
-        )
-        head = {"": "", "_low": "low end of the ", "_high": "high end of the "}[end]
-        for name, dims, values, meaning in (
-            ("life_{}_by_limit", ("limit", "body"), shifts, "until a limit with a life is reached"),
-            ("life_to_first_limit_{}", "body", first, "until the first known limit is reached"),
-            (
-                "pair_life_to_first_limit_{}",
-                (),
-                float(first_failure(*first)[0]),
-                "until roller or guide reaches its first known limit",
-            ),
-        ):
-            out[name.format("shifts") + end] = (
-                dims,
-                values,
-                _attrs("1", f"{head}shifts {meaning}"),
-            )
-            hours = (
-                dims,
-                values * float(travel.sum()),
-                _attrs("h", f"{head}hours of travel {meaning}"),
-            )
-            out[name.format("hours") + end] = hours
-        if not end:
-            names = np.array(
-                [words.index(name) for name in (*(limit.name for limit in limits), "unknown")]
-            )[which]
-            out |= {
-                "damage_by_limit": (
-                    ("block", "limit", "body"),
-                    damage,
-                    _attrs("1", "damage of the block per shift by a limit"),
-                ),
-                "damage_sum_by_limit": (
-                    ("limit", "body"),
-                    damage.sum(axis=0),
-                    _attrs("1", "damage per shift by a limit"),
-                ),
-                "limiting_mechanism": ("body", names.astype(np.int8), flag),
-            }
-    return out
+    flags["flag_values"] = np.arange(len(words), dtype=np.int8)
+    names = [*(limit.name for limit in limits), "unknown"]
+    numbers = np.array([words.index(name) for name in names])[which]
+    return ("body", numbers.astype(np.int8), flags)
