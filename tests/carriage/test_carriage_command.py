@@ -358,11 +358,14 @@ def test_the_example_answers_how_many_years(tmp_path, monkeypatch):
     worst = ds.attrs["worst_roller"]
     body, limit = (str(ds[name].sel(roller=worst).values) for name in ("first_body", "first_limit"))
     place = {"guide": f"the rail under roller {worst}", "roller": f"roller {worst}"}[body]
-    years = float(ds.life_years.sel(roller=worst))
+    per_year = float((ds.life_hours / ds.life_years).sel(roller=worst))
+    ends = [float(ds[f"life_hours{end}"].sel(roller=worst)) / per_year for end in ("_low", "_high")]
     assert re.search(
-        rf"\(([\d.]+) years\): then {place} reaches its first limit, {re.escape(LIMITS[limit].word)}\.$", last
+        rf"\(([\d.]+) to ([\d.]+) years\): then {place} reaches its first limit, {re.escape(LIMITS[limit].word)}\.$",
+        last,
     ), last
-    assert float(re.search(r"\(([\d.]+) years", last)[1]) == pytest.approx(years, rel=0.05)
+    told = re.search(r"\(([\d.]+) to ([\d.]+) years", last)
+    assert [float(end) for end in told.groups()] == pytest.approx(ends, rel=0.05)
 
 
 @pytest.mark.slow

@@ -146,7 +146,9 @@ def test_an_unknown_life_is_bounded_by_its_known_load_cases():
     assert min(bounds) < min(others, default=np.inf), "no roller whose life is known ends before"
     head = answer.headline
     assert head["roller"] == lost[int(np.argmin(bounds))] and head["at_most"] == pytest.approx(min(bounds))
+    assert head["unknown_in"] == "pull (lift-off)"
     text = headline_of(answer).text
+    assert "× 0 to" not in text
     assert f"{head['roller']} lasts at most" in text and "ends first" not in text and "pull" in text
     assert end_of_carriage(answer).startswith("The carriage lasts at most")
 

@@ -923,6 +923,7 @@ def carriage(answer: Answer) -> Headline:
     margins = [
         f"{one['of']} × {grouped(one['times'], 3)} to {one['end']} ({one['case']})"
         for one in head["margins"]
+        if one["times"] > 0  # otherwise the loads lift a contact already
     ]
     if answer.kind == "unsettled":
         return _joined(
@@ -958,8 +959,7 @@ def _carriage_lasts(answer: Answer, margins: Sequence[str]) -> Headline:
         clauses.append(f"then {head['limit']} of the {head['body']}{_lines(head)}")
     if _known(head, "part"):
         clauses.append(f"{percent(head['part'])} of it by {head['case']}")
-    if head["unknown"]:
-        clauses.append(f"the life of {listing(head['unknown'])} is not known")
+    clauses += _unknown_lives(head)
     if head["state"]:
         of = ""
         if head["of"]:
@@ -978,6 +978,16 @@ def _carriage_lasts(answer: Answer, margins: Sequence[str]) -> Headline:
         after = f", after {amount} by its rule"
     lead = f"{capital(_limit_of(worst))} {worst['roller']} exceeded ({percent(worst['use'])})"
     return Headline(lead, f"{after}. {'; '.join([capital('otherwise ' + lasts), *clauses])}.")
+
+
+def _unknown_lives(head: Mapping[str, Any]) -> list[str]:
+    """Return the rollers of a carriage whose life is not known, and why, as at most one clause."""
+    if not head["unknown"]:
+        return []
+    why = ""
+    if head["unknown_in"] and not _known(head, "at_most"):
+        why = f" (not on both contacts in {head['unknown_in']})"
+    return [f"the life of {listing(head['unknown'])} is not known{why}"]
 
 
 def end_of_carriage(answer: Answer) -> str:

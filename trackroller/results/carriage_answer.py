@@ -7,8 +7,9 @@ Keys of `Answer.headline`: `roller` (the worst one, or the one with the largest 
 from), `km` [km], `at_most` (bound of its life where the damage of some cases is not known [h]),
 `not_on_both` (cases in which it does not roll on both contacts, with the regime),
 `body` (`roller` or `guide`) and `limit` (in words) that end it,
-`force` (largest radial force [N]), `unknown` (rollers whose life is not known), `unsettled` (load
-cases without forces), `margins` (list of {of, end, times, case, tipping}: the first end of the
+`force` (largest radial force [N]), `unknown` (rollers whose life is not known), `unknown_in` (load
+cases in which these do not roll on both contacts), `unsettled` (load cases without forces),
+`margins` (list of {of, end, times, case, tipping}: the first end of the
 payload and of all loads), `exceeded` (list of {limit, body, roller, use [1], hours, km}, the worst
 one first), `not_judged` (reasons why the model does not judge the worst roller), `state` (of the
 required life: `met`, `open`, `missed`, or '' without one) and `of` (rollers that have this state,
@@ -282,6 +283,7 @@ def _headline(ds: xr.Dataset, table: pd.DataFrame) -> dict[str, Any]:
         "line_high": "",
         "force": force,
         "unknown": unknown,
+        "unknown_in": _lost_in(ds, unknown),
         "without_file": [name for name in ds.attrs.get("without_case", "").split(", ") if name],
         "unsettled": ds["load_case"].values[~ds["converged"].values].tolist(),
         "margins": list(_first_margins(ds)),
@@ -304,6 +306,12 @@ def _headline(ds: xr.Dataset, table: pd.DataFrame) -> dict[str, Any]:
     head["not_judged"] = [words for name, words in OUTSIDE.items() if flags & validity_bit(name)]
     head |= dict(zip(("line_low", "line_high"), _lines_of(ds, own), strict=True))
     return head | {"low": float(own["life_hours_low"]), "high": float(own["life_hours_high"])}
+
+
+def _lost_in(ds: xr.Dataset, rollers: Sequence[str]) -> str:
+    """Return the load cases in which some rollers do not roll on both contacts, with the regime."""
+    texts = [_beside_rolling(ds.sel(roller=roller)) for roller in rollers]
+    return "; ".join(dict.fromkeys(filter(None, texts)))
 
 
 def _bound(own: xr.Dataset) -> float:

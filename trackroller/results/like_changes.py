@@ -40,7 +40,7 @@ def effect_of_changes(
     ...     np.array([0, 0, 1, 1, 2, 2]),
     ...     None,
     ... )
-    >>> float(effect[1] - effect[0])
+    >>> round(float(effect[1] - effect[0]), 9)
     2.0
     """
     count = int(place.max(initial=-1)) + 1

@@ -109,6 +109,8 @@ def constant(ds: xr.Dataset, name: str) -> float | str | None:
             value = ds[name].item()
     elif is_constant_field(name):
         value = ds.attrs.get(name)
+        if isinstance(value, np.generic):  # as a file holds it
+            value = value.item()
     return value
 
 
