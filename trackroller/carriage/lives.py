@@ -55,8 +55,10 @@ class Lives:
 
     Attributes
     ----------
+    groups : numpy.ndarray of int
+        Number of each roller, rising; what is given by roller comes in this order.
     first : numpy.ndarray of int
-        First case of each roller; rollers come in the order of their numbers.
+        First case of each roller.
     solved : xarray.Dataset
         The results, whose flag `worn` holds for all load cases of a roller together.
     summed : dict of str to numpy.ndarray
@@ -78,7 +80,7 @@ class Lives:
         solved: xr.Dataset,
     ) -> None:
         self.order = np.argsort(group, kind="stable")
-        _, self.start = np.unique(group[self.order], return_index=True)
+        self.groups, self.start = np.unique(group[self.order], return_index=True)
         self.first = self.order[self.start]
         self.counts = np.diff(np.append(self.start, len(group)))
         self.solved = solved

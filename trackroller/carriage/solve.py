@@ -89,6 +89,7 @@ TIPPING = MOTIONS[2:4]  # motions that a user calls tipping
 _RC = ("load_case", "roller")
 _R = ("roller",)
 _C = ("load_case",)
+_CasesAt = dict[tuple[int, int], Case]  # by the numbers of load case and roller
 
 
 def solve_carriage(
@@ -540,7 +541,7 @@ def _of_catalogue(whole: Carriage, variables: Mapping[str, Any]) -> dict[str, An
     }
 
 
-def cases_of(whole: Carriage, ds: xr.Dataset) -> dict[tuple[int, int], Case]:
+def cases_of(whole: Carriage, ds: xr.Dataset) -> _CasesAt:
     """Return the `Case` of each roller that carries load, by the numbers of load case and
     roller.
     """
@@ -682,128 +683,199 @@ def with_lives(
         from trackroller.roller.solver import solve as solve_cases  # numba compiles on import
     else:
         solve_cases = solve
-    shape = ds["radial_force"].shape
-    n = len(whole.rollers)
-    case_hours = np.full(shape, np.inf)
-    regime = np.full(shape, -1, dtype=np.int8)
-    damage = np.zeros(shape)
-    for values in (case_hours, damage):
-        values[~ds["converged"].values] = np.nan
-    flagged = np.zeros(shape, dtype=np.int64)
-    lasts = {end: np.full(n, np.inf) for end in first_limit.ENDS}
-    at_most = np.full(n, np.inf)
-    own = np.array(
-        [roller.case.velocity for roller in whole.rollers if roller.case is not None], dtype=float
-    )
-    pace = hours_per_km(ds["share"].values, np.tile(ds["speed"].values, (n, 1)), own)
-    ends = np.full((n, 2), "", dtype=object)  # body and limit
-    flags: Mapping[str, Any] = {}
-    cases = cases_of(whole, ds)
-    checks = _Checks(n)
-    groups: dict[str, list[tuple[int, int]]] = {}
-    for place in cases:
-        groups.setdefault(repr(whole.rollers[place[1]].options), []).append(place)
-    for places in groups.values():
-        options = {
-            key: value
-            for key, value in whole.rollers[places[0][1]].options.items()
-            if key != "outputs"
-        }
-        of_group = [cases[place] for place in places]
-        outputs = ("forces", "peak_stress", "life", "limits", *groups_for_run_in(of_group))
-        solved = solve_cases(of_group, outputs=outputs, **options)
-        flags = solved["regime"].attrs
-        i, j = np.array(places).T
-        speed = np.array([0.06 * float(cases[place].velocity) for place in places])  # km/h
-        lives = Lives(j, ds["share"].values[i], speed, pace[j], solved)
-        for end in lasts:
-            lasts[end][j[lives.first]] = lives.summed[f"{LIFE}{end}"]
-        at_most[j[lives.first]] = lives.at_most()
-        ends[j[lives.first]] = _first_ends(lives, solved)
-        checks.add(j[lives.first], lives, solved)
-        case_hours[i, j] = solved[LIFE].values
-        regime[i, j] = solved["regime"].values
-        flagged[i, j] = _flags(lives.solved)
-        damage[i, j] = block_damage(lives.time, solved[LIFE].values)  # of a km of travel
-    meanings = {
-        **flags,
-        "flag_values": np.append(
-            np.int8(-1), np.asarray(flags.get("flag_values", []), dtype=np.int8)
-        ),
-    }
-    meanings["flag_meanings"] = f"lifted {flags.get('flag_meanings', '')}".strip()
-    first = "to the first limit of the roller or its rail"
-    if not ds["converged"].values[ds["share"].values > 0].all():
-        for end in lasts:
-            lasts[end] = np.full(n, np.nan)
-        at_most = np.full(n, np.inf)
-    at_most[~np.isnan(lasts[""])] = np.nan
-    ends[~np.isfinite(lasts[""])] = ""
-    travel = lasts[""] / pace
-    variables: dict[str, Any] = {
-        "case_life_hours": (
-            _RC,
-            case_hours,
-            _attrs("h", "life to the first limit under a load case alone"),
-        ),
-        "damage_per_km": (
-            _RC,
-            damage,
-            _attrs("km-1", "damage of a load case by a km of travel with all load cases"),
-        ),
-        "roller_regime": (_RC, regime, meanings),
-        "roller_validity": (
-            _RC,
-            flagged,
-            {"long_name": "validity flags of the roller, as of `trackroller.solve`"},
-        ),
-        "life_km": (_R, travel, _attrs("km", f"travel of the carriage {first}")),
-        "life_hours": (_R, lasts[""], _attrs("h", f"hours of travel {first}")),
-        "life_hours_at_most": (
-            _R,
-            at_most,
-            _attrs(
-                "h",
-                "bound of a life that is not known, by the load cases whose damage is known",
-            ),
-        ),
-        "first_body": (
-            _R,
-            ends[:, 0].astype(str),
-            {"long_name": "roller or rail, whichever reaches its limit first"},
-        ),
-        "first_limit": (_R, ends[:, 1].astype(str), {"long_name": "limit that is reached first"}),
-        "life_hours_low": (
-            _R,
-            lasts["_low"],
-            _attrs("h", f"low end of the hours of travel {first}"),
-        ),
-        "life_hours_high": (
-            _R,
-            lasts["_high"],
-            _attrs("h", f"high end of the hours of travel {first}"),
-        ),
-    }
-    if whole.duty is not None:
-        variables["life_years"] = (
-            _R,
-            years(lasts[""], whole.duty),
-            _attrs("year", "years of the duty to the first limit"),
-        )
-    database = load_database()
-    materials = [
-        material_values(roller.case, database)
-        for roller in whole.rollers
-        if roller.case is not None
-    ]
-    variables |= checks.variables() | _inputs_of_rollers(whole, materials, pace)
-    known = np.where(np.isnan(travel), at_most / pace, travel)
-    worst = ""
-    if np.isfinite(known).any():
-        worst = ds["roller"].values[int(np.argmin(known))]
+    lives = _LivesOfRollers(ds, whole)
+    checks = _Checks(len(whole.rollers))
+    for group in _groups_by_options(whole, cases_of(whole, ds)):
+        solved = _solve_group(whole, group, solve_cases)
+        summed = lives.summed(group, solved)
+        lives.add(group, summed, solved)
+        checks.add(summed, solved)
+    lives.drop_unknown()
+    materials = _materials_of_rollers(whole)
+    variables = lives.variables() | checks.variables()
+    variables |= _inputs_of_rollers(whole, materials, lives.pace)
     attrs = checks.attributes() | {NOT_GIVEN: json.dumps(_not_given(whole))}
     attrs |= {MATERIALS: json.dumps(_each_once(materials), default=str)}
-    return ds.assign(variables).assign_attrs(attrs, worst_roller=str(worst), **_chance(whole))
+    attrs |= {"worst_roller": lives.worst_roller()}
+    return ds.assign(variables).assign_attrs(attrs, **_chance(whole))
+
+
+def _groups_by_options(whole: Carriage, cases: _CasesAt) -> list[_CasesAt]:
+    """Return the cases of rollers with the same options together."""
+    groups: dict[str, _CasesAt] = {}
+    for place, case in cases.items():
+        options = whole.rollers[place[1]].options
+        groups.setdefault(repr(options), {})[place] = case
+    return list(groups.values())
+
+
+def _solve_group(whole: Carriage, group: _CasesAt, solve: Callable[..., xr.Dataset]) -> xr.Dataset:
+    """Solve the cases of rollers with the same options."""
+    cases = list(group.values())
+    _, roller = next(iter(group))
+    options = dict(whole.rollers[roller].options)
+    options.pop("outputs", None)
+    outputs = ("forces", "peak_stress", "life", "limits", *groups_for_run_in(cases))
+    return solve(cases, outputs=outputs, **options)
+
+
+def _materials_of_rollers(whole: Carriage) -> list[dict[str, Any]]:
+    """Return the values of the materials of each roller and its rail."""
+    database = load_database()
+    cases = [roller.case for roller in whole.rollers]
+    return [material_values(case, database) for case in cases if case is not None]
+
+
+class _LivesOfRollers:
+    """The lives of the rollers of a carriage, under each load case alone and under all of them.
+
+    A roller that is never loaded has no end of its life.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        Result of `forces_of`.
+    whole : Carriage
+        The carriage, each roller of which has a file.
+
+    Attributes
+    ----------
+    pace : numpy.ndarray, shape (roller,)
+        Hours that the carriage travels for a km with all its load cases [h/km].
+    """
+
+    def __init__(self, ds: xr.Dataset, whole: Carriage) -> None:
+        shape = ds["radial_force"].shape
+        number = len(whole.rollers)
+        self.duty = whole.duty
+        self.names = ds["roller"].values
+        self.share = ds["share"].values
+        self.converged = ds["converged"].values
+        self.pace = _pace_of(ds, whole)
+        self.case_hours = np.full(shape, np.inf)
+        self.case_hours[~self.converged] = np.nan
+        self.damage = np.zeros(shape)
+        self.damage[~self.converged] = np.nan
+        self.regime = np.full(shape, -1, dtype=np.int8)
+        self.validity = np.zeros(shape, dtype=np.int64)
+        self.hours = {end: np.full(number, np.inf) for end in first_limit.ENDS}
+        self.at_most = np.full(number, np.inf)
+        self.first_ends = np.full((number, 2), "", dtype=object)  # body and limit
+        self.regime_attrs: Mapping[str, Any] = {}
+
+    def summed(self, group: _CasesAt, solved: xr.Dataset) -> Lives:
+        """Return the lives of rollers that were solved together, over their load cases."""
+        load_case, roller = np.array(list(group)).T
+        speed = np.array([0.06 * float(case.velocity) for case in group.values()])  # km/h
+        return Lives(roller, self.share[load_case], speed, self.pace[roller], solved)
+
+    def add(self, group: _CasesAt, lives: Lives, solved: xr.Dataset) -> None:
+        """Take the lives of rollers that were solved together."""
+        load_case, roller = np.array(list(group)).T
+        self.case_hours[load_case, roller] = solved[LIFE].values
+        self.damage[load_case, roller] = block_damage(lives.time, solved[LIFE].values)
+        self.regime[load_case, roller] = solved["regime"].values
+        self.regime_attrs = solved["regime"].attrs
+        self.validity[load_case, roller] = _flags(lives.solved)
+        for end, hours in self.hours.items():
+            hours[lives.groups] = lives.summed[f"{LIFE}{end}"]
+        self.at_most[lives.groups] = lives.at_most()
+        self.first_ends[lives.groups] = _first_ends(lives, solved)
+
+    def drop_unknown(self) -> None:
+        """Drop the lives of a carriage with a load case without an equilibrium, the bounds of lives
+        that are known, and the body and the limit of rollers whose life has no end.
+        """
+        if not self.converged[self.share > 0].all():
+            for hours in self.hours.values():
+                hours[:] = np.nan
+            self.at_most[:] = np.inf
+        self.at_most[~np.isnan(self.hours[""])] = np.nan
+        self.first_ends[~np.isfinite(self.hours[""])] = ""
+
+    def travel(self) -> np.ndarray:
+        """Return the travel of the carriage to the first limit of each roller, (roller,) [km]."""
+        return np.asarray(self.hours[""] / self.pace)
+
+    def worst_roller(self) -> str:
+        """Return the name of the roller with the shortest travel, by the bound where no life is
+        known; "" if no travel has an end.
+        """
+        travel = self.travel()
+        known = np.where(np.isnan(travel), self.at_most / self.pace, travel)
+        if not np.isfinite(known).any():
+            return ""
+        return str(self.names[int(np.argmin(known))])
+
+    def variables(self) -> dict[str, Any]:
+        """Return the lives as variables."""
+        return self._of_load_cases() | self._of_rollers() | self._of_duty()
+
+    def _of_load_cases(self) -> dict[str, Any]:
+        """Return life, damage, regime and validity of each roller under each load case alone."""
+        return {
+            "case_life_hours": (
+                _RC,
+                self.case_hours,
+                _attrs("h", "life to the first limit under a load case alone"),
+            ),
+            "damage_per_km": (
+                _RC,
+                self.damage,
+                _attrs("km-1", "damage of a load case by a km of travel with all load cases"),
+            ),
+            "roller_regime": (_RC, self.regime, _with_lifted(self.regime_attrs)),
+            "roller_validity": (
+                _RC,
+                self.validity,
+                {"long_name": "validity flags of the roller, as of `trackroller.solve`"},
+            ),
+        }
+
+    def _of_rollers(self) -> dict[str, Any]:
+        """Return the life of each roller under all load cases, with its range and what ends it."""
+        first = "to the first limit of the roller or its rail"
+        hours = f"hours of travel {first}"
+        bound = "bound of a life that is not known, by the load cases whose damage is known"
+        body = {"long_name": "roller or rail, whichever reaches its limit first"}
+        limit = {"long_name": "limit that is reached first"}
+        return {
+            "life_km": (_R, self.travel(), _attrs("km", f"travel of the carriage {first}")),
+            "life_hours": (_R, self.hours[""], _attrs("h", hours)),
+            "life_hours_at_most": (_R, self.at_most, _attrs("h", bound)),
+            "first_body": (_R, self.first_ends[:, 0].astype(str), body),
+            "first_limit": (_R, self.first_ends[:, 1].astype(str), limit),
+            "life_hours_low": (_R, self.hours["_low"], _attrs("h", f"low end of the {hours}")),
+            "life_hours_high": (_R, self.hours["_high"], _attrs("h", f"high end of the {hours}")),
+        }
+
+    def _of_duty(self) -> dict[str, Any]:
+        """Return the life of each roller in years, {} without a duty."""
+        if self.duty is None:
+            return {}
+        meaning = _attrs("year", "years of the duty to the first limit")
+        return {"life_years": (_R, years(self.hours[""], self.duty), meaning)}
+
+
+def _pace_of(ds: xr.Dataset, whole: Carriage) -> np.ndarray:
+    """Return the hours that the carriage travels for a km with all its load cases, by the rollers
+    whose files state a velocity, (roller,) [h/km].
+    """
+    cases = [roller.case for roller in whole.rollers]
+    velocity = np.array([case.velocity for case in cases if case is not None], dtype=float)
+    speed = np.tile(ds["speed"].values, (len(whole.rollers), 1))
+    return hours_per_km(ds["share"].values, speed, velocity)
+
+
+def _with_lifted(attrs: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the attributes of the regime of a roller with the flag -1 of one that is lifted."""
+    values = np.asarray(attrs.get("flag_values", []), dtype=np.int8)
+    meanings = f"lifted {attrs.get('flag_meanings', '')}".strip()
+    return {
+        **attrs,
+        "flag_values": np.append(np.int8(-1), values),
+        "flag_meanings": meanings,
+    }
 
 
 def _chance(whole: Carriage) -> dict[str, float]:
@@ -834,12 +906,12 @@ class _Checks:
         self.requested: list[str] = []
         self.notes: list[str] = []
 
-    def add(self, rollers: np.ndarray, lives: Lives, solved: xr.Dataset) -> None:
+    def add(self, lives: Lives, solved: xr.Dataset) -> None:
         """Take the limits of rollers that were solved together; one that is unknown in a load case
         is not known.
         """
         limits = solved["limit"].values.tolist()
-        into = np.ix_(rollers, np.array([self.names.index(name) for name in limits]))
+        into = np.ix_(lives.groups, np.array([self.names.index(name) for name in limits]))
         self.state[into] = self._states(lives, solved)
         self.used[into] = lives.summed["utilisation"]
         for end, hours in self.hours.items():

@@ -10,14 +10,14 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import xarray as xr
 
 from trackroller.damage import LIMITS, fatigue, first_limit, miner
-from trackroller.damage.limit import skidding
+from trackroller.damage.limit import Limit, skidding
 from trackroller.damage.pair import first_failure
 from trackroller.damage.sn_curve import CONVENTIONS, SNCurve, typical_scatter
 from trackroller.materials import load_database
@@ -140,85 +140,137 @@ def damage_per_shift(
     return life, miner.block_damage(cycles, life)
 
 
+@dataclass(frozen=True)
+class _Fatigue:
+    """The stresses, cycles and S-N curves of roller and guide in the blocks of a spectrum.
+
+    Attributes
+    ----------
+    peak, stress : numpy.ndarray, shape (block, contact, body)
+        Peak stress, and the stress that counts for fatigue [MPa].
+    cycles : numpy.ndarray, shape (block, 1, body)
+        Overrollings per shift [1].
+    curves : list of SNCurve
+        S-N curves of roller and guide.
+    breaks : numpy.ndarray of bool, shape (block, body)
+        Where a body breaks at once.
+    living : numpy.ndarray of bool, shape (block, contact, body)
+        Where a body has a fatigue life.
+    """
+
+    peak: np.ndarray
+    stress: np.ndarray
+    cycles: np.ndarray
+    curves: list[SNCurve]
+    breaks: np.ndarray
+    living: np.ndarray
+
+    def damage(self, probability: float = 0.5) -> tuple[np.ndarray, np.ndarray]:
+        """Return cycles to failure and damage per shift; see `damage_per_shift`."""
+        return damage_per_shift(self.stress, self.cycles, self.curves, self.living, probability)
+
+    def assuming_scatter(self, scatter: np.ndarray) -> _Fatigue:
+        """Return the blocks with a scatter T_N [1] for the curves that state none."""
+        return replace(self, curves=[curve.assuming(scatter) for curve in self.curves])
+
+
 def _damage(
     spectrum: Spectrum, solved: xr.Dataset, database: MaterialDatabase, overrollings: np.ndarray
 ) -> xr.Dataset:
     """Return the damage of the solved blocks as a data set; see `solve_spectrum`."""
+    rule = spectrum.options.get("life_rule", "elementary")
+    fatigue_of_blocks = _fatigue_of_blocks(spectrum, solved, database, overrollings, rule)
+    variables = _travel_of_blocks(spectrum, overrollings)
+    variables |= _by_curve(spectrum, fatigue_of_blocks)
+    variables |= _loads(spectrum, database)
+    if "limit" in solved.coords:
+        by_curve = _damage_over_range(spectrum, fatigue_of_blocks)
+        variables |= by_limit(spectrum, solved, by_curve, fatigue_of_blocks.breaks)
+        solved = _with_run_in(spectrum, solved, variables["life_to_first_limit_shifts"][1])
+    if "fatigue_stress" in solved:
+        meta = dict(solved["fatigue_stress"].attrs)
+        variables["fatigue_stress"] = (_BCB, fatigue_of_blocks.stress, meta)
+    if any(curve.scatters.any() for curve in fatigue_of_blocks.curves):
+        variables["life_shifts_at_probability"] = _at_probabilities(spectrum, fatigue_of_blocks)
+    labelled = _labelled(spectrum, variables, solved, rule)
+    labelled = labelled.assign_attrs(_inputs(spectrum, database))
+    return with_duty(labelled, spectrum.duty, spectrum.strokes)
+
+
+def _fatigue_of_blocks(
+    spectrum: Spectrum,
+    solved: xr.Dataset,
+    database: MaterialDatabase,
+    overrollings: np.ndarray,
+    rule: str,
+) -> _Fatigue:
+    """Return the stresses, cycles and S-N curves of roller and guide in the solved blocks."""
     peak = solved["peak_stress"].transpose("case", "contact", "body").values
     stress = peak
     if "fatigue_stress" in solved:
         stress = solved["fatigue_stress"].transpose("case", "contact", "body").values
-    cycles = overrollings[:, None, :]
     case = spectrum.blocks[0].case
-    rule = spectrum.options.get("life_rule", "elementary")
     materials = [database.material(getattr(case, f"{body}_material")) for body in BODIES]
-    bodies = curves(spectrum, solved, materials, rule)
-    breaks = fatigue.overloaded(
-        peak, np.concatenate([curve.tensile_strength for curve in bodies], axis=1)
-    )
-    living = np.broadcast_to(
-        ~(breaks | skidding(solved["regime"].values))[:, None, :], stress.shape
-    )
-    life, damage = damage_per_shift(stress, cycles, bodies, living)
+    of_bodies = curves(spectrum, solved, materials, rule)
+    strength = np.concatenate([curve.tensile_strength for curve in of_bodies], axis=1)
+    breaks = fatigue.overloaded(peak, strength)
+    skids = skidding(solved["regime"].values)
+    living = np.broadcast_to(~(breaks | skids)[:, None, :], stress.shape)
+    return _Fatigue(peak, stress, overrollings[:, None, :], of_bodies, breaks, living)
+
+
+def _travel_of_blocks(spectrum: Spectrum, overrollings: np.ndarray) -> dict[str, Any]:
+    """Return distance, duration and overrollings of each block as variables."""
+    distances = [block.distance for block in spectrum.blocks]
+    hours = [block.hours for block in spectrum.blocks]
+    passes = _attrs("1", "overrollings per shift", "n")
+    return {
+        "distance": ("block", distances, _attrs("m", "distance per shift", "s")),
+        "duration": ("block", hours, _attrs("h", "hours of travel per shift", "t")),
+        "overrollings": (("block", "body"), overrollings, passes),
+    }
+
+
+def _by_curve(spectrum: Spectrum, of_blocks: _Fatigue) -> dict[str, Any]:
+    """Return stresses, damage and lives by the S-N curves at 50 % failures as variables."""
+    life, damage = of_blocks.damage()
     total = damage.sum(axis=0)
     shifts = miner.repetitions_to_failure(total, spectrum.critical_damage)
     first = shifts.min(axis=0)  # A track whose life is not known makes the result NaN.
-    variables: dict[str, Any] = {
-        "distance": (
-            "block",
-            [b.distance for b in spectrum.blocks],
-            _attrs("m", "distance per shift", "s"),
-        ),
-        "duration": (
-            "block",
-            [b.hours for b in spectrum.blocks],
-            _attrs("h", "hours of travel per shift", "t"),
-        ),
-        "overrollings": (
-            ("block", "body"),
-            overrollings,
-            _attrs("1", "overrollings per shift", "n"),
-        ),
-        "peak_stress": (
-            _BCB,
-            peak,
-            _attrs("MPa", "peak equivalent stress of the block", "sigma_DEH,max"),
-        ),
-        "life_cycles": (
-            _BCB,
-            life,
-            _attrs("1", "overrollings to failure at the stress of the block", "N"),
-        ),
+    peak_meta = _attrs("MPa", "peak equivalent stress of the block", "sigma_DEH,max")
+    life_meta = _attrs("1", "overrollings to failure at the stress of the block", "N")
+    return {
+        "peak_stress": (_BCB, of_blocks.peak, peak_meta),
+        "life_cycles": (_BCB, life, life_meta),
         "damage": (_BCB, damage, _attrs("1", "damage of the block per shift", "n/N")),
         "damage_sum": (_CB, total, _attrs("1", "damage per shift", "D")),
         "life_shifts": (_CB, shifts, _attrs("1", "shifts to failure of each track", "L_S")),
+        **_lives_of_bodies(spectrum, first),
     }
-    variables |= _lives_of_bodies(spectrum, first)
-    variables |= _loads(spectrum, database)
-    if "limit" in solved.coords:
-        chance = spectrum.options.get("failure_probability", 0.5)
-        by_curve = {}
-        for end, place in zip(first_limit.ENDS, (0.0, -1.0, 1.0), strict=True):
-            if case.placeholder_position is not None:
-                place = case.placeholder_position
-            scattering = [curve.assuming(typical_scatter(place, chance)) for curve in bodies]
-            by_curve[end] = damage_per_shift(stress, cycles, scattering, living, chance)[1]
-        variables |= by_limit(spectrum, solved, by_curve, breaks)
-    if "fatigue_stress" in solved:
-        variables["fatigue_stress"] = (_BCB, stress, dict(solved["fatigue_stress"].attrs))
-    if any(curve.scatters.any() for curve in bodies):
-        levels = spectrum.failure_probabilities
-        sums = [damage_per_shift(stress, cycles, bodies, living, p)[1].sum(axis=0) for p in levels]
-        variables["life_shifts_at_probability"] = _at_probabilities(spectrum, np.stack(sums))
-    if "life_to_first_limit_shifts" in variables:
-        shifts_to_first = variables["life_to_first_limit_shifts"][1]
-        travel = variables["distance"][1]
-        one_roller = np.zeros(len(travel), dtype=int)
-        solved = with_run_in(solved, one_roller, np.array(travel) / 1e3, shifts_to_first[None])
-    labelled = _labelled(spectrum, variables, solved, rule).assign_attrs(
-        _inputs(spectrum, database)
-    )
-    return with_duty(labelled, spectrum.duty, spectrum.strokes)
+
+
+def _damage_over_range(spectrum: Spectrum, of_blocks: _Fatigue) -> dict[str, np.ndarray]:
+    """Return the damage per shift at the failure probability of the spectrum, (block, contact,
+    body), by the ends of `first_limit.ENDS`: those of the scatter of curves that state none.
+    """
+    chance = spectrum.options.get("failure_probability", 0.5)
+    given = spectrum.blocks[0].case.placeholder_position
+    damage = {}
+    for end, place in zip(first_limit.ENDS, (0.0, -1.0, 1.0), strict=True):
+        if given is not None:
+            place = given
+        scattering = of_blocks.assuming_scatter(typical_scatter(place, chance))
+        damage[end] = scattering.damage(chance)[1]
+    return damage
+
+
+def _with_run_in(spectrum: Spectrum, solved: xr.Dataset, shifts: np.ndarray) -> xr.Dataset:
+    """Return the solved blocks with the flag `worn` for the lives of roller and guide in shifts,
+    (body,), over all blocks.
+    """
+    travel = np.array([block.distance for block in spectrum.blocks]) / 1e3
+    one_roller = np.zeros(len(travel), dtype=int)
+    return with_run_in(solved, one_roller, travel, shifts[None])
 
 
 def _lives_of_bodies(spectrum: Spectrum, shifts: np.ndarray) -> dict[str, Any]:
@@ -240,15 +292,14 @@ def _lives_of_bodies(spectrum: Spectrum, shifts: np.ndarray) -> dict[str, Any]:
     return variables
 
 
-def _at_probabilities(spectrum: Spectrum, damage: np.ndarray) -> xr.DataArray:
-    """Return the shifts to failure at each failure probability from the damage per shift,
-    (probability, contact, body).
-    """
+def _at_probabilities(spectrum: Spectrum, of_blocks: _Fatigue) -> xr.DataArray:
+    """Return the shifts to failure at each failure probability, (probability, contact, body)."""
+    levels = list(spectrum.failure_probabilities)
+    damage = np.stack([of_blocks.damage(level)[1].sum(axis=0) for level in levels])
     meta = {"units": "1", "long_name": "failure probability"}
-    levels = ("probability", list(spectrum.failure_probabilities), meta)
     return xr.DataArray(
         miner.repetitions_to_failure(damage, spectrum.critical_damage),
-        {"probability": levels},
+        {"probability": ("probability", levels, meta)},
         ("probability", *_CB),
         attrs=_attrs("1", "shifts to failure at a failure probability", "L_S,p"),
     )
@@ -383,87 +434,106 @@ def by_limit(
         track; of the other limits the worse contact of each block counts.
     """
     limits = [LIMITS[name] for name in solved["limit"].values.tolist()]
-    used, *lives_of_blocks = (
-        solved[name].transpose("case", "limit", "body").values
-        for name in ("utilisation", *(f"life_hours_by_limit{end}" for end in first_limit.ENDS))
-    )
     travel = np.array([block.hours for block in spectrum.blocks])[:, None, None]
-    most = np.max(np.where(travel > 0, used, 0.0), axis=0)
     # D_crit belongs to Miner's rule of the S-N curve; other limits are reached at a sum of 1
     is_fatigue = np.array([limit.name == "fatigue" for limit in limits])
     critical = np.where(is_fatigue, spectrum.critical_damage, 1.0)[:, None]
     timed = solved["life_hours_by_limit"].notnull().any(["case", "body"]).values
     broken = first_limit.breaking(np.any(breaks & (travel[:, 0] > 0), axis=0), limits)
+    out = _uses_of_limits(solved, travel)
+    most = out["utilisation"][1]
+    for end in first_limit.ENDS:
+        lives = solved[f"life_hours_by_limit{end}"].transpose("case", "limit", "body").values
+        damage = miner.block_damage(travel, lives)
+        damage[:, is_fatigue] = _of_worse_track(by_curve[end])[:, None]
+        total = damage.sum(axis=0)
+        shifts = critical * miner.repetitions_to_failure(total)
+        first, which = first_limit.first_of(
+            shifts[None], most[None], timed, limits, broken[None], end=end
+        )
+        out |= _lives_by_limit(shifts, first[0], float(travel.sum()), end)
+        if end == "":
+            out |= _damage_by_limit(damage, total)
+            out["limiting_mechanism"] = _limiting_mechanism(limits, which[0])
+    return out
+
+
+def _uses_of_limits(solved: xr.Dataset, travel: np.ndarray) -> dict[str, Any]:
+    """Return the largest use and the worst state of each limit over the blocks with travel
+    (block, 1, 1) [h], and its state in each block, as variables.
+    """
+    ordered = solved.transpose("case", "limit", "body", ...)
+    used = np.where(travel > 0, ordered["utilisation"].values, 0.0)
+    states = np.where(travel > 0, ordered["limit_state"].values, 0).astype(np.int8)
+    meaning = _attrs("1", "largest utilisation of a limit in a block")
+    meta = solved["limit_state"].attrs
+    return {
+        "utilisation": (("limit", "body"), np.max(used, axis=0), meaning),
+        "limit_state": (("limit", "body"), states.max(axis=0), dict(meta)),
+        "limit_state_of_block": (("block", "limit", "body"), states, dict(meta)),
+    }
+
+
+def _lives_by_limit(
+    shifts: np.ndarray, first: np.ndarray, hours: float, end: str
+) -> dict[str, Any]:
+    """Return the life by each limit and to the first one, of each body and of the pair, at an end
+    of its range, in shifts and in hours of travel as variables.
+
+    Parameters
+    ----------
+    shifts : numpy.ndarray, shape (limit, body)
+        Shifts to each limit [1].
+    first : numpy.ndarray, shape (body,)
+        Shifts to the first known limit [1].
+    hours : float
+        Hours of travel per shift [h].
+    end : str
+        One of `first_limit.ENDS`.
+    """
+    head = {"": "", "_low": "low end of the ", "_high": "high end of the "}[end]
+    pair = float(first_failure(*first)[0])
+    variables: dict[str, Any] = {}
+    for name, dims, life, meaning in (
+        ("life_{}_by_limit", ("limit", "body"), shifts, "until a limit with a life is reached"),
+        ("life_to_first_limit_{}", "body", first, "until the first known limit is reached"),
+        (
+            "pair_life_to_first_limit_{}",
+            (),
+            pair,
+            "until roller or guide reaches its first known limit",
+        ),
+    ):
+        in_shifts = _attrs("1", f"{head}shifts {meaning}")
+        in_hours = _attrs("h", f"{head}hours of travel {meaning}")
+        variables[name.format("shifts") + end] = (dims, life, in_shifts)
+        variables[name.format("hours") + end] = (dims, life * hours, in_hours)
+    return variables
+
+
+def _damage_by_limit(damage: np.ndarray, total: np.ndarray) -> dict[str, Any]:
+    """Return the damage per shift by each limit, (block, limit, body), and its sum over the
+    blocks, (limit, body), as variables.
+    """
+    of_block = _attrs("1", "damage of the block per shift by a limit")
+    of_shift = _attrs("1", "damage per shift by a limit")
+    return {
+        "damage_by_limit": (("block", "limit", "body"), damage, of_block),
+        "damage_sum_by_limit": (("limit", "body"), total, of_shift),
+    }
+
+
+def _limiting_mechanism(limits: list[Limit], which: np.ndarray) -> tuple[Any, ...]:
+    """Return the limit that each body reaches first as a variable.
+
+    `which` (body,) holds places in `limits`, -1 where no limit is known.
+    """
     words = (*LIMITS, "unknown")
-    flag: dict[str, Any] = {
+    flags: dict[str, Any] = {
         "long_name": "limit that the body reaches first",
         "flag_meanings": " ".join(words),
     }
-    flag["flag_values"] = np.arange(len(words), dtype=np.int8)
-    states = np.where(
-        travel > 0, solved["limit_state"].transpose("case", "limit", "body").values, 0
-    ).astype(np.int8)
-    out: dict[str, Any] = {
-        "utilisation": (
-            ("limit", "body"),
-            most,
-            _attrs("1", "largest utilisation of a limit in a block"),
-        ),
-        "limit_state": (("limit", "body"), states.max(axis=0), dict(solved["limit_state"].attrs)),
-        "limit_state_of_block": (
-            ("block", "limit", "body"),
-            states,
-            dict(solved["limit_state"].attrs),
-        ),
-    }
-    for end, lives in zip(first_limit.ENDS, lives_of_blocks, strict=True):
-        damage = miner.block_damage(travel, lives)
-        for i in (i for i, limit in enumerate(limits) if limit.name == "fatigue"):
-            damage[:, i] = _of_worse_track(by_curve[end])
-        shifts = critical * miner.repetitions_to_failure(damage.sum(axis=0))
-        first, which = (
-            one[0]
-            for one in first_limit.first_of(
-                shifts[None], most[None], timed, limits, broken[None], end=end
-            )
-        )
-        head = {"": "", "_low": "low end of the ", "_high": "high end of the "}[end]
-        for name, dims, values, meaning in (
-            ("life_{}_by_limit", ("limit", "body"), shifts, "until a limit with a life is reached"),
-            ("life_to_first_limit_{}", "body", first, "until the first known limit is reached"),
-            (
-                "pair_life_to_first_limit_{}",
-                (),
-                float(first_failure(*first)[0]),
-                "until roller or guide reaches its first known limit",
-            ),
-        ):
-            out[name.format("shifts") + end] = (
-                dims,
-                values,
-                _attrs("1", f"{head}shifts {meaning}"),
-            )
-            hours = (
-                dims,
-                values * float(travel.sum()),
-                _attrs("h", f"{head}hours of travel {meaning}"),
-            )
-            out[name.format("hours") + end] = hours
-        if not end:
-            names = np.array(
-                [words.index(name) for name in (*(limit.name for limit in limits), "unknown")]
-            )[which]
-            out |= {
-                "damage_by_limit": (
-                    ("block", "limit", "body"),
-                    damage,
-                    _attrs("1", "damage of the block per shift by a limit"),
-                ),
-                "damage_sum_by_limit": (
-                    ("limit", "body"),
-                    damage.sum(axis=0),
-                    _attrs("1", "damage per shift by a limit"),
-                ),
-                "limiting_mechanism": ("body", names.astype(np.int8), flag),
-            }
-    return out
+    flags["flag_values"] = np.arange(len(words), dtype=np.int8)
+    names = [*(limit.name for limit in limits), "unknown"]
+    numbers = np.array([words.index(name) for name in names])[which]
+    return ("body", numbers.astype(np.int8), flags)
