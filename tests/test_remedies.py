@@ -518,6 +518,7 @@ open(made[0], "wb").write(b"%PDF-1.4 printed")
 """
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("line", PAGES)
 def test_a_pdf_without_a_browser_becomes_a_page_or_a_pdf_after_one_was_installed(line, tmp_path, monkeypatch):
     written(tmp_path, "load.yaml", QUICK | {"name": "load", "blocks": [{"name": "a", "distance": 1}]})
@@ -540,6 +541,7 @@ def test_a_pdf_without_a_browser_becomes_a_page_or_a_pdf_after_one_was_installed
     assert (tmp_path / "page.pdf").read_bytes() == b"%PDF-1.4 printed"
 
 
+@pytest.mark.slow
 def test_a_browser_that_prints_nothing_is_told_and_a_page_is_written(tmp_path, monkeypatch):
     monkeypatch.setattr(html, "_browser", lambda: "false")
     line = PAGES[0].split()

@@ -227,6 +227,7 @@ def test_the_page_stands_alone_and_escapes_names(solved):
     assert not re.search(r"(?:src|href)=[\"'](?!data:)", page)
 
 
+@pytest.mark.slow
 def test_the_head_holds_texts_to_sign_and_inputs_the_outer_radius_and_the_duty(tmp_path):
     """Texts of a case file stand escaped above lines to sign; what is missing stays blank, and --set replaces them."""
     radii = "outer_radius: 2.6 cm\ngroove_depth: 3\nroller_profile_radius: -6.6\n"

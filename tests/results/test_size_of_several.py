@@ -82,6 +82,7 @@ def test_a_carriage_without_a_life_is_judged_by_its_load_ratios(shelf):
     assert max(pressures) / (1.6 * strength) == pytest.approx(1.0, abs=2e-4)
 
 
+@pytest.mark.slow
 def test_each_place_takes_its_own_roller_and_they_are_solved_together(shelf):
     found = tr.size(cart(), shelf, life=6000, least="price", each=True)
     places = found.mounting.table.set_index("place")
@@ -190,6 +191,7 @@ def test_a_temperature_of_a_spectrum_is_that_of_its_hottest_block(shelf):
     assert set(bare["verdict"]) == {"open"} and bare["excluded_by"].str.contains("cooled_area").all()
 
 
+@pytest.mark.slow
 def test_a_wear_depth_of_a_carriage_counts_at_each_place_and_everywhere(shelf):
     found = tr.size(cart(), shelf, life=0.1, wear_depth="0.05 mm", least="price", each=True)
     assert found.mounting.enough and "wear_ratio" in found.table
@@ -202,6 +204,7 @@ def test_a_wear_depth_of_a_carriage_counts_at_each_place_and_everywhere(shelf):
     assert not unknown.mounting.enough and "enough" not in set(unknown.table["verdict"])
 
 
+@pytest.mark.slow
 def test_the_command_writes_the_carriage_of_its_places(shelf, tmp_path):
     text = EXAMPLE.replace(
         "motor_force: 0\n", "motor_force: 0\n      contact_model: sliding\n      accuracy: preview\n"

@@ -26,6 +26,7 @@ def solved(base=(), **keys):
     return tr.run(study, progress=False)
 
 
+@pytest.mark.slow
 def test_a_search_that_a_range_leaves_open_names_the_value_and_its_range():
     """The wear coefficient of a plastic on steel is a range, and the required life lies within that of the wear."""
     keys = {

@@ -195,6 +195,7 @@ def seen(folder, *words):
     return " ".join(re.sub("[\u2500-\u257f]", " ", told).split()), " ".join(page.split())
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("hours", [False, True])
 def test_page_and_terminal_show_the_duty_as_it_was_given(tmp_path, monkeypatch, hours):
     monkeypatch.setenv("COLUMNS", "300")

@@ -124,6 +124,7 @@ def test_page_workbook_and_table_of_a_study_with_bounds(home):
     assert any("shakedown" in cell for cell in cells)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "more", [{"method": "optimise"}, {"until": {"half_width": 0.3, "of": ["max_pressure"], "at_most": 64}}]
 )
