@@ -88,6 +88,29 @@ def test_a_placeholder_that_a_factor_spans_leaves_a_requirement_open(tmp_path):
     assert "open" in set(answer.table["state"])
 
 
+def test_a_place_of_a_placeholder_that_a_candidate_was_not_tried_at_does_not_leave_it_open(tmp_path):
+    """B misses at the only wear coefficient that it has, A meets at both of its own."""
+    lines = ["roller_profile_radius,wear_coefficient_factor,radial_force"]
+    for radius, factor in ((-6.3, 0.5), (-6.3, 2), (-6.6, 2)):
+        lines += [f"{radius},{factor},{load}" for load in (-30, -60)]
+    (tmp_path / "rows.csv").write_text("\n".join(lines), encoding="utf-8")
+    study = {
+        "base": BASE | {"roller_material": "POM", "guide_material": "42CrMo4+QT-40", "axial_force": 0},
+        "method": "table",
+        "table": str(tmp_path / "rows.csv"),
+        "outputs": ["forces", "contact", "wear"],
+        "question": "decide",
+    }
+    plain = solved(tmp_path, **study, requirement={"max_pressure": {"max": 1e4}})
+    depth = plain.data["wear_depth_per_km"].sel(body="roller").max("contact").values
+    lost = (plain.table["roller_profile_radius"] == -6.6).to_numpy()
+    assert depth[lost].min() > 0
+    most = 0.5 * depth[lost].min()
+    answer = solved(tmp_path, **study, requirement={"wear_depth_per_km_roller": {"max": most}}).answer
+    states = dict(zip(answer.table["roller_profile_radius"], answer.table["state"], strict=True))
+    assert states[-6.6] == "missed"
+
+
 def test_conditions_of_a_table_go_by_their_names(tmp_path):
     lines = ["drawing,weather,roller_profile_radius,radial_force,motor_force,friction_coefficient"]
     for drawing, radius in (("A", -6.4), ("B", -7)):

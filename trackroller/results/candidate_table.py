@@ -557,9 +557,15 @@ def _everywhere(own: Comparison, rows: np.ndarray) -> np.ndarray:
 def _perhaps_everywhere(own: Comparison, rows: np.ndarray) -> np.ndarray:
     """Return the candidates of which all cases that count are among some rows at one place of the
     placeholders at least, shape (candidates,): a placeholder has one value in all conditions.
+
+    A place at which a candidate was not tried says nothing of it.
     """
-    places = [_everywhere(own, rows | (own.level != one)) for one in np.unique(own.level[own.own])]
-    return np.asarray(np.any(places, axis=0))
+    perhaps = np.zeros(own.count, dtype=bool)
+    for place in np.unique(own.level[own.own]):
+        here = own.reachable & (own.level == place)
+        tried = np.bincount(own.candidate[here], minlength=own.count) > 0
+        perhaps |= tried & _everywhere(own, rows | ~here)
+    return perhaps
 
 
 def _shares(own: Comparison) -> dict[str, Any]:
