@@ -266,17 +266,7 @@ def _kind(ds: xr.Dataset) -> str:
 def _headline(ds: xr.Dataset, table: pd.DataFrame) -> dict[str, Any]:
     """Return the numbers and names of the headline."""
     roller, case = worst_place(ds)
-    forces = ds["radial_force"].values
-    if "life_km" in ds:
-        lives = ds["life_km"].values
-    else:
-        lives = np.full(ds.sizes["roller"], np.nan)
-    force = math.nan
-    if np.isfinite(forces).any():
-        force = -float(np.nanmin(forces))
-    unknown = []
-    if "life_km" in ds:
-        unknown = ds["roller"].values[np.isnan(lives)].tolist()
+    unknown = _rollers_without_life(ds)
     head: dict[str, Any] = {
         "roller": roller,
         "case": case,
@@ -292,7 +282,7 @@ def _headline(ds: xr.Dataset, table: pd.DataFrame) -> dict[str, Any]:
         "limit": "",
         "line_low": "",
         "line_high": "",
-        "force": force,
+        "force": _largest_force(ds),
         "unknown": unknown,
         "unknown_in": _lost_in(ds, unknown),
         "without_file": [name for name in ds.attrs.get("without_case", "").split(", ") if name],
@@ -302,22 +292,55 @@ def _headline(ds: xr.Dataset, table: pd.DataFrame) -> dict[str, Any]:
         "not_judged": [],
     }
     head |= _judged(table)
-    if not ds.attrs.get("worst_roller"):
-        return head
+    if ds.attrs.get("worst_roller"):
+        head |= _life_of_worst(ds, roller, case)
+        first = table[table["roller"] == roller].iloc[0]
+        head |= {key: float(first[key]) for key in ("km", "km_low", "km_high")}
+    return head
+
+
+def _largest_force(ds: xr.Dataset) -> float:
+    """Return the largest radial force that presses a roller on its rail [N], NaN if none is
+    known.
+    """
+    forces = ds["radial_force"].values
+    if np.isfinite(forces).any():
+        return -float(np.nanmin(forces))
+    return math.nan
+
+
+def _rollers_without_life(ds: xr.Dataset) -> list[str]:
+    """Return the rollers whose life is not known; none without lives."""
+    names: list[str] = []
+    if "life_km" in ds:
+        names = ds["roller"].values[np.isnan(ds["life_km"].values)].tolist()
+    return names
+
+
+def _life_of_worst(ds: xr.Dataset, roller: str, case: str) -> dict[str, Any]:
+    """Return the life of the worst roller with its range and what ends it, and the part of the
+    damage that its worst load case does.
+    """
     own = ds.sel(roller=roller)
-    damage = own["damage_per_km"]
-    head["at_most"] = _bound(own)
-    head["not_on_both"] = _beside_rolling(own)
-    if math.isnan(head["at_most"]):
-        head["part"] = float(damage.sel(load_case=case) / damage.sum())
-    first = table[table["roller"] == roller].iloc[0]
-    head |= {key: float(first[key]) for key in ("km", "km_low", "km_high")}
-    head["body"] = str(own["first_body"].item())
-    head["limit"] = limit_word(str(own["first_limit"].item()))
+    bound = _bound(own)
+    part = math.nan
+    if math.isnan(bound):
+        damage = own["damage_per_km"]
+        part = float(damage.sel(load_case=case) / damage.sum())
+    line_low, line_high = _lines_of(ds, own)
     flags = int(np.bitwise_or.reduce(own["roller_validity"].values.astype(int)))
-    head["not_judged"] = [words for name, words in OUTSIDE.items() if flags & validity_bit(name)]
-    head |= dict(zip(("line_low", "line_high"), _lines_of(ds, own), strict=True))
-    return head | {"low": float(own["life_hours_low"]), "high": float(own["life_hours_high"])}
+    return {
+        "part": part,
+        "low": float(own["life_hours_low"]),
+        "high": float(own["life_hours_high"]),
+        "at_most": bound,
+        "not_on_both": _beside_rolling(own),
+        "body": str(own["first_body"].item()),
+        "limit": limit_word(str(own["first_limit"].item())),
+        "line_low": line_low,
+        "line_high": line_high,
+        "not_judged": [words for name, words in OUTSIDE.items() if flags & validity_bit(name)],
+    }
 
 
 def _lost_in(ds: xr.Dataset, rollers: Sequence[str]) -> str:
