@@ -13,6 +13,7 @@ import xarray as xr
 import trackroller as tr
 from trackroller.parameters import PARAMETERS
 from trackroller.results.lives_by_tests import beyond_sn_data
+from trackroller.roller.differences import scale
 from trackroller.study.file.load import parse_study
 from trackroller.study.run import run_study
 
@@ -209,3 +210,14 @@ def test_a_dimension_that_was_added_is_refused_and_can_be_selected_away(name):
     with pytest.raises(tr.InputError, match=rf"{name} = 'load' is a dimension that was added.*isel\(load=0\)"):
         tr.open_study(wide)
     assert tr.open_study(wide.isel(load=0)).table.shape == tr.open_study(gathered).table.shape
+
+
+def test_scales_of_differences_know_parameters_that_all_cases_share():
+    """A shared load and axis distance are attributes of a study; the scales are those with coordinates."""
+    factors = {"friction_coefficient": {"values": [0.1, 0.3]}}
+    study = {"name": "scales", "factors": factors, "contact_model": "sliding", "accuracy": "preview"}
+    data = tr.run(study, progress=False).data
+    assert "axis_distance" in data.attrs and "radial_force" in data.attrs
+    coordinates = data.assign_coords({name: data.attrs[name] for name in ("axis_distance", "radial_force")})
+    for name in ("peak_x", "spin_moment", "lateral_force"):
+        np.testing.assert_array_equal(scale(data, name), scale(coordinates, name))

@@ -169,10 +169,10 @@ def _load(ds: xr.Dataset, name: str) -> xr.DataArray:
     """Return the applied forces, and those that the contacts carry [N]: a flat contact angle
     multiplies the loads.
     """
-    loads = [
-        abs(ds[load])
+    loads: list[Any] = [
+        _parameter(ds, load)
         for load in ("radial_force", "axial_force", "motor_force")
-        if load in ds.variables
+        if load in ds.variables or load in ds.attrs
     ]
     if "normal_force" in ds.variables:
         loads.append(ds["normal_force"].sum("contact"))
@@ -183,9 +183,16 @@ def _axis(ds: xr.Dataset) -> xr.DataArray | float:
     """Return the distance of the roller's axis [mm], NaN if the data set does not hold the
     parameters.
     """
-    if "axis_distance" in ds.variables:
-        return abs(ds["axis_distance"])
-    return np.nan
+    return _parameter(ds, "axis_distance")
+
+
+def _parameter(ds: xr.Dataset, name: str) -> xr.DataArray | float:
+    """Return the magnitude of a parameter, which is an attribute if all cases of a study share it;
+    NaN if the data set does not hold it.
+    """
+    if name in ds.variables:
+        return abs(ds[name])
+    return abs(float(ds.attrs.get(name, np.nan)))
 
 
 def _moment(ds: xr.Dataset, name: str) -> xr.DataArray:
